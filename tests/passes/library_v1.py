@@ -1,7 +1,8 @@
-"""Writes the libraries of actions for SysML v1 anew: ``python tests/passes/library_v1.py``.
+"""Generate the libraries of actions for SysML v1: ``python tests/passes/library_v1.py``.
 
-SysML v1 has no subjects and no assumptions: what a requirement is about satisfies it, and an
-assumption says so in its language. Actions are abstract: only those of a model have contracts.
+SysML v1 has neither subjects nor assumptions. The subject of a requirement satisfies the
+requirement instead, and the language of a constraint marks an assumption. The actions are abstract:
+only actions of a model have contracts.
 """
 
 import re
@@ -16,27 +17,27 @@ FOLDER = Path(__file__).parents[2] / "metamodels"
 LIBRARIES = ("DIN8580", "LineMachines")
 
 
-def library(name: str) -> bytes:
-    """A library of ``metamodels`` as XMI."""
+def print_library(name: str) -> bytes:
+    """Return a library of ``metamodels`` as XMI."""
     text = (FOLDER / f"{name}.sysml").read_text(encoding="utf-8")
-    # Under its own name the text would be the library that comes with the compiler.
+    # The compiler would replace a package of this name by the library that it ships.
     text = re.sub(rf"library package {name}\b", "package Library", text)
     text = text.replace(f"{name}::", "Library::")
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / f"{name}.sysml").write_text(text, encoding="utf-8")
-        graph = parse_text(_emitted(Path(folder), f"{name}.sysml", "ir", "graph.ir").decode())
+        graph = parse_text(_emit(Path(folder), f"{name}.sysml", "ir", "graph.ir").decode())
         for element in list(graph):
-            _for_v1(graph, element, name)
+            _adapt_to_v1(graph, element, name)
         (Path(folder) / f"{name}.ir").write_text(print_text(graph), encoding="utf-8")
-        return _emitted(Path(folder), f"{name}.ir", "uml", f"uml/{name}.uml")
+        return _emit(Path(folder), f"{name}.ir", "uml", f"uml/{name}.uml")
 
 
-def _emitted(folder: Path, model: str, backend: str, file: str) -> bytes:
-    made = compile_model(Request((folder / model,), backends=tuple(select_backends([backend]))))
-    return next(one.text for one in made.list_published() if one.path == file).encode()
+def _emit(folder: Path, model: str, backend: str, file: str) -> bytes:
+    outcome = compile_model(Request((folder / model,), backends=tuple(select_backends([backend]))))
+    return next(output.text for output in outcome.list_published() if output.path == file).encode()
 
 
-def _for_v1(graph: Graph, element: Element, name: str) -> None:
+def _adapt_to_v1(graph: Graph, element: Element, name: str) -> None:
     if element.name == "Library":
         graph.rename(element, name)
     if element.kind is Kind.ACTIVITY or element.attrs.get("role") == "block":
@@ -46,25 +47,25 @@ def _for_v1(graph: Graph, element: Element, name: str) -> None:
     for subject in graph.targets(element, Edge.SUBJECT):
         graph.disconnect(Edge.SUBJECT, element, subject)
         graph.connect(Edge.SATISFIES, subject, element)
-    for assumed in graph.targets(element, Edge.ASSUMES):
-        graph.set(assumed, language="LTL assume")
-        graph.disconnect(Edge.ASSUMES, element, assumed)
+    for assumption in graph.targets(element, Edge.ASSUMES):
+        graph.set(assumption, language="LTL assume")
+        graph.disconnect(Edge.ASSUMES, element, assumption)
 
 
 def _add_pins(graph: Graph, action: Element) -> None:
-    """A pin for each parameter of what is called: the notation of SysML v2 does without."""
-    called = graph.target(action, Edge.CALLS)
-    for parameter in query.parameters(graph, called) if called is not None else ():
+    """Add a pin for each parameter of the called behaviour; SysML v2 needs no pins."""
+    behaviour = graph.target(action, Edge.CALLS)
+    for parameter in query.parameters(graph, behaviour) if behaviour is not None else ():
         direction = query.direction_of(parameter)
-        made = Element(f"{action.id}.{parameter.name}", Kind.PIN, parameter.name, action.id)
-        made.attrs["direction"] = direction
-        made.attrs["subkind"] = "argument" if direction == "in" else "result"
-        graph.add(made)
+        pin = Element(f"{action.id}.{parameter.name}", Kind.PIN, parameter.name, action.id)
+        pin.attrs["direction"] = direction
+        pin.attrs["subkind"] = "argument" if direction == "in" else "result"
+        graph.add(pin)
         type_ = graph.target(parameter, Edge.TYPED_BY)
         if type_ is not None:
-            graph.connect(Edge.TYPED_BY, made, type_)
+            graph.connect(Edge.TYPED_BY, pin, type_)
 
 
 if __name__ == "__main__":
-    for one in LIBRARIES:
-        (FOLDER / f"{one}.uml").write_bytes(library(one))
+    for name in LIBRARIES:
+        (FOLDER / f"{name}.uml").write_bytes(print_library(name))

@@ -1,4 +1,4 @@
-"""A small plant for the tests of overlays, and laying one over it."""
+"""A small plant for the tests of overlays, and a helper that applies overlays to it."""
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
@@ -57,17 +57,20 @@ Package model "Gate" @gate.uml:1
 """
 
 
-def overlay_of(text: str, sink: Sink, file: str = "plant.overlay.yaml") -> Refinement | None:
-    """What an overlay says."""
+def read_overlay_text(text: str, sink: Sink, file: str = "plant.overlay.yaml") -> Refinement | None:
+    """Return the content of an overlay, or None if it is faulty."""
     return read_overlay(Source(file, text.encode("utf-8")), sink)
 
 
-def laid_over(
+def apply_overlays(
     *overlays: str, model: str = PLANT + MODEL, until: str = "overlay"
 ) -> tuple[Graph, Sink]:
-    """The graph of a model behind a pass with overlays laid over it, and what was found."""
+    """Run the passes up to *until* on a model with overlays; return the graph and diagnostics."""
     graph, sink = parse_text(model), Sink()
-    found = [overlay_of(text, sink, f"{n}.overlay.yaml") for n, text in enumerate(overlays)]
-    graph.store(Refinement, [one for one in found if one is not None])
+    refinements = [
+        read_overlay_text(text, sink, f"{number}.overlay.yaml")
+        for number, text in enumerate(overlays)
+    ]
+    graph.store(Refinement, [refinement for refinement in refinements if refinement is not None])
     pipeline.run(graph, sink, verify_each=True, until=until)
     return graph, sink

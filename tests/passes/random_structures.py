@@ -1,10 +1,10 @@
-"""Random small models: any element below any other, any edge, the attributes that passes read."""
+"""Random small models: elements with any owner, any edge, and the attributes that passes read."""
 
 from hypothesis import strategies as st
 
 from sysmlc.ir import Edge, Element, Graph, Kind, Reference
 
-BOUND = {
+KINDS_WITH_RESTRICTED_OWNERS = {
     Kind.REGION,
     Kind.STATE,
     Kind.FINAL_STATE,
@@ -12,8 +12,8 @@ BOUND = {
     Kind.SLOT,
     Kind.CONNECTOR_END,
 }
-"""Kinds that only some others may own."""
-USUAL = [
+"""Kinds that only elements of certain kinds may own."""
+FREQUENT_KINDS = [
     Kind.APPLICATION,
     Kind.CONTROL,
     Kind.STRUCTURED,
@@ -23,9 +23,9 @@ USUAL = [
     Kind.CONNECTOR,
     Kind.ITEM_FLOW,
 ]
-KINDS = [*sorted(set(Kind) - BOUND), *(5 * USUAL)]
-SINGLE = (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)
-OFTEN = [
+KINDS = [*sorted(set(Kind) - KINDS_WITH_RESTRICTED_OWNERS), *(5 * FREQUENT_KINDS)]
+SINGLE_EDGES = (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)
+FREQUENT_EDGES = [
     Edge.SUBJECT,
     Edge.SPECIALIZES,
     Edge.REDEFINES,
@@ -37,7 +37,7 @@ OFTEN = [
     Edge.CLIENT,
     Edge.SUPPLIER,
 ]
-EDGES = [*(edge for edge in Edge if edge not in (Edge.OWNS, *SINGLE)), *(3 * OFTEN)]
+EDGES = [*(edge for edge in Edge if edge not in (Edge.OWNS, *SINGLE_EDGES)), *(3 * FREQUENT_EDGES)]
 NAMESPACES = [
     "",
     "urn:sysmlc:profile:1",
@@ -50,7 +50,7 @@ STEREOTYPES = [
     *("ValueType", "Unit", "BoundReference", "AdjunctProperty", "AllocateActivityPartition"),
     *("ConstraintBlock", "Allocated", "Conform", "View", "ElementGroup", "DistributedProperty"),
 ]
-_ANY = st.sampled_from(["e0", "e1", ("e2", "gone"), "kg", "", "x.uml#y", True, 3])
+TAG_VALUES = st.sampled_from(["e0", "e1", ("e2", "gone"), "kg", "", "x.uml#y", True, 3])
 TARGETS = [
     "nowhere",
     "a.uml#e1",
@@ -72,23 +72,23 @@ ATTRIBUTES = {
     "stereotype": st.sampled_from(STEREOTYPES),
     "namespace": st.sampled_from(NAMESPACES),
     "tag.direction": st.sampled_from(["in", "out"]),
-    "tag.unit": _ANY,
-    "tag.bindingPath": _ANY,
-    "tag.principal": _ANY,
-    "tag.allocatedTo": _ANY,
-    "tag.member": _ANY,
-    "tag.lower": _ANY,
-    "tag.text": _ANY,
+    "tag.unit": TAG_VALUES,
+    "tag.bindingPath": TAG_VALUES,
+    "tag.principal": TAG_VALUES,
+    "tag.allocatedTo": TAG_VALUES,
+    "tag.member": TAG_VALUES,
+    "tag.lower": TAG_VALUES,
+    "tag.text": TAG_VALUES,
     "on": st.sampled_from(["generalization", "change-event"]),
 }
 
 
 @st.composite
-def elements(draw: st.DrawFn) -> list[Element]:
-    """Elements e0, e1, ... each below an earlier one or none."""
-    made: list[Element] = []
+def element_lists(draw: st.DrawFn) -> list[Element]:
+    """Draw elements e0, e1, ...; the owner of each is an earlier element or None."""
+    elements: list[Element] = []
     for number in range(draw(st.integers(1, 10))):
-        owner = draw(st.none() | st.sampled_from(made)) if made else None
+        owner = draw(st.none() | st.sampled_from(elements)) if elements else None
         attrs = draw(st.fixed_dictionaries({}, optional=ATTRIBUTES))
         element = Element(
             f"e{number}", draw(st.sampled_from(KINDS)), draw(st.sampled_from(["", "a", "FullPort"]))
@@ -97,44 +97,51 @@ def elements(draw: st.DrawFn) -> list[Element]:
         element.source = draw(st.sampled_from(["", "a.uml", "b.uml"]))
         element.ordinal = number if element.source else -1
         element.attrs = attrs
-        made.append(element)
-    return made
+        elements.append(element)
+    return elements
 
 
 @st.composite
 def structures(draw: st.DrawFn) -> Graph:
-    """A valid graph with references still to resolve."""
+    """Draw a valid graph with references to resolve."""
     graph = Graph()
-    for element in draw(elements()):
+    for element in draw(element_lists()):
         graph.add(element)
     ids = [element.id for element in graph]
     for edge, source, target in draw(
         st.lists(st.tuples(*(st.sampled_from(pool) for pool in (EDGES, ids, ids))), max_size=25)
     ):
         graph.connect(edge, source, target)
-    for edge in SINGLE:
+    for edge in SINGLE_EDGES:
         for source in draw(st.lists(st.sampled_from(ids), unique=True, max_size=4)):
             graph.connect(edge, source, draw(st.sampled_from(ids)))
     pools = (EDGES, ids, TARGETS)
-    for found in draw(st.lists(st.tuples(*map(st.sampled_from, pools)), max_size=6)):
-        graph.pending.append(Reference(*found))
+    for reference in draw(st.lists(st.tuples(*map(st.sampled_from, pools)), max_size=6)):
+        graph.pending.append(Reference(*reference))
     return graph
 
 
 @st.composite
 def hierarchies(draw: st.DrawFn) -> Graph:
-    """Classes that specialise earlier ones, with properties that redefine inherited ones."""
+    """Draw classes that specialise earlier classes; their properties redefine inherited ones."""
     graph = Graph()
-    above: list[set[int]] = []
+    ancestors: list[set[int]] = []
     for number in range(draw(st.integers(1, 7))):
-        ups = draw(st.lists(st.integers(0, number - 1), unique=True, max_size=3)) if number else []
-        above.append(set(ups).union(*(above[up] for up in ups)))
+        parents = (
+            draw(st.lists(st.integers(0, number - 1), unique=True, max_size=3)) if number else []
+        )
+        ancestors.append(set(parents).union(*(ancestors[parent] for parent in parents)))
         graph.add(Element(f"c{number}", Kind.CLASS, f"C{number}"))
-        for up in ups:
-            graph.connect(Edge.SPECIALIZES, f"c{number}", f"c{up}")
-        for own in range(draw(st.integers(0, 2))):
-            graph.add(Element(f"c{number}.{own}", Kind.PROPERTY, "p", f"c{number}"))
-            old = [one.id for up in sorted(above[number]) for one in graph.owned(graph[f"c{up}"])]
-            if old and draw(st.booleans()):
-                graph.connect(Edge.REDEFINES, f"c{number}.{own}", draw(st.sampled_from(old)))
+        for parent in parents:
+            graph.connect(Edge.SPECIALIZES, f"c{number}", f"c{parent}")
+        for feature in range(draw(st.integers(0, 2))):
+            graph.add(Element(f"c{number}.{feature}", Kind.PROPERTY, "p", f"c{number}"))
+            inherited = [
+                element.id
+                for ancestor in sorted(ancestors[number])
+                for element in graph.owned(graph[f"c{ancestor}"])
+            ]
+            if inherited and draw(st.booleans()):
+                redefined = draw(st.sampled_from(inherited))
+                graph.connect(Edge.REDEFINES, f"c{number}.{feature}", redefined)
     return graph

@@ -1,4 +1,4 @@
-"""Allocation in activities and of definitions."""
+"""Allocations of actions, of definitions, and of partitions that represent a part."""
 
 import pytest
 from pass_runs import print_after_second_run, run_until
@@ -44,9 +44,9 @@ Dependency d subkind="abstraction"
 @pytest.mark.parametrize(
     ("node", "expected"), [("pick", ["arm"]), ("place", ["arm"]), ("look", []), ("start", [])]
 )
-def test_actions_in_an_allocate_partition_go_to_what_it_represents(node, expected):
+def test_actions_in_an_allocate_partition_are_allocated_to_the_part_it_represents(node, expected):
     graph, _ = run_until(LANES, "classify")
-    assert [one.id for one in graph.targets(graph[node], Edge.ALLOCATED_TO)] == expected
+    assert [target.id for target in graph.targets(graph[node], Edge.ALLOCATED_TO)] == expected
 
 
 def test_a_second_run_changes_nothing():
@@ -57,16 +57,19 @@ def test_a_second_run_changes_nothing():
 
 def test_an_allocation_of_a_definition_holds_for_its_usages():
     graph, _ = run_until(LANES + DEFINITION, "classify")
-    assert [one.id for one in allocated_to(graph, graph["place"])] == ["arm", "robot"]
-    assert [one.id for one in allocated_to(graph, graph["move"])] == ["robot"]
-    assert [one.id for one in allocated_to(graph, graph["look"])] == []
-    assert [one.id for one in allocated_from(graph, graph["arm"])] == ["pick", "place", "move"]
+    assert [target.id for target in allocated_to(graph, graph["place"])] == ["arm", "robot"]
+    assert [target.id for target in allocated_to(graph, graph["move"])] == ["robot"]
+    assert [target.id for target in allocated_to(graph, graph["look"])] == []
+    sources = allocated_from(graph, graph["arm"])
+    assert [source.id for source in sources] == ["pick", "place", "move"]
 
 
-@pytest.mark.parametrize("way", ["allocatedTo", "allocatedFrom"])
-def test_the_tags_of_sysml_1_2_say_the_same(way):
-    here, there = ("pick", "arm") if way == "allocatedTo" else ("arm", "pick")
-    tags = f'  Application b stereotype="Allocated" {SYSML} tag.{way}="{there}"\n'
-    text = LANES.replace("AllocateActivityPartition", "Other") + tags + f"    -> subject {here}\n"
+@pytest.mark.parametrize("tag", ["allocatedTo", "allocatedFrom"])
+def test_the_tags_of_sysml_1_2_allocate_like_a_partition(tag):
+    subject, value = ("pick", "arm") if tag == "allocatedTo" else ("arm", "pick")
+    tags = f'  Application b stereotype="Allocated" {SYSML} tag.{tag}="{value}"\n'
+    text = (
+        LANES.replace("AllocateActivityPartition", "Other") + tags + f"    -> subject {subject}\n"
+    )
     graph, _ = run_until(text, "classify")
     assert graph.targets(graph["pick"], Edge.ALLOCATED_TO) == [graph["arm"]]

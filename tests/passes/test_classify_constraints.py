@@ -1,4 +1,4 @@
-"""Constraint properties, parameters and bindings, as Papyrus and MagicDraw have them."""
+"""Constraint properties, parameters and bindings, in the forms of Papyrus and MagicDraw."""
 
 import pytest
 from pass_runs import list_codes, list_diagnostics, run_until
@@ -21,7 +21,7 @@ LAW = (
 
 
 @pytest.mark.parametrize("kind", ["Property", "Port"])
-def test_a_connector_at_a_parameter_binds_without_its_stereotype(kind):
+def test_a_connector_at_a_parameter_binds_even_without_a_stereotype(kind):
     graph, sink = run_until(LAW.format(kind=kind), "flows")
     assert graph["law.m"].role == "constraint parameter"
     assert graph["crane.law"].role == "constraint property"
@@ -44,13 +44,13 @@ def test_a_connector_between_parts_binds_nothing():
     assert list(graph.edges(Edge.BINDS)) == []
 
 
-def test_a_binding_of_another_usage_leaves_this_one_open():
+def test_a_binding_binds_the_parameters_of_one_usage_only():
     text = LAW.format(kind="Property") + ('  Property crane.law2 "law2"\n    -> typed-by law\n')
-    found = [line for line in list_diagnostics(run_until(text, "classify")[1]) if "law2" in line]
-    assert found == ["SM218 info: parameters of constraint 'Crane::law2' are not bound: 'f', 'm'"]
+    lines = [line for line in list_diagnostics(run_until(text, "classify")[1]) if "law2" in line]
+    assert lines == ["SM218 info: parameters of constraint 'Crane::law2' are not bound: 'f', 'm'"]
 
 
-def test_equal_names_of_units_are_equal_units():
+def test_units_of_the_same_name_are_the_same_unit():
     text = (
         'DataType a "A" role="value type"\n  -> references a.u\n  Unit a.u "kg"\n'
         'DataType b "B" role="value type"\n  -> references b.u\n  Unit b.u "kg"\n'

@@ -1,4 +1,4 @@
-"""Real activities: each becomes a token graph, or a rule inside it says why not."""
+"""Each real activity becomes a token graph, or a rule reports the reason inside the activity."""
 
 import random
 from collections import Counter
@@ -36,15 +36,13 @@ FILES = (
     "papyrus/AllDiagrams.uml",
 )
 REASONS = ("SM450", "SM454", "SM455", "SM459", "SM460", "SM467", "SM469", "SM473", "SM479")
-"""Rules that an activity without token graph has; all but SM454 are absent here or mean that
-nothing is drawn (SM469).
-"""
+"""Rules that explain why an activity has no token graph."""
 _SAMPLE = 60
-"""So many contracts of a file are played; of Alf.library every seventh."""
+"""At most so many contracts of a file are played; of Alf.library every seventh."""
 
 
 @cache
-def refined(corpus: Path, name: str) -> tuple[Graph, Sink]:
+def read_activities(corpus: Path, name: str) -> tuple[Graph, Sink]:
     path = corpus / "xmi" / name
     graph, sink = Graph(), Sink()
     FRONTEND.read([Source(path.name, path.read_bytes())], graph, Sink(), Coverage())
@@ -56,38 +54,41 @@ def refined(corpus: Path, name: str) -> tuple[Graph, Sink]:
     return graph, sink
 
 
-def drawn(graph: Graph) -> list[Element]:
-    found = graph.of_kind(Kind.ACTIVITY)
-    return [a for a in found if not a.subkind and "external" not in a.attrs]
+def list_drawn_activities(graph: Graph) -> list[Element]:
+    activities = graph.of_kind(Kind.ACTIVITY)
+    return [a for a in activities if not a.subkind and "external" not in a.attrs]
 
 
-def reasons(graph: Graph, sink: Sink, activity: Element) -> list[str]:
-    """Codes of located findings inside the activity that say why it has no token graph."""
+def list_reasons(graph: Graph, sink: Sink, activity: Element) -> list[str]:
+    """Return the codes of located diagnostics that explain why the activity has no token graph."""
     inside = {element.id for element in graph.subtree(activity)}
-    found = (d for d in sink if d.subject.id in inside and d.subject.place)
-    return sorted({d.rule.code for d in found} & set(REASONS))
+    diagnostics = (d for d in sink if d.subject.id in inside and d.subject.place)
+    return sorted({d.rule.code for d in diagnostics} & set(REASONS))
 
 
-def row(name: str, graph: Graph, sink: Sink) -> str:
-    made = {tokens.activity for tokens in graph.derived(TokenGraph)}
-    missing = [activity for activity in drawn(graph) if activity.id not in made]
-    why = Counter(" ".join(reasons(graph, sink, one)) or "no reason" for one in missing)
-    said = ", ".join(f"{count} {codes}" for codes, count in sorted(why.items())) or "none"
-    return f"{name}: {len(drawn(graph))} drawn, {len(made)} token graphs; without: {said}\n"
+def describe_file(name: str, graph: Graph, sink: Sink) -> str:
+    """Return a line with the numbers of activities, of token graphs and of each reason."""
+    activities = list_drawn_activities(graph)
+    with_graph = {tokens.activity for tokens in graph.derived(TokenGraph)}
+    without = [activity for activity in activities if activity.id not in with_graph]
+    reasons = Counter(" ".join(list_reasons(graph, sink, a)) or "no reason" for a in without)
+    counts = ", ".join(f"{n} {codes}" for codes, n in sorted(reasons.items())) or "none"
+    numbers = f"{len(activities)} drawn, {len(with_graph)} token graphs"
+    return f"{name}: {numbers}; without: {counts}\n"
 
 
-def test_how_many_activities_have_token_graphs(corpus, golden):
-    """A lower number is a loss: look for the reason before the file is written anew."""
-    text = "".join(row(name, *refined(corpus, name)) for name in FILES)
+def test_the_number_of_activities_with_token_graphs_is_unchanged(corpus, golden):
+    """A lower number is a loss: look for the reason before you update the golden file."""
+    text = "".join(describe_file(name, *read_activities(corpus, name)) for name in FILES)
     golden.check("passes/activities-corpus", {"share.txt": text})
     assert "no reason" not in text
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_real_activities_keep_their_contracts_when_they_are_played(corpus, name):
-    graph, _ = refined(corpus, name)
-    made = graph.derived(TokenGraph)
-    for tokens in made[:: len(made) // _SAMPLE + 1]:
+def test_runs_of_real_activities_satisfy_their_contracts(corpus, name):
+    graph, _ = read_activities(corpus, name)
+    token_graphs = graph.derived(TokenGraph)
+    for tokens in token_graphs[:: len(token_graphs) // _SAMPLE + 1]:
         dice = random.Random(7)
         state, trace = token_game.initial_state(tokens), []
         for _ in range(60):
@@ -98,41 +99,42 @@ def test_real_activities_keep_their_contracts_when_they_are_played(corpus, name)
                 state,
                 inputs,
                 evaluate.is_true,
-                lambda _, open_, dice=dice: dice.choice(open_),
+                lambda _, flows, dice=dice: dice.choice(flows),
             )
         for conjunct in derive_contract(tokens).guarantees:
             assert evaluate.find_violation(conjunct, trace) is None, conjunct.text
 
 
-OTHER_REVISION = {"TestClassReclassifier", "TestClassUnmarshaller"}
-"""The MagicDraw file has actions and parameters in these two that the Eclipse file lacks."""
+DIFFERENT_REVISIONS = {"TestClassReclassifier", "TestClassUnmarshaller"}
+"""In these two, the MagicDraw file has actions and parameters that the Eclipse file lacks."""
 
 
 def test_two_dialects_of_one_model_give_the_same_contracts(corpus):
-    eclipse, magicdraw = (contracts(*refined(corpus, name)) for name in FILES[:2])
+    eclipse, magicdraw = (print_contracts(*read_activities(corpus, name)) for name in FILES[:2])
     assert len(eclipse) == 38
     differing = {name for name in eclipse if eclipse[name] != magicdraw[name]}
-    assert {name.rpartition("::")[2] for name in differing} == OTHER_REVISION
+    assert {name.rpartition("::")[2] for name in differing} == DIFFERENT_REVISIONS
 
 
-def contracts(graph: Graph, _: Sink) -> dict[str, list[list[str]]]:
-    """The conjuncts of each activity; what the file is called is left out of the names."""
-    found: dict[str, list[list[str]]] = {}
+def print_contracts(graph: Graph, _: Sink) -> dict[str, list[list[str]]]:
+    """Return the conjuncts of each activity; the names of activities omit the name of the file."""
+    conjuncts: dict[str, list[list[str]]] = {}
     for tokens in graph.derived(TokenGraph):
         contract = derive_contract(tokens)
         parts = (*contract.assumptions, *contract.guarantees)
         name = graph.qualified_name(graph[tokens.activity]).split("::", 1)[-1]
-        found.setdefault(name, []).append(sorted(print_formula(one.formula) for one in parts))
-    return found
+        formulas = sorted(print_formula(conjunct.formula) for conjunct in parts)
+        conjuncts.setdefault(name, []).append(formulas)
+    return conjuncts
 
 
-def test_contracts_grow_with_the_activity_and_not_with_its_square(corpus):
-    """No conjunct of any real activity has more than a few parts a flow."""
+def test_the_size_of_a_contract_is_linear_in_the_number_of_flows(corpus):
     for name in FILES:
-        for tokens in refined(corpus, name)[0].derived(TokenGraph):
-            sizes = [size(one.formula) for one in derive_contract(tokens).guarantees]
+        for tokens in read_activities(corpus, name)[0].derived(TokenGraph):
+            sizes = [count_nodes(c.formula) for c in derive_contract(tokens).guarantees]
             assert sum(sizes) < 200 + 75 * len(tokens.edges), tokens.label
 
 
-def size(formula) -> int:
-    return 1 + sum(map(size, getattr(formula, "args", ())))
+def count_nodes(formula) -> int:
+    """Return the number of nodes of the syntax tree."""
+    return 1 + sum(map(count_nodes, getattr(formula, "args", ())))

@@ -1,4 +1,4 @@
-"""Pass ``classify``: stereotypes of all dialects, look-alikes, levels."""
+"""The pass ``classify``: roles by the stereotypes of all dialects, and levels."""
 
 import pytest
 from pass_runs import list_codes, run_until
@@ -13,7 +13,7 @@ SPARX = "http://www.sparxsystems.com/profiles/SysML1.3/1.3"
 SHIPPED = "urn:sysmlc:profile:1"
 
 
-def applied(line: str, stereotype: str, namespace: str, id: str = "x") -> str:
+def apply_stereotype(line: str, stereotype: str, namespace: str, id: str = "x") -> str:
     return (
         f'{line}\n  Application a{id} stereotype="{stereotype}" namespace="{namespace}"\n'
         f"    -> subject {id}\n"
@@ -54,15 +54,17 @@ def applied(line: str, stereotype: str, namespace: str, id: str = "x") -> str:
         ('Class x "X"', "FullPort", OMG, ""),
     ],
 )
-def test_role_by_stereotype_in_each_dialect(line, stereotype, namespace, role):
-    graph, sink = run_until(applied(line, stereotype, namespace), "classify")
+def test_the_stereotypes_of_each_dialect_give_the_role(line, stereotype, namespace, role):
+    graph, sink = run_until(apply_stereotype(line, stereotype, namespace), "classify")
     assert graph["x"].role == role
     assert "SM210" not in list_codes(sink)
 
 
-def test_stereotype_name_that_xml_cannot_write_is_found():
+def test_a_stereotype_whose_name_xml_cannot_write_is_recognised():
     profile = 'Profile p "Arrowhead"\n  Stereotype p.s "SD-DD"\n    -> specializes i\n'
-    text = applied('Class x "X"', "SD_DD", "http://www.magicdraw.com/schemas/Arrowhead.xmi")
+    text = apply_stereotype(
+        'Class x "X"', "SD_DD", "http://www.magicdraw.com/schemas/Arrowhead.xmi"
+    )
     stub = 'Stereotype i "InterfaceBlock" external=true href="SysML Profile.mdzip#_1"\n'
     graph, _ = run_until(text + profile + stub, "classify")
     assert graph["x"].role == "interface block"
@@ -70,29 +72,31 @@ def test_stereotype_name_that_xml_cannot_write_is_found():
     assert graph.target(graph["ax"], Edge.INSTANCE_OF).id == "p.s"
 
 
-def test_of_two_profiles_with_a_stereotype_of_the_name_the_namespace_decides():
+def test_the_namespace_selects_among_stereotypes_of_the_same_name():
     profiles = (
         'Profile p "one" uri="http://a"\n  Stereotype p.s "Gate"\n'
         'Profile q "two" uri="http://b"\n  Stereotype q.s "Gate"\n    -> specializes b\n'
         f'Stereotype b "Block" external=true href="{OMG}.xmi#Block"\n'
     )
     for namespace, role in (("http://a", ""), ("http://b", "block"), ("http://c", "")):
-        graph, _ = run_until(applied('Class x "X"', "Gate", namespace) + profiles, "classify")
+        graph, _ = run_until(
+            apply_stereotype('Class x "X"', "Gate", namespace) + profiles, "classify"
+        )
         assert graph["x"].role == role
 
 
-def test_stereotype_that_specialises_itself_does_not_hang():
+def test_a_stereotype_that_specialises_itself_has_a_finite_lineage():
     profile = (
         'Profile p "p" uri="http://a"\n  Stereotype s "S"\n    -> specializes t\n'
         '  Stereotype t "T"\n    -> specializes s\n'
     )
-    graph, _ = run_until(applied('Class x "X"', "S", "http://a") + profile, "classify")
+    graph, _ = run_until(apply_stereotype('Class x "X"', "S", "http://a") + profile, "classify")
     assert graph["ax"].attrs["lineage"] == ("S", "T")
 
 
-def test_class_of_an_unknown_stereotype_with_sysml_ports_is_a_block():
+def test_a_class_with_sysml_ports_is_a_block_whatever_its_stereotype():
     text = (
-        applied('Class g "Gate"', "Station", "http://a", "g")
+        apply_stereotype('Class g "Gate"', "Station", "http://a", "g")
         + '  Port x "in"\n    -> typed-by t\n'
         + f'    Application ax stereotype="ProxyPort" namespace="{OMG}"\n      -> subject x\n'
         + 'Class t "Track"\n'
@@ -101,49 +105,52 @@ def test_class_of_an_unknown_stereotype_with_sysml_ports_is_a_block():
     assert (graph["g"].role, graph["t"].role) == ("block", "interface block")
 
 
-def test_plain_uml_class_with_plain_ports_is_no_block():
+def test_a_plain_uml_class_with_plain_ports_is_no_block():
     graph, _ = run_until('Class g "Gate"\n  Port p "in"\n', "classify")
     assert graph["g"].role == ""
 
 
-def test_levels_come_from_the_shipped_profile_only():
+def test_only_the_shipped_profile_gives_levels():
     for namespace, level in ((SHIPPED, "task"), ("http://a", None)):
-        graph, _ = run_until(applied('Activity x "X"', "Task", namespace), "classify")
+        graph, _ = run_until(apply_stereotype('Activity x "X"', "Task", namespace), "classify")
         assert graph["x"].attrs.get("level") == level
 
 
-def test_own_stereotype_that_specialises_a_shipped_one_gives_its_level():
+def test_a_stereotype_that_specialises_a_shipped_one_gives_its_level():
     profile = (
         'Profile p "plant" uri="http://a"\n  Stereotype s "Screwing"\n    -> specializes t\n'
         'Stereotype t "Task" external=true href="pathmap://SYSMLC_PROFILES/sysmlc.profile.uml#Task"\n'
     )
-    graph, _ = run_until(applied('Activity x "X"', "Screwing", "http://a") + profile, "classify")
+    graph, _ = run_until(
+        apply_stereotype('Activity x "X"', "Screwing", "http://a") + profile, "classify"
+    )
     assert graph["x"].attrs["level"] == "task"
 
 
-def test_opc_ua_call_of_a_service_does_not_hide_that_it_is_one():
-    text = applied('Activity x "X"', "OpcUaCall", SHIPPED) + (
+def test_an_opc_ua_call_does_not_hide_the_level_of_its_service():
+    text = apply_stereotype('Activity x "X"', "OpcUaCall", SHIPPED) + (
         f'  Application b stereotype="MachineService" namespace="{SHIPPED}"\n    -> subject x\n'
     )
     assert run_until(text, "classify")[0]["x"].attrs["level"] == "machine service"
 
 
-def test_level_of_the_nearest_general_classifier_is_inherited():
+def test_the_level_of_a_general_classifier_is_inherited():
     text = (
-        applied('Class x "Machine"', "Machine", SHIPPED)
+        apply_stereotype('Class x "Machine"', "Machine", SHIPPED)
         + 'Class y "Robot"\n  -> specializes x\nClass z "Arm"\n  -> specializes y\n'
     )
     graph, _ = run_until(text, "classify")
     assert [graph[id].attrs.get("level") for id in "xyz"] == ["machine"] * 3
 
 
-def test_role_that_a_front_end_gave_stays_without_a_stereotype():
+def test_a_role_from_the_front_end_needs_no_stereotype():
     assert run_until('Class x "X" role="block"', "classify")[0]["x"].role == "block"
 
 
-def test_a_requirement_has_its_text_from_the_element_where_its_stereotype_says_none():
-    """Enterprise Architect may tell the stereotype in one place and its tags in another."""
+def test_a_requirement_takes_its_text_from_tags_of_the_element():
+    """Enterprise Architect may write a stereotype in one place and its tags in another."""
     graph, _ = run_until(
-        applied('Class x "X" tag.id="R1" tag.text="shall hold"', "Requirement", SPARX), "classify"
+        apply_stereotype('Class x "X" tag.id="R1" tag.text="shall hold"', "Requirement", SPARX),
+        "classify",
     )
     assert (graph["x"].attrs["req_id"], graph["x"].attrs["text"]) == ("R1", "shall hold")

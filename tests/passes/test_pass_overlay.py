@@ -1,7 +1,7 @@
 """What overlays add to a model, entry by entry."""
 
 import pytest
-from overlay_samples import MODEL, PLANT, laid_over
+from overlay_samples import MODEL, PLANT, apply_overlays
 from pass_runs import list_codes, list_diagnostics
 
 from sysmlc.ir import Edge, Kind
@@ -20,7 +20,7 @@ def named(graph, name, kind=None):
 
 
 def flow_of(text, model=PLANT + MODEL, until="overlay"):
-    graph, sink = laid_over(text, model=model, until=until)
+    graph, sink = apply_overlays(text, model=model, until=until)
     assert list_codes(sink) == []
     flow = graph.of_kind(Kind.ITEM_FLOW)[0]
     sides = [
@@ -33,7 +33,9 @@ def flow_of(text, model=PLANT + MODEL, until="overlay"):
 
 
 def test_a_new_item_type_is_a_block_in_a_package_of_its_own():
-    graph, sink = laid_over(ITEMS + "  RFID_Tag: {domain: information, description: The id.}\n")
+    graph, sink = apply_overlays(
+        ITEMS + "  RFID_Tag: {domain: information, description: The id.}\n"
+    )
     assert list_codes(sink) == []
     pallet, tag = named(graph, "MiniPallet"), named(graph, "RFID_Tag")
     assert (pallet.kind, pallet.role, pallet.attrs["domain"]) == (Kind.CLASS, "block", "physical")
@@ -43,19 +45,21 @@ def test_a_new_item_type_is_a_block_in_a_package_of_its_own():
 
 
 def test_item_types_join_a_package_of_the_model():
-    graph, _ = laid_over("overlay: 1\npackage: Plant\nitems:\n  MiniPallet: {domain: physical}\n")
+    graph, _ = apply_overlays(
+        "overlay: 1\npackage: Plant\nitems:\n  MiniPallet: {domain: physical}\n"
+    )
     assert graph.qualified_name(named(graph, "MiniPallet")) == "Plant::MiniPallet"
 
 
 def test_an_item_type_of_the_model_gets_its_domain():
-    graph, sink = laid_over("overlay: 1\nitems:\n  Plant/Tag: {domain: information}\n")
+    graph, sink = apply_overlays("overlay: 1\nitems:\n  Plant/Tag: {domain: information}\n")
     assert list_codes(sink) == []
     assert graph["tag"].attrs["domain"] == "information"
 
 
 def test_the_domain_of_a_general_type_is_enough():
     text = ITEMS + "  HeavyPallet: {specializes: [MiniPallet]}\n"
-    graph, sink = laid_over(text)
+    graph, sink = apply_overlays(text)
     assert list_codes(sink) == []
     heavy = named(graph, "HeavyPallet")
     assert graph.targets(heavy, Edge.SPECIALIZES) == [named(graph, "MiniPallet")]
@@ -105,7 +109,7 @@ def test_between_two_parts_with_the_same_port_the_parts_tell_the_way():
 
 
 def test_flows_give_ports_and_connectors_what_they_say():
-    graph, sink = laid_over(f"{FLOW}{{item: MiniPallet, to: sw}}\n", until="flows")
+    graph, sink = apply_overlays(f"{FLOW}{{item: MiniPallet, to: sw}}\n", until="flows")
     assert graph["s-out"].attrs["direction"] == "out"
     assert graph["l1"].attrs["domain"] == "physical"
     assert list_codes(sink) == ["SM300"]
@@ -113,14 +117,14 @@ def test_flows_give_ports_and_connectors_what_they_say():
 
 def test_the_author_directs_and_types_ports():
     text = "overlay: 1\nports:\n  s-in: {direction: in, type: Plant/Track}\n"
-    graph, _ = laid_over(text, until="ports")
+    graph, _ = apply_overlays(text, until="ports")
     assert graph["s-in"].attrs["direction"] == "in"
     assert graph.targets(graph["s-in"], Edge.TYPED_BY) == [graph["track"]]
 
 
 def test_a_flow_against_the_direction_of_a_port_is_reported_where_the_overlay_says_it():
     text = f"{FLOW}{{item: MiniPallet, from: sw}}\n"
-    _, sink = laid_over(text, until="flows")
+    _, sink = apply_overlays(text, until="flows")
     found = next(diagnostic for diagnostic in sink if diagnostic.rule.code == "SM310")
     assert found.message == (
         "item flow 'Plant::Switch::p_swIn - Plant::Stopper::p_sOut' leaves port "
@@ -133,7 +137,7 @@ def test_a_flow_against_the_direction_of_a_port_is_reported_where_the_overlay_sa
 def test_mixed_domains_on_one_connector_are_reported():
     items = ITEMS + "  Tag2: {domain: information}\n" + FLOW.removeprefix(ITEMS)
     text = items + "{item: MiniPallet, to: sw}\n    - {item: Tag2, to: sw}\n"
-    _, sink = laid_over(text, until="flows")
+    _, sink = apply_overlays(text, until="flows")
     (found,) = (diagnostic for diagnostic in sink if diagnostic.rule.code == "SM317")
     assert found.subject.place.file == "0.overlay.yaml"
     assert text[found.subject.place.ordinal :].startswith("MiniPallet, to: sw")
@@ -145,7 +149,9 @@ def test_different_items_over_ports_of_one_interface_block_are_no_fault():
         items
         + "{item: MiniPallet, to: sw}\n  Plant/Gate/loop:\n    flows: [{item: Tag2, to: p_sIn}]\n"
     )
-    assert {"SM311", "SM316", "SM317"}.isdisjoint(list_codes(laid_over(text, until="flows")[1]))
+    assert {"SM311", "SM316", "SM317"}.isdisjoint(
+        list_codes(apply_overlays(text, until="flows")[1])
+    )
 
 
 # -- operations and behaviours -----------------------------------------------------------------
@@ -157,7 +163,7 @@ def test_an_operation_has_its_parameters_in_order():
         "        - {name: tag, type: Plant/Tag}\n"
         "        - {name: id, type: String, direction: return}\n"
     )
-    graph, sink = laid_over(text)
+    graph, sink = apply_overlays(text)
     assert list_codes(sink) == []
     operation = named(graph, "readId")
     assert graph.owner(operation) is graph["gate"]
@@ -170,7 +176,7 @@ def test_an_operation_has_its_parameters_in_order():
 def test_a_method_gives_its_parameters_to_an_operation_without():
     text = GATE + "    operations:\n      handle: {method: gate.uml#Gate::Handle}\n"
     text += GETS_IN
-    graph, sink = laid_over(text, until="behaviours")
+    graph, sink = apply_overlays(text, until="behaviours")
     assert "SM404" not in list_codes(sink)
     operation = named(graph, "handle", Kind.OPERATION)
     assert graph.targets(operation, Edge.METHOD) == [graph["handle"]]
@@ -179,7 +185,7 @@ def test_a_method_gives_its_parameters_to_an_operation_without():
 
 
 def test_a_behaviour_becomes_the_classifier_behaviour_of_the_block():
-    graph, sink = laid_over(HANDLED + GETS_IN)
+    graph, sink = apply_overlays(HANDLED + GETS_IN)
     assert list_codes(sink) == []
     assert graph.targets(graph["gate"], Edge.CLASSIFIER_BEHAVIOR) == [graph["handle"]]
     assert component_name(graph, graph["handle"]) == "Plant::Gate"
@@ -188,34 +194,34 @@ def test_a_behaviour_becomes_the_classifier_behaviour_of_the_block():
 def test_a_state_machine_is_a_behaviour_too():
     machine = 'Package m "M" @gate.uml:9\n  StateMachine states "States" @gate.uml:10\n'
     text = GATE + "    behavior: gate.uml#M::States\n"
-    graph, sink = laid_over(text, model=PLANT + machine)
+    graph, sink = apply_overlays(text, model=PLANT + machine)
     assert list_codes(sink) == []
     assert graph.targets(graph["gate"], Edge.CLASSIFIER_BEHAVIOR) == [graph["states"]]
 
 
 def test_an_activity_that_lost_its_file_is_told_so():
-    (found,) = laid_over(GATE + "    behavior: gone.uml#Gate::Handle\n")[1]
+    (found,) = apply_overlays(GATE + "    behavior: gone.uml#Gate::Handle\n")[1]
     assert found.rule.code == "SM324"
     assert found.help == "the file 'gone.uml' is not part of the compile unit"
 
 
 def test_an_id_that_is_gone_is_not_answered_with_names():
     id = "1ac5c9b2-45f8-4a4c-8d6a-6d2f5f3b8a01"
-    (found,) = laid_over(f"overlay: 1\nports:\n  {id}: {{direction: in}}\n")[1]
+    (found,) = apply_overlays(f"overlay: 1\nports:\n  {id}: {{direction: in}}\n")[1]
     assert (found.rule.code, found.help) == ("SM324", "'sysmlc show MODEL' prints all ids")
 
 
 def test_many_names_of_which_none_is_near_are_not_listed():
     ports = "".join(f'    Port s{n} "p{n}"\n' for n in range(20))
     model = f'Package plant "Plant"\n  Class gate "Gate" role="block"\n{ports}'
-    (found,) = laid_over("overlay: 1\nports:\n  Xyz: {direction: in}\n", model=model)[1]
+    (found,) = apply_overlays("overlay: 1\nports:\n  Xyz: {direction: in}\n", model=model)[1]
     assert (found.rule.code, found.help) == ("SM324", "'sysmlc show MODEL' prints all names")
 
 
 def test_a_value_that_a_general_block_has_is_there_already():
     model = PLANT + 'Class base "Base" role="block"\n  Property base.v "v" role="value"\n'
     text = "overlay: 1\nblocks:\n  Plant/Switch: {specializes: [Base], values: {v: }}\n"
-    (found,) = laid_over(text, model=model)[1]
+    (found,) = apply_overlays(text, model=model)[1]
     assert found.rule.code == "SM334"
     assert found.message == "block 'Plant::Switch' has 'v' already, inherited from 'Base'"
 
@@ -238,18 +244,18 @@ def test_a_default_is_a_value_of_its_type(type_, good, bad):
     for default, expected in ((good, []), (bad, ["SM637"])):
         value = f"{{type: {type_}, default: {default}}}"
         text = f"overlay: 1\nblocks:\n  Plant/Switch: {{values: {{v: {value}}}}}\n"
-        assert list_codes(laid_over(text, model=PLANT + ENUMERATION)[1]) == expected
+        assert list_codes(apply_overlays(text, model=PLANT + ENUMERATION)[1]) == expected
 
 
 def test_of_many_lost_entries_the_first_are_answered_with_the_nearest_name():
     rows = "".join(f"  Plant/Switch/p_swl{n}: {{direction: in}}\n" for n in range(30))
-    found = list(laid_over("overlay: 1\nports:\n" + rows)[1])
+    found = list(apply_overlays("overlay: 1\nports:\n" + rows)[1])
     assert [diagnostic.rule.code for diagnostic in found] == ["SM324"] * 30
     assert sum(one.help == "did you mean 'Plant/Switch/p_swIn'?" for one in found) == 20
 
 
 def test_a_call_means_an_operation_of_the_block_or_of_a_part():
-    graph, sink = laid_over(
+    graph, sink = apply_overlays(
         HANDLED + "  Plant/Switch: {operations: {getIn: }}\n", until="behaviours"
     )
     assert "SM400" not in list_codes(sink)
@@ -262,13 +268,15 @@ def test_a_part_that_inherits_the_operation_has_it_too():
         + GETS_IN.replace("Switch", "Stopper")
         + "  Plant/Switch: {specializes: [Plant/Stopper]}\n"
     )
-    graph, sink = laid_over(text)
+    graph, sink = apply_overlays(text)
     assert list_codes(sink) == []
     assert graph.targets(graph["call"], Edge.CALLS) == [named(graph, "getIn", Kind.OPERATION)]
 
 
 def test_a_call_that_nothing_answers_is_reported_once_with_the_nearest_name():
-    _, sink = laid_over(HANDLED + "  Plant/Switch: {operations: {getInn: }}\n", until="behaviours")
+    _, sink = apply_overlays(
+        HANDLED + "  Plant/Switch: {operations: {getInn: }}\n", until="behaviours"
+    )
     found = [one for one in sink if one.severity == "error"]
     assert [one.message for one in found] == [
         "action 'getIn' calls no operation: neither 'Plant::Gate' nor a part of it has one of "
@@ -282,7 +290,7 @@ def test_calls_of_the_overlay_count_before_names():
     text = HANDLED + (
         "    calls: {getIn: sw/open}\n  Plant/Switch: {operations: {open: , getIn: }}\n"
     )
-    graph, sink = laid_over(text)
+    graph, sink = apply_overlays(text)
     assert list_codes(sink) == []
     called = graph.targets(graph["call"], Edge.CALLS)
     assert [graph.qualified_name(one) for one in called] == ["Plant::Switch::open"]
@@ -290,7 +298,7 @@ def test_calls_of_the_overlay_count_before_names():
 
 def test_values_are_what_guards_can_name():
     text = GATE + "    values: {bayIsFree: {type: Boolean, default: true}}\n"
-    graph, sink = laid_over(text)
+    graph, sink = apply_overlays(text)
     assert list_codes(sink) == []
     value = named(graph, "bayIsFree")
     assert (value.role, value.attrs["default"], graph.owner(value)) == (
@@ -302,7 +310,7 @@ def test_values_are_what_guards_can_name():
 
 def test_an_allocation_is_drawn_from_one_element_to_the_other():
     text = "overlay: 1\nallocations:\n- {from: Gate/Handle, to: Plant/Gate/sw}\n"
-    graph, sink = laid_over(text, until="classify")
+    graph, sink = apply_overlays(text, until="classify")
     assert list_codes(sink) == []
     assert graph.targets(graph["handle"], Edge.ALLOCATED_TO) == [graph["sw"]]
 
@@ -331,7 +339,7 @@ Package h "Hall"
     ],
 )
 def test_a_block_is_named_by_id_path_or_qualified_name_of_it_or_its_instance(key):
-    graph, sink = laid_over(
+    graph, sink = apply_overlays(
         f"overlay: 1\nblocks:\n  {key}: {{operations: {{stamp: }}}}\n", model=PLANT_OF_AML
     )
     assert list_codes(sink) == []
@@ -340,14 +348,16 @@ def test_a_block_is_named_by_id_path_or_qualified_name_of_it_or_its_instance(key
 
 def test_an_interface_that_an_instance_repeats_is_the_port_of_the_class():
     key = "'{7B0C9D64-0000-4A3B-9F00-2B7D9A3C1E11}'"
-    graph, sink = laid_over(f"overlay: 1\nports:\n  {key}: {{direction: in}}\n", model=PLANT_OF_AML)
+    graph, sink = apply_overlays(
+        f"overlay: 1\nports:\n  {key}: {{direction: in}}\n", model=PLANT_OF_AML
+    )
     assert list_codes(sink) == []
     assert graph["own.p"].attrs["direction"] == "in"
 
 
 def test_a_key_whose_id_is_gone_falls_back_to_its_path_and_says_so():
     text = "overlay: 1\nports:\n  old-id: {path: Plant/Switch/p_swIn, direction: in}\n"
-    _, sink = laid_over(text)
+    _, sink = apply_overlays(text)
     assert list_diagnostics(sink) == [
         "SM325 info: no element has the id 'old-id' any more; 'Plant/Switch/p_swIn' is used instead"
     ]
@@ -356,7 +366,7 @@ def test_a_key_whose_id_is_gone_falls_back_to_its_path_and_says_so():
 
 def test_the_id_counts_when_the_path_leads_elsewhere():
     text = "overlay: 1\nports:\n  s-in: {path: Plant/Stopper/p_sOut, direction: in}\n"
-    graph, sink = laid_over(text)
+    graph, sink = apply_overlays(text)
     assert list_diagnostics(sink) == [
         "SM340 warning: the id 's-in' now belongs to 'Plant/Stopper/p_sIn', not to "
         "'Plant/Stopper/p_sOut'"
@@ -366,13 +376,13 @@ def test_the_id_counts_when_the_path_leads_elsewhere():
 
 @pytest.mark.parametrize("path", ["Plant/Stopper/p_sIn", "Plant/Stopper/gone"])
 def test_a_path_that_leads_to_the_same_or_nowhere_is_fine_beside_an_id(path):
-    _, sink = laid_over(f"overlay: 1\nports:\n  s-in: {{path: {path}, direction: in}}\n")
+    _, sink = apply_overlays(f"overlay: 1\nports:\n  s-in: {{path: {path}, direction: in}}\n")
     assert list_codes(sink) == []
 
 
 def test_an_entry_that_matches_nothing_is_told_with_its_place_and_the_nearest_name():
     text = "overlay: 1\nports:\n  Plant/Switch/p_swln: {direction: in}\n"
-    _, sink = laid_over(text)
+    _, sink = apply_overlays(text)
     (found,) = sink
     assert found.message == "the model has no port 'Plant/Switch/p_swln'"
     assert found.help == "did you mean 'Plant/Switch/p_swIn'?"
@@ -383,13 +393,13 @@ def test_an_entry_that_matches_nothing_is_told_with_its_place_and_the_nearest_na
 
 
 def test_overlays_share_the_items_that_both_name():
-    graph, sink = laid_over(f"{FLOW}{{item: MiniPallet, to: sw}}\n", ITEMS)
+    graph, sink = apply_overlays(f"{FLOW}{{item: MiniPallet, to: sw}}\n", ITEMS)
     assert list_codes(sink) == []
     assert len([one for one in graph if one.name == "MiniPallet"]) == 1
 
 
 def test_overlays_that_disagree_are_told():
-    _, sink = laid_over(ITEMS, ITEMS.replace("physical", "information"))
+    _, sink = apply_overlays(ITEMS, ITEMS.replace("physical", "information"))
     assert list_diagnostics(sink) == [
         "SM339 warning: the overlay gives 'MiniPallet' the domain information, the model physical"
     ]

@@ -1,7 +1,7 @@
 """Each rule about overlays: an overlay that has the fault, and one that nearly has it."""
 
 import pytest
-from overlay_samples import laid_over
+from overlay_samples import apply_overlays
 from pass_runs import list_codes
 
 from sysmlc.driver import load_full_catalogue
@@ -12,20 +12,22 @@ RULES = [rule for rule in load_full_catalogue().values() if int(rule.code[2:]) i
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
 def test_rule_reports_its_wrong_overlay_and_not_its_right_one(rule):
-    assert rule.code in list_codes(laid_over(rule.read_page().wrong)[1])
-    assert rule.code not in list_codes(laid_over(rule.read_page().right)[1])
+    assert rule.code in list_codes(apply_overlays(rule.read_page().wrong)[1])
+    assert rule.code not in list_codes(apply_overlays(rule.read_page().right)[1])
 
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
 def test_right_overlay_is_right_in_every_way(rule):
-    found = [one for one in laid_over(rule.read_page().right)[1] if one.severity != "info"]
+    found = [one for one in apply_overlays(rule.read_page().right)[1] if one.severity != "info"]
     assert found == []
 
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
 def test_finding_has_file_line_and_column(rule):
     found = next(
-        diagnostic for diagnostic in laid_over(rule.read_page().wrong)[1] if diagnostic.rule is rule
+        diagnostic
+        for diagnostic in apply_overlays(rule.read_page().wrong)[1]
+        if diagnostic.rule is rule
     )
     place = found.subject.place
     is_of_model = rule.name.startswith("call-")

@@ -1,51 +1,52 @@
-"""History, forks, joins, entry and exit points, submachines: what of them is in a contract."""
+"""Contracts of state machines with history, forks, joins, entry and exit points, submachines."""
 
 import pytest
+from pass_runs import derive_contracts, list_codes
 
 from machine_samples import arrow, choice, machine_of, region, state
-from sysmlc.diagnostics import Sink
-from sysmlc.ir.text import parse_text
-from sysmlc.logic.contract import Class, Contract
+from sysmlc.logic.contract import Class
 from sysmlc.logic.printing import print_formula
-from sysmlc.passes import pipeline
 
 
-def derived(text, messages=False):
-    graph, sink = parse_text(text), Sink()
-    pipeline.run(graph, sink, verify_each=True)
-    found = {one.component: one for one in graph.derived(Contract)}
-    told = [diagnostic.message if messages else diagnostic.rule.code for diagnostic in sink]
-    return found.get("Plant::Gate"), told, graph
+def derive_gate_contract(text):
+    """Return the contract of the gate or None, and the codes of all diagnostics."""
+    _, contracts, sink = derive_contracts(text)
+    by_component = {contract.component: contract for contract in contracts}
+    return by_component.get("Plant::Gate"), list_codes(sink)
 
 
-def contract(*parts):
-    made, codes, graph = derived(machine_of(region("r", *parts)))
-    assert codes == []
-    for conjunct in made.guarantees:
+def derive_clean_contract(*parts):
+    """Return the contract of a machine of one region that has no diagnostics."""
+    graph, (contract,), sink = derive_contracts(machine_of(region("r", *parts)))
+    assert list_codes(sink) == []
+    for conjunct in contract.guarantees:
         assert conjunct.origin in graph
-    return made
+    return contract
 
 
-def safety(made):
-    return [print_formula(one.formula) for one in made.guarantees if one.class_ is Class.SAFETY]
+def print_safety(contract):
+    return [print_formula(c.formula) for c in contract.guarantees if c.class_ is Class.SAFETY]
 
 
-def inner(kind="", *ways):
-    """A state with D and E inside, and perhaps a pseudostate."""
-    pseudo = [choice("h", kind)] if kind else []
-    return state("b", region("s", state("d"), state("e"), *pseudo, arrow("si", "d"), *ways, INSIDE))
+def composite_state(kind="", *transitions):
+    """Return a state B that contains D and E and, if *kind* is given, the pseudostate h."""
+    pseudostates = [choice("h", kind)] if kind else []
+    vertices = (state("d"), state("e"), *pseudostates)
+    return state("b", region("s", *vertices, arrow("si", "d"), *transitions, FROM_D_TO_E))
 
 
-INSIDE = arrow("d", "e", "start")
-LEFT = arrow("b", "a", "stop")
+FROM_D_TO_E = arrow("d", "e", "start")
+FROM_B_TO_A = arrow("b", "a", "stop")
 
 
-def test_shallow_history_leads_to_what_the_region_was_in():
-    made = contract(
-        *(state("a"), inner("shallow-history"), arrow("i", "a"), arrow("a", "h", "start"), LEFT)
+def test_shallow_history_leads_to_the_last_active_state_of_its_region():
+    contract = derive_clean_contract(
+        *(state("a"), composite_state("shallow-history"), arrow("i", "a")),
+        *(arrow("a", "h", "start"), FROM_B_TO_A),
     )
-    assert [one.name for one in made.variables] == ["event", "state", "B_state", "last_B_state"]
-    lines = safety(made)
+    names = [variable.name for variable in contract.variables]
+    assert names == ["event", "state", "B_state", "last_B_state"]
+    lines = print_safety(contract)
     assert lines[:3] == [
         "state=A & event=start & (B_state=D | B_state=inactive & last_B_state=D)"
         " -> state'=B & B_state'=D",
@@ -58,29 +59,35 @@ def test_shallow_history_leads_to_what_the_region_was_in():
         "B_state!=inactive -> last_B_state'=B_state",
         "B_state=inactive -> last_B_state'=last_B_state",
     ]
-    assert "last_B_state=inactive" in [print_formula(one.formula) for one in made.guarantees]
+    guarantees = [print_formula(conjunct.formula) for conjunct in contract.guarantees]
+    assert "last_B_state=inactive" in guarantees
 
 
-def test_a_history_that_knows_nothing_has_a_way_of_its_own():
-    ways = (state("a"), inner("shallow-history", arrow("h", "e")), arrow("i", "a"), LEFT)
-    made = contract(*ways, arrow("a", "h", "start"))
-    assert safety(made)[2].endswith("-> state'=B & B_state'=E")
+def test_the_default_transition_of_a_history_is_taken_when_its_region_was_never_active():
+    history = composite_state("shallow-history", arrow("h", "e"))
+    contract = derive_clean_contract(
+        *(state("a"), history, arrow("i", "a"), FROM_B_TO_A, arrow("a", "h", "start"))
+    )
+    assert print_safety(contract)[2].endswith("-> state'=B & B_state'=E")
 
 
 def test_deep_history_remembers_every_region_below():
     deep = state("d", region("t", state("f"), state("g"), arrow("ti", "f"), arrow("f", "g", "go")))
     outer = state("b", region("s", deep, state("e"), choice("h", "deep-history"), arrow("si", "e")))
-    made, codes, _ = derived(
-        machine_of(
-            region("r", state("a"), outer, arrow("i", "a"), arrow("a", "h", "start"), LEFT)
-        ).replace('Signal stop "stop"', 'Signal stop "stop"\n  Signal go "go"')
+    transitions = (arrow("i", "a"), arrow("a", "h", "start"), FROM_B_TO_A)
+    text = machine_of(region("r", state("a"), outer, *transitions))
+    contract, codes = derive_gate_contract(
+        text.replace('Signal stop "stop"', 'Signal stop "stop"\n  Signal go "go"')
     )
     assert codes == []
-    assert [one.name for one in made.variables][-2:] == ["last_B_state", "last_D_state"]
-    assert any(one.endswith("state'=B & B_state'=D & D_state'=G_") for one in safety(made))
+    names = [variable.name for variable in contract.variables]
+    assert names[-2:] == ["last_B_state", "last_D_state"]
+    ending = "state'=B & B_state'=D & D_state'=G_"
+    assert any(line.endswith(ending) for line in print_safety(contract))
 
 
-def orthogonal():
+def orthogonal_state():
+    """Return a state B with two regions: from D to E, and from F1 to F2."""
     return state(
         "b",
         region("s", state("d"), state("e"), arrow("si", "d"), arrow("d", "e", "start")),
@@ -88,89 +95,92 @@ def orthogonal():
     )
 
 
-def test_all_ways_of_a_fork_are_taken():
-    made = contract(
-        *(state("a"), orthogonal(), choice("x", "fork"), arrow("i", "a")),
+def test_a_fork_takes_all_its_outgoing_transitions():
+    contract = derive_clean_contract(
+        *(state("a"), orthogonal_state(), choice("x", "fork"), arrow("i", "a")),
         *(arrow("a", "x", "start"), arrow("x", "e"), arrow("x", "f2")),
     )
-    assert safety(made)[0] == "state=A & event=start -> state'=B & B_state'=E & B_state_2'=F2"
+    assert (
+        print_safety(contract)[0]
+        == "state=A & event=start -> state'=B & B_state'=E & B_state_2'=F2"
+    )
 
 
-def test_a_join_waits_for_all_that_lead_to_it():
-    made = contract(
-        *(state("a"), orthogonal(), choice("x", "join"), arrow("i", "b")),
+def test_a_join_waits_for_all_states_that_lead_to_it():
+    contract = derive_clean_contract(
+        *(state("a"), orthogonal_state(), choice("x", "join"), arrow("i", "b")),
         *(arrow("e", "x"), arrow("f2", "x", effect="level := 1"), arrow("x", "a")),
     )
-    (found,) = [one for one in made.guarantees if "state'=A" in print_formula(one.formula)]
-    assert print_formula(found.formula) == (
+    (join,) = [c for c in contract.guarantees if "state'=A" in print_formula(c.formula)]
+    assert print_formula(join.formula) == (
         "B_state=E & B_state_2=F2 -> B_state'=inactive & B_state_2'=inactive & state'=A & level'=1"
     )
-    assert found.text.startswith("In 'E' and 'F2', when 'E' and 'F2' are complete:")
+    assert join.text.startswith("In 'E' and 'F2', when 'E' and 'F2' are complete:")
 
 
-@pytest.mark.parametrize("into", ["d", "a"])
-def test_a_fork_leads_into_different_regions(into):
-    parts = (state("a"), orthogonal(), choice("x", "fork"), arrow("i", "a"))
-    ways = (arrow("a", "x", "start"), arrow("x", "e"), arrow("x", into))
-    made, codes, _ = derived(machine_of(region("r", *parts, *ways)))
-    assert made is None
+@pytest.mark.parametrize("target", ["d", "a"])
+def test_a_fork_that_does_not_lead_into_different_regions_gives_no_contract(target):
+    parts = (state("a"), orthogonal_state(), choice("x", "fork"), arrow("i", "a"))
+    transitions = (arrow("a", "x", "start"), arrow("x", "e"), arrow("x", target))
+    contract, codes = derive_gate_contract(machine_of(region("r", *parts, *transitions)))
+    assert contract is None
     assert codes == ["SM504"]
 
 
-def test_a_join_beside_another_completion_is_not_derived():
-    parts = (state("a"), orthogonal(), choice("x", "join"), arrow("i", "b"))
-    ways = (arrow("e", "x"), arrow("f2", "x"), arrow("x", "a"), arrow("e", "d"))
-    made, found, _ = derived(machine_of(region("r", *parts, *ways)), messages=True)
-    assert made is None
-    assert found == [
+def test_a_state_that_completes_along_another_transition_than_its_join_gives_no_contract():
+    parts = (state("a"), orthogonal_state(), choice("x", "join"), arrow("i", "b"))
+    transitions = (arrow("e", "x"), arrow("f2", "x"), arrow("x", "a"))
+    text = machine_of(region("r", *parts, *transitions, arrow("e", "d")))
+    _, contracts, sink = derive_contracts(text)
+    assert contracts == []
+    assert [diagnostic.message for diagnostic in sink] == [
         "'E' of state machine 'Behaviour' completes along 'E -> D' before its join can wait; the "
         "component gets no contract"
     ]
-    made, found, _ = derived(machine_of(region("r", *parts, *ways[:-1], arrow("e", "d", "stop"))))
-    assert made is not None
-    assert found == []
+    assert derive_clean_contract(*parts, *transitions, arrow("e", "d", "stop"))
 
 
-def acting(text, edge, vertex, body):
-    """The text with a behaviour at a vertex."""
-    name = vertex.upper()
-    line = f'State {vertex} "{name}"\n'
+def add_behaviour(text, edge, vertex, body):
+    """Return *text* with an entry or exit behaviour of a state."""
+    line = f'State {vertex} "{vertex.upper()}"\n'
     before, _, after = text.partition(line)
     pad = " " * (len(before) - len(before.rstrip(" ")) + 2)
-    made = f'{pad}-> {edge} {vertex}x\n{pad}Activity {vertex}x subkind="opaque" body="{body}"\n'
-    return before + line + made + after
+    behaviour = (
+        f'{pad}-> {edge} {vertex}x\n{pad}Activity {vertex}x subkind="opaque" body="{body}"\n'
+    )
+    return before + line + behaviour + after
 
 
-def test_an_exit_point_leaves_its_state_behind_the_effect_that_leads_to_it():
+def test_the_effect_that_leads_to_an_exit_point_precedes_the_exit_behaviour():
     point = 'Pseudostate x "x" subkind="exit-point"\n'
-    boxed = state("b", region("s", state("d"), arrow("si", "d"))) + f"  {point}"
-    ways = (
+    with_point = state("b", region("s", state("d"), arrow("si", "d"))) + f"  {point}"
+    transitions = (
         arrow("i", "b"),
         arrow("d", "x", "start", effect="level := 2"),
         arrow("x", "a", effect="level := level + 1"),
     )
-    text = machine_of(region("r", state("a"), boxed, *ways))
-    made, codes, _ = derived(acting(text, "exit", "b", "level := level * 3"))
+    text = machine_of(region("r", state("a"), with_point, *transitions))
+    contract, codes = derive_gate_contract(add_behaviour(text, "exit", "b", "level := level * 3"))
     assert codes == []
-    assert safety(made)[0].endswith("state'=A & level'=7")
+    assert print_safety(contract)[0].endswith("state'=A & level'=7")
 
 
-def test_an_entry_point_enters_its_state_before_the_effect_that_leaves_it():
+def test_the_entry_behaviour_precedes_the_effect_that_leaves_an_entry_point():
     point = 'Pseudostate x "x" subkind="entry-point"\n'
-    boxed = state("b", region("s", state("d"), state("e"), arrow("si", "d"))) + f"  {point}"
-    ways = (
+    with_point = state("b", region("s", state("d"), state("e"), arrow("si", "d"))) + f"  {point}"
+    transitions = (
         arrow("i", "a"),
         arrow("a", "x", "start", effect="level := 2"),
         arrow("x", "e", effect="level := level + 1"),
     )
-    text = machine_of(region("r", state("a"), boxed, *ways))
-    made, codes, _ = derived(acting(text, "entry", "b", "level := level * 3"))
+    text = machine_of(region("r", state("a"), with_point, *transitions))
+    contract, codes = derive_gate_contract(add_behaviour(text, "entry", "b", "level := level * 3"))
     assert codes == []
-    assert safety(made)[0].endswith("level'=7")
-    assert "B_state'=E" in safety(made)[0]
+    assert print_safety(contract)[0].endswith("level'=7")
+    assert "B_state'=E" in print_safety(contract)[0]
 
 
-CALLED = """\
+SUBMACHINE = """\
 Package p "Plant"
   Class c "Gate"
     -> classifier-behavior m
@@ -219,20 +229,21 @@ Package p "Plant"
 """
 
 
-def test_each_submachine_state_has_what_its_submachine_has():
-    made, codes, graph = derived(CALLED)
-    assert codes == []
-    assert [one.name for one in made.variables] == ["event", "state", "Left_state", "Right_state"]
-    assert safety(made)[0] == (
+def test_each_submachine_state_has_the_states_of_its_submachine():
+    graph, (contract,), sink = derive_contracts(SUBMACHINE)
+    assert list_codes(sink) == []
+    names = [variable.name for variable in contract.variables]
+    assert names == ["event", "state", "Left_state", "Right_state"]
+    assert print_safety(contract)[0] == (
         "Left_state=D & event=go -> Left_state'=inactive & state'=Right & Right_state'=E"
     )
-    assert {one.origin for one in made.guarantees} <= {one.id for one in graph}
+    assert {c.origin for c in contract.guarantees} <= {element.id for element in graph}
 
 
-def test_a_machine_in_itself_is_told():
-    text = CALLED.replace('State s.e "E"\n', 'State s.e "E"\n          -> calls s\n')
-    made, codes, _ = derived(text)
-    assert made is None
+def test_a_machine_that_contains_itself_is_reported():
+    text = SUBMACHINE.replace('State s.e "E"\n', 'State s.e "E"\n          -> calls s\n')
+    contract, codes = derive_gate_contract(text)
+    assert contract is None
     assert set(codes) == {"SM420"}
 
 
@@ -243,7 +254,7 @@ def test_a_machine_in_itself_is_told():
         (arrow("b", "a", after="after 3 s"), ["SM434"]),
     ],
 )
-def test_a_time_out_that_comes_with_a_transition_further_in_is_lost(outer, codes):
-    parts = (state("a"), inner(), arrow("i", "a"), arrow("a", "b", "start"), outer)
-    _, found, _ = derived(machine_of(region("r", *parts)))
-    assert [one for one in found if one == "SM434"] == codes
+def test_a_timeout_that_an_inner_transition_can_hide_is_reported(outer, codes):
+    parts = (state("a"), composite_state(), arrow("i", "a"), arrow("a", "b", "start"), outer)
+    _, reported = derive_gate_contract(machine_of(region("r", *parts)))
+    assert [code for code in reported if code == "SM434"] == codes

@@ -5,7 +5,7 @@ from random import Random
 
 from hypothesis import given
 from hypothesis import strategies as st
-from overlay_samples import MODEL, PLANT, overlay_of
+from overlay_samples import MODEL, PLANT, read_overlay_text
 from random_structures import structures
 
 from sysmlc.diagnostics import Sink
@@ -105,7 +105,7 @@ overlays = st.fixed_dictionaries(
 def laid(overlay, graph=None):
     """The graph with an overlay in JSON, which is YAML, laid over it, and what was found."""
     graph, sink = graph or parse_text(PLANT + MODEL), Sink()
-    made = overlay_of(json.dumps(overlay, ensure_ascii=False), sink)
+    made = read_overlay_text(json.dumps(overlay, ensure_ascii=False), sink)
     assert made is not None, [found.message for found in sink]
     graph.store(Refinement, [made])
     Overlay().run(graph, sink)
@@ -159,7 +159,7 @@ def test_every_finding_has_its_place(overlay):
 @given(st.text(max_size=60))
 def test_any_text_is_an_overlay_or_is_told(text):
     sink = Sink()
-    made = overlay_of("overlay: 1\n" + text, sink)
+    made = read_overlay_text("overlay: 1\n" + text, sink)
     assert (made is None) == bool(len(sink))
 
 
@@ -180,7 +180,7 @@ def test_an_overlay_of_a_random_model_is_no_fault(graph, overlay, random):
     for word in WORDS:
         text = text.replace(json.dumps(word), json.dumps(random.choice(ids), ensure_ascii=False))
     sink = Sink()
-    made = overlay_of(text, sink)
+    made = read_overlay_text(text, sink)
     if made is None:
         assert [diagnostic.rule.code for diagnostic in sink] == ["SM323"] * len(sink)
         return

@@ -1,4 +1,4 @@
-"""Stand-ins for the libraries of UML, SysML and MagicDraw: one element for every dialect."""
+"""External stubs for the libraries of UML, SysML and MagicDraw are the same in every dialect."""
 
 import json
 
@@ -24,8 +24,8 @@ BLOCK = (
 )
 
 
-def stereotype(*generals: str) -> str:
-    """A custom profile whose stereotype specialises others, applied to a class."""
+def print_profile(*generals: str) -> str:
+    """Return a profile whose stereotype specialises *generals* and is applied to a class."""
     lines = "".join(f'    ?> specializes "{general}" Stereotype\n' for general in generals)
     return (
         'Class gate "Gate" @m/a.uml:1\n'
@@ -37,8 +37,8 @@ def stereotype(*generals: str) -> str:
 
 
 @pytest.mark.parametrize("href", BLOCK)
-def test_block_is_one_element_in_every_dialect(href):
-    graph, sink = run_until(stereotype(href), "resolve")
+def test_block_is_the_same_element_in_every_dialect(href):
+    graph, sink = run_until(print_profile(href), "resolve")
     block = graph.target(graph["station"], Edge.SPECIALIZES)
     assert (block.kind, graph.qualified_name(block)) == (Kind.STEREOTYPE, "SysML::Blocks::Block")
     assert block.attrs["href"] == "http://www.omg.org/spec/SysML/20181001/SysML.xmi#Blocks.Block"
@@ -49,33 +49,32 @@ def test_block_is_one_element_in_every_dialect(href):
 
 
 @pytest.mark.parametrize("href", BLOCK)
-def test_what_specialises_block_is_a_block(href):
-    graph, sink = run_until(stereotype(href), "classify")
+def test_a_stereotype_that_specialises_block_makes_a_class_a_block(href):
+    graph, sink = run_until(print_profile(href), "classify")
     assert graph["gate"].role == "block"
     assert graph["app"].attrs["lineage"] == ("Station", "Block")
     assert list_codes(sink) == []
 
 
-def test_generals_of_the_library_count():
-    own = "SysML%20Profile.mdzip#_17_0_3_17530432_1320213059640_259248_2362"
-    graph, _ = run_until(stereotype(own), "classify")
+def test_generals_within_the_library_give_role_and_lineage():
+    interface_block = "SysML%20Profile.mdzip#_17_0_3_17530432_1320213059640_259248_2362"
+    graph, _ = run_until(print_profile(interface_block), "classify")
     assert graph["gate"].role == "interface block"
     assert graph["app"].attrs["lineage"] == ("Station", "InterfaceBlock", "Block")
-    part = (
-        "MD_customization_for_SysML.mdzip#_15_0_be00301_1199377756297_348405_2678",
-        "BlockProperty",
-    )
-    graph, _ = run_until(stereotype(part[0]), "classify")
+    part_property = "MD_customization_for_SysML.mdzip#_15_0_be00301_1199377756297_348405_2678"
+    graph, _ = run_until(print_profile(part_property), "classify")
     assert graph["app"].attrs["lineage"] == ("Station", "PartProperty", "BlockProperty")
 
 
-def test_a_stereotype_that_only_is_called_block_is_none():
-    graph, _ = run_until(stereotype("company.profile.uml#_companys_own_Block_000001"), "classify")
+def test_a_foreign_stereotype_named_block_gives_no_role():
+    graph, _ = run_until(
+        print_profile("company.profile.uml#_companys_own_Block_000001"), "classify"
+    )
     assert graph["gate"].role == ""
 
 
-def test_dialects_in_one_unit_share_the_stand_in():
-    graph, _ = run_until(stereotype(*BLOCK), "resolve")
+def test_dialects_in_one_unit_share_the_stub():
+    graph, _ = run_until(print_profile(*BLOCK), "resolve")
     assert len(graph.targets(graph["station"], Edge.SPECIALIZES)) == 1
     assert [e.name for e in graph.of_kind(Kind.STEREOTYPE)] == ["Station", "Block"]
 
@@ -103,11 +102,11 @@ def test_dialects_in_one_unit_share_the_stand_in():
          "ISO-80000::ISO80000-3 Space and Time::Quantities::length::length[metre]"),
     ],
 )  # fmt: skip
-def test_stand_ins_know_kind_and_qualified_name(href, kind, name):
+def test_stubs_have_kind_and_qualified_name(href, kind, name):
     text = f'Property p "p" @m/a.uml:1\n  ?> references "{href}" Class\n'
     graph, sink = run_until(text, "resolve")
-    found = graph.target(graph["p"], Edge.REFERENCES)
-    assert (found.kind, graph.qualified_name(found)) == (kind, name)
+    stub = graph.target(graph["p"], Edge.REFERENCES)
+    assert (stub.kind, graph.qualified_name(stub)) == (kind, name)
     assert list_codes(sink) == []
 
 
@@ -117,22 +116,22 @@ def test_an_applied_package_of_sysml_is_a_profile():
     assert graph.target(graph["m"], Edge.APPLIES).kind is Kind.PROFILE
 
 
-def test_the_name_that_a_reference_shows_tells_when_its_id_is_new():
-    found = load_libraries().find(
+def test_the_qualified_name_in_a_reference_finds_elements_with_unknown_ids():
+    entry = load_libraries().find(
         "SysML Profile.mdzip", "_2024x_1", "SysML::Ports&Flows::ProxyPort", {Kind.STEREOTYPE}
     )
-    assert found.qualified_name == "SysML::Ports&Flows::ProxyPort"
+    assert entry.qualified_name == "SysML::Ports&Flows::ProxyPort"
     assert load_libraries().find("plant.mdzip", "_2024x_1", "SysML::Blocks::Block", ()) is None
     assert load_libraries().find("SysML Profile.mdzip", "_2024x_1", "", ()) is None
 
 
-def test_one_name_for_several_elements_is_told_apart_by_kind_and_owner():
+def test_kind_and_owner_select_among_elements_of_the_same_name():
     find = load_libraries().find
-    md = "SysML Profile.mdzip"
-    assert find(md, "Block", "", {Kind.STEREOTYPE}).qualified_name == "SysML::Blocks::Block"
-    package = find(md, "Block", "", {Kind.PACKAGE}).qualified_name
+    profile = "SysML Profile.mdzip"
+    assert find(profile, "Block", "", {Kind.STEREOTYPE}).qualified_name == "SysML::Blocks::Block"
+    package = find(profile, "Block", "", {Kind.PACKAGE}).qualified_name
     assert package == "SysML::Non-Normative Extensions::Block"
-    unit = find(md, "x", "SysML::Libraries::UnitAndQuantityKind::Unit", {Kind.CLASS})
+    unit = find(profile, "x", "SysML::Libraries::UnitAndQuantityKind::Unit", {Kind.CLASS})
     assert unit.qualified_name == "SysML::Libraries::UnitAndQuantityKind::Unit"
 
 
@@ -153,7 +152,7 @@ def test_names_are_read_from_fragments(fragment, names):
     assert read_names(fragment) == names
 
 
-def test_the_data_file_is_as_its_schema_says():
+def test_the_data_file_is_valid_against_its_schema():
     schema = json.loads(resources.read_text("metamodels", "sysmlc-libraries.schema.json"))
     Draft202012Validator.check_schema(schema)
     data = json.loads(resources.read_text("metamodels", "libraries.json"))
@@ -170,7 +169,7 @@ def test_the_data_file_is_closed_and_its_ids_are_unique():
         assert set(entry.get("specializes", ())) <= set(data), name
 
 
-def test_unknown_content_is_no_reason_to_fail():
+def test_an_empty_library_finds_nothing():
     empty = Libraries('{"format": "sysmlc-libraries/1", "libraries": [], "elements": {}}')
     assert empty.find("SysML Profile.mdzip", "Block", "", ()) is None
     assert empty.get("SysML::Blocks::Block") is None
