@@ -55,6 +55,11 @@ Package model "Gate" @gate.uml:1
       -> flow-target call
     Action call "getIn" subkind="call-operation" @gate.uml:6
 """
+ITEMS = "overlay: 1\nitems:\n  MiniPallet: {domain: physical}\n"
+FLOW = ITEMS + "connectors:\n  Plant/Gate/l1:\n    flows:\n    - "
+GATE = "overlay: 1\nblocks:\n  Plant/Gate:\n"
+HANDLED = GATE + "    behavior: gate.uml#Gate::Handle\n"
+GETS_IN = "  Plant/Switch: {operations: {getIn: }}\n"
 
 
 def read_overlay_text(text: str, sink: Sink, file: str = "plant.overlay.yaml") -> Refinement | None:
@@ -74,3 +79,8 @@ def apply_overlays(
     graph.store(Refinement, [refinement for refinement in refinements if refinement is not None])
     pipeline.run(graph, sink, verify_each=True, until=until)
     return graph, sink
+
+
+def find_element(graph, name, kind=None):
+    """Return the first element of this name."""
+    return next(e for e in graph if e.name == name and kind in (None, e.kind))

@@ -49,7 +49,7 @@ def test_actions_in_an_allocate_partition_are_allocated_to_the_part_it_represent
     assert [target.id for target in graph.targets(graph[node], Edge.ALLOCATED_TO)] == expected
 
 
-def test_a_second_run_changes_nothing():
+def test_the_pass_is_idempotent():
     graph, _ = run_until(LANES, "classify")
     once = print_text(graph)
     assert print_after_second_run(graph, "classify") == once

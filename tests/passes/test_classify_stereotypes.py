@@ -1,4 +1,4 @@
-"""Each stereotype of the SysML standard has a documented meaning, and that meaning comes out."""
+"""The pass gives each stereotype of the SysML standard the meaning that docs/ir.md documents."""
 
 import re
 from pathlib import Path
@@ -14,11 +14,11 @@ PAGE = Path(__file__).parents[2] / "docs/ir.md"
 SYSML = "http://www.omg.org/spec/SysML/20181001/SysML"
 
 
-def words(text: str) -> frozenset[str]:
+def split_names(text: str) -> frozenset[str]:
     return frozenset(text.split())
 
 
-STANDARD = words(
+STANDARD = split_names(
     """
     Conform ElementGroup Expose Problem Rationale Stakeholder View Viewpoint
     AdjunctProperty BindingConnector Block BoundReference ClassifierBehaviorProperty
@@ -34,37 +34,38 @@ STANDARD = words(
     """
 )
 """SysML 1.6 and 1.7, clauses 7 to 11 and 16."""
-EARLIER = words(
+EARLIER = split_names(
     """
     Allocated ConjugatedInterfaceBlock ConstraintProperty Dimension FlowPort FlowSpecification
     QuantityKind RequirementRelated Unit
     """
 )
-"""What SysML 1.0 to 1.5 had besides, and Papyrus's name for ~InterfaceBlock."""
+"""Further stereotypes of SysML 1.0 to 1.5, and Papyrus's name for ~InterfaceBlock."""
 
 
-def documented() -> dict[str, str]:
-    """Meaning of each stereotype by the table of docs/ir.md."""
+def read_documented_meanings() -> dict[str, str]:
+    """Return the meaning of each stereotype in the table of docs/ir.md."""
     text = PAGE.read_text(encoding="utf-8").partition("## SysML stereotypes")[2]
     rows = re.findall(r"^\| (`.*?) \| (.*) \|$", text.partition("\n## ")[0], re.MULTILINE)
     return {name: meaning for names, meaning in rows for name in re.findall(r"`(.*?)`", names)}
 
 
 def is_handled(name: str) -> bool:
-    plain = vocabulary.mangle(name)
-    above = [plain, *vocabulary.find_generals(plain)]
-    return any(one in table for one in above for table in (*vocabulary.ROLES, tags.HANDLERS))
+    """Whether the stereotype or a general of it has a role or a handler of tags."""
+    mangled = vocabulary.mangle(name)
+    lineage = {mangled, *vocabulary.find_generals(mangled)}
+    return any(lineage & {*table} for table in (*vocabulary.ROLES, tags.HANDLERS))
 
 
-def test_the_table_names_every_stereotype_of_the_standard_and_no_other():
-    assert documented().keys() == STANDARD | EARLIER
+def test_the_table_names_exactly_the_stereotypes_of_the_standard():
+    assert read_documented_meanings().keys() == STANDARD | EARLIER
 
 
 @pytest.mark.parametrize("name", sorted(STANDARD | EARLIER))
-def test_every_stereotype_has_a_meaning_or_is_kept_on_purpose(name):
-    kept = name in vocabulary.WITHOUT_MEANING
-    assert kept or is_handled(name)
-    assert ("Application only" in documented()[name]) <= kept
+def test_every_stereotype_has_a_meaning_or_is_documented_as_application_only(name):
+    is_application_only = name in vocabulary.WITHOUT_MEANING
+    assert is_application_only or is_handled(name)
+    assert ("Application only" in read_documented_meanings()[name]) <= is_application_only
 
 
 @pytest.mark.corpus
@@ -82,16 +83,16 @@ def test_the_published_profiles_have_no_stereotype_that_the_table_lacks(corpus, 
     assert set(types) <= STANDARD | EARLIER
 
 
-# -- what comes out ----------------------------------------------------------------------------
+# -- meanings in the graph ---------------------------------------------------------------------
 
 
-def applied(element: str, stereotype: str, given: str = "", indent: str = "  ") -> str:
+def apply_stereotype(element: str, stereotype: str, tags: str = "", indent: str = "  ") -> str:
     id = element.split()[1]
-    application = f'Application {id}.s stereotype="{stereotype}" namespace="{SYSML}" {given}'
+    application = f'Application {id}.s stereotype="{stereotype}" namespace="{SYSML}" {tags}'
     return f"{element}\n{indent}{application}\n{indent}  -> subject {id}\n"
 
 
-PLACES = """\
+MODEL = """\
 Class gate "Gate" role="block"
   Property motor "motor" aggregation="composite"
     -> typed-by drive
@@ -204,70 +205,70 @@ RELATIONS = {
 }
 
 
-def about(text: str, id: str) -> str:
-    """What the printed graph says of one element: its line and its edges."""
-    rows = text.splitlines()
-    start = next(at for at, row in enumerate(rows) if re.match(rf" *\w+ {id} ", row + " "))
-    found = [rows[start]]
-    for row in rows[start + 1 :]:
-        if not row.strip().startswith("->"):
-            break
-        found.append(row)
-    return " ".join(" ".join(row.split()) for row in found)
+def find_element_text(text: str, id: str) -> str:
+    """Return the line and the edges of an element in the printed graph, as one line."""
+    lines = text.splitlines()
+    start = next(n for n, line in enumerate(lines) if re.match(rf" *\w+ {id} ", line + " "))
+    is_edge = [line.strip().startswith("->") for line in lines[start + 1 :]]
+    end = start + 1 + (is_edge.index(False) if False in is_edge else len(is_edge))
+    return " ".join(" ".join(lines[start:end]).split())
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_what_a_stereotype_says_comes_out(name):
-    element, given, expected = CASES[name]
-    graph, _ = run_until(PLACES + applied(element, name, given), "classify")
-    shown = about(print_text(graph), "x")
+def test_each_stereotype_sets_the_documented_attributes_and_edges(name):
+    element, tag_values, expected = CASES[name]
+    graph, _ = run_until(MODEL + apply_stereotype(element, name, tag_values), "classify")
+    text = find_element_text(print_text(graph), "x")
     parts = re.findall(r'-> \S+(?: \w+)+|[\w]+=(?:"[^"]*"|\[[^]]*\]|\w+)', expected)
     assert parts
-    assert [part for part in parts if part not in shown] == [], shown
+    assert [part for part in parts if part not in text] == [], text
 
 
 @pytest.mark.parametrize("name", RELATIONS)
-def test_a_relation_has_its_role_and_its_edge(name):
+def test_each_stereotype_of_a_dependency_sets_its_role_and_its_edge(name):
     role, edge = RELATIONS[name]
     ends = "  -> client run\n  -> supplier gate\n"
-    model = applied(f'Dependency x "X"\n{ends}'.rstrip("\n"), name).replace("x\n", "x\n", 1)
-    graph, _ = run_until(PLACES + model, "classify")
+    model = apply_stereotype(f'Dependency x "X"\n{ends}'.rstrip("\n"), name).replace(
+        "x\n", "x\n", 1
+    )
+    graph, _ = run_until(MODEL + model, "classify")
     text = print_text(graph)
-    assert f'role="{role}"' in about(text, "x")
-    assert f"-> {edge} gate" in about(text, "run")
+    assert f'role="{role}"' in find_element_text(text, "x")
+    assert f"-> {edge} gate" in find_element_text(text, "run")
 
 
 def test_the_cases_cover_the_table():
-    beside = {"BindingConnector", "NestedConnectorEnd", "Optional", *vocabulary.WITHOUT_MEANING}
-    assert documented().keys() - CASES.keys() - RELATIONS.keys() - beside == set()
+    without_case = {"BindingConnector", "NestedConnectorEnd", "Optional"}
+    without_case |= {*vocabulary.WITHOUT_MEANING}
+    assert read_documented_meanings().keys() - CASES.keys() - RELATIONS.keys() <= without_case
 
 
-@pytest.mark.parametrize(("name", "found"), [("Blok", ["SM211"]), ("Block", []), ("Sensor", [])])
-def test_a_name_that_sysml_does_not_have_is_told(name, found):
-    assert list_codes(run_until(applied('Class x "X"', name), "classify")[1]) == found
+@pytest.mark.parametrize(("name", "codes"), [("Blok", ["SM211"]), ("Block", []), ("Sensor", [])])
+def test_a_misspelt_stereotype_of_sysml_is_reported(name, codes):
+    assert list_codes(run_until(apply_stereotype('Class x "X"', name), "classify")[1]) == codes
 
 
-def test_a_second_run_changes_nothing():
-    rows = (
-        applied(f"{c[0]} ".replace(" x ", f" x{i} "), n, c[1])
-        for i, (n, c) in enumerate(CASES.items())
+def test_the_pass_is_idempotent():
+    elements = (
+        apply_stereotype(f"{element} ".replace(" x ", f" x{number} "), name, tag_values)
+        for number, (name, (element, tag_values, _)) in enumerate(CASES.items())
     )
-    graph, _ = run_until(PLACES + "".join(rows), "classify")
+    graph, _ = run_until(MODEL + "".join(elements), "classify")
     once = print_text(graph)
     assert print_after_second_run(graph, "classify") == once
 
 
-def test_tags_that_lead_nowhere_or_to_the_element_itself_give_nothing():
-    for given in ('tag.principal="gone"', 'tag.principal="x"', 'tag.principal=""'):
-        model = PLACES + applied('Property x "X"', "AdjunctProperty", given)
+def test_tags_that_name_no_element_or_the_element_itself_add_no_edge():
+    for tag_value in ('tag.principal="gone"', 'tag.principal="x"', 'tag.principal=""'):
+        model = MODEL + apply_stereotype('Property x "X"', "AdjunctProperty", tag_value)
         graph, sink = run_until(model, "classify")
-        assert "references" not in about(print_text(graph), "x")
+        assert "references" not in find_element_text(print_text(graph), "x")
         assert list_codes(sink) == []
 
 
-def test_a_tag_typed_by_a_stereotype_leads_to_what_has_it():
-    view = applied('Class point "Point"', "Viewpoint") + applied(
+def test_a_tag_that_names_an_application_refers_to_the_element_of_the_application():
+    view = apply_stereotype('Class point "Point"', "Viewpoint") + apply_stereotype(
         'Class x "X"', "View", 'tag.viewpoint="point.s"'
     )
     graph, _ = run_until(view, "classify")
-    assert "-> realizes point" in about(print_text(graph), "x")
+    assert "-> realizes point" in find_element_text(print_text(graph), "x")

@@ -1,4 +1,4 @@
-"""Derived units of QUDV say their symbol by their factors."""
+"""The symbol of a derived unit of QUDV is computed from its factors."""
 
 import pytest
 from pass_runs import print_after_second_run, run_until
@@ -27,7 +27,7 @@ Instance s "second"
 """
 
 
-def speed(*factors: tuple[str, str]) -> str:
+def print_speed_unit(*factors: tuple[str, str]) -> str:
     text = QUDV + 'Instance v "speed"\n  -> instance-of derived\n  Slot v.f\n'
     text += "    -> instance-of derived.factor\n    -> references "
     text += " ".join(f"f{number}" for number, _ in enumerate(factors)) + "\n"
@@ -38,7 +38,7 @@ def speed(*factors: tuple[str, str]) -> str:
     return text
 
 
-def exponent(value: str) -> str:
+def print_exponent(value: str) -> str:
     return f" value={value}\n    -> instance-of factor.exponent"
 
 
@@ -53,24 +53,26 @@ HALF = (
 @pytest.mark.parametrize(
     ("factors", "symbol"),
     [
-        ([("m", exponent("1")), ("s", exponent("-1"))], "m·second^-1"),
-        ([("m", exponent("2"))], "m^2"),
+        ([("m", print_exponent("1")), ("s", print_exponent("-1"))], "m·second^-1"),
+        ([("m", print_exponent("2"))], "m^2"),
         ([("m", HALF)], "m^(1/2)"),
-        ([("factor", exponent("1"))], None),
+        ([("factor", print_exponent("1"))], None),
     ],
 )
 def test_the_symbol_of_a_derived_unit(factors, symbol):
-    graph, _ = run_until(speed(*factors), "classify")
+    graph, _ = run_until(print_speed_unit(*factors), "classify")
     assert graph["v"].role == "unit"
     assert graph["v"].attrs.get("symbol") == symbol
 
 
-def test_a_second_run_changes_nothing():
-    graph, _ = run_until(speed(("m", exponent("1")), ("s", exponent("-1"))), "classify")
+def test_the_pass_is_idempotent():
+    graph, _ = run_until(
+        print_speed_unit(("m", print_exponent("1")), ("s", print_exponent("-1"))), "classify"
+    )
     once = print_text(graph)
     assert print_after_second_run(graph, "classify") == once
 
 
-def test_a_class_of_the_plant_called_unit_is_no_library():
+def test_a_class_of_the_plant_named_unit_is_no_unit_of_qudv():
     graph, _ = run_until(QUDV.replace('"QUDV"', '"Plant"'), "classify")
     assert graph["m"].role == ""

@@ -1,4 +1,4 @@
-"""Each rule of the structural passes whose examples are graphs: one has the fault, one nearly."""
+"""Each rule of the structural passes reports its wrong example and accepts its right example."""
 
 import pytest
 from pass_runs import STRUCTURAL, list_codes, run_until
@@ -27,18 +27,16 @@ RULES = [
 
 
 @pytest.mark.parametrize(("pass_name", "rule"), RULES, ids=lambda x: getattr(x, "name", x))
-def test_rule_reports_its_wrong_model_and_not_its_right_one(pass_name, rule):
+def test_rule_reports_its_wrong_example_and_not_its_right_one(pass_name, rule):
     assert rule.code in list_codes(run_until(rule.read_page().wrong, pass_name)[1])
     assert rule.code not in list_codes(run_until(rule.read_page().right, pass_name)[1])
 
 
 @pytest.mark.parametrize(("pass_name", "rule"), RULES, ids=lambda x: getattr(x, "name", x))
-def test_right_model_is_right_in_every_way(pass_name, rule):
-    found = [
-        one for one in run_until(rule.read_page().right, pass_name)[1] if one.severity != "info"
-    ]
-    assert found == []
+def test_the_right_example_has_no_warnings_at_all(pass_name, rule):
+    _, sink = run_until(rule.read_page().right, pass_name)
+    assert {diagnostic.severity for diagnostic in sink} <= {"info"}
 
 
-def test_there_are_rules():
+def test_every_structural_pass_has_rules():
     assert {pass_name for pass_name, _ in RULES} == set(STRUCTURAL)

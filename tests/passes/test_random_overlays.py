@@ -1,4 +1,4 @@
-"""What holds for every overlay: twice is once, order is nothing, and none is a fault of ours."""
+"""Random overlays: the pass is idempotent, ignores the order of entries and never crashes."""
 
 import json
 from random import Random
@@ -6,6 +6,7 @@ from random import Random
 from hypothesis import given
 from hypothesis import strategies as st
 from overlay_samples import MODEL, PLANT, read_overlay_text
+from pass_runs import list_codes, list_diagnostics
 from random_structures import structures
 
 from sysmlc.diagnostics import Sink
@@ -13,7 +14,9 @@ from sysmlc.ir import Graph
 from sysmlc.ir.text import parse_text, print_text
 from sysmlc.ir.verify import verify
 from sysmlc.overlay.model import Refinement
+from sysmlc.overlay.reading import read_overlay
 from sysmlc.passes.overlay import Overlay
+from sysmlc.sources import Source
 
 WORDS = [
     "Plant/Gate/l1",
@@ -102,41 +105,38 @@ overlays = st.fixed_dictionaries(
 )
 
 
-def laid(overlay, graph=None):
-    """The graph with an overlay in JSON, which is YAML, laid over it, and what was found."""
-    graph, sink = graph or parse_text(PLANT + MODEL), Sink()
-    made = read_overlay_text(json.dumps(overlay, ensure_ascii=False), sink)
-    assert made is not None, [found.message for found in sink]
-    graph.store(Refinement, [made])
+def apply_overlay(overlay):
+    """Apply an overlay, written as JSON, to the plant; return the graph and the diagnostics."""
+    graph, sink = parse_text(PLANT + MODEL), Sink()
+    refinement = read_overlay_text(json.dumps(overlay, ensure_ascii=False), sink)
+    assert refinement is not None, [diagnostic.message for diagnostic in sink]
+    graph.store(Refinement, [refinement])
     Overlay().run(graph, sink)
     assert verify(graph) == []
     return graph, sink
 
 
-def shuffled(value, random):
-    """The same overlay with its entries in another order; parameters keep theirs."""
+def shuffle(value, random):
+    """Return the same overlay with its entries in another order, except parameters."""
     if isinstance(value, dict):
-        keys = random.sample(list(value), len(value))
-        kept = {"parameters"}
-        return {k: value[k] if k in kept else shuffled(value[k], random) for k in keys}
+        return {
+            key: value[key] if key == "parameters" else shuffle(value[key], random)
+            for key in random.sample(list(value), len(value))
+        }
     if isinstance(value, list):
-        return [shuffled(one, random) for one in random.sample(value, len(value))]
+        return [shuffle(item, random) for item in random.sample(value, len(value))]
     return value
 
 
-def without_places(graph: Graph) -> str:
+def print_without_locations(graph: Graph) -> str:
     for element in graph:
         element.ordinal = 0
     return print_text(graph)
 
 
-def findings(sink):
-    return sorted((diagnostic.rule.code, diagnostic.message) for diagnostic in sink)
-
-
 @given(overlays)
-def test_an_overlay_twice_is_the_same_as_once(overlay):
-    graph, _ = laid(overlay)
+def test_the_pass_is_idempotent(overlay):
+    graph, _ = apply_overlay(overlay)
     once = print_text(graph)
     Overlay().run(graph, Sink())
     assert print_text(graph) == once
@@ -144,47 +144,45 @@ def test_an_overlay_twice_is_the_same_as_once(overlay):
 
 @given(overlays, st.integers(0, 1 << 30))
 def test_the_order_of_entries_does_not_matter(overlay, seed):
-    one, other = laid(overlay), laid(shuffled(overlay, Random(seed)))
-    assert without_places(one[0]) == without_places(other[0])
-    assert findings(one[1]) == findings(other[1])
+    graph, sink = apply_overlay(overlay)
+    shuffled_graph, shuffled_sink = apply_overlay(shuffle(overlay, Random(seed)))
+    assert print_without_locations(graph) == print_without_locations(shuffled_graph)
+    assert sorted(list_diagnostics(sink)) == sorted(list_diagnostics(shuffled_sink))
 
 
 @given(overlays)
-def test_every_finding_has_its_place(overlay):
-    for found in laid(overlay)[1]:
-        assert found.subject.place is not None
-        assert found.subject.place.file in ("plant.overlay.yaml", "gate.uml")
+def test_every_diagnostic_has_a_location(overlay):
+    for diagnostic in apply_overlay(overlay)[1]:
+        assert diagnostic.subject.place is not None
+        assert diagnostic.subject.place.file in ("plant.overlay.yaml", "gate.uml")
 
 
 @given(st.text(max_size=60))
-def test_any_text_is_an_overlay_or_is_told(text):
+def test_any_text_is_an_overlay_or_reported(text):
     sink = Sink()
-    made = read_overlay_text("overlay: 1\n" + text, sink)
-    assert (made is None) == bool(len(sink))
+    refinement = read_overlay_text("overlay: 1\n" + text, sink)
+    assert (refinement is None) == bool(len(sink))
 
 
 @given(st.binary(max_size=60))
-def test_any_bytes_are_an_overlay_or_are_told(data):
-    from sysmlc.overlay.reading import read_overlay
-    from sysmlc.sources import Source
-
+def test_any_bytes_are_an_overlay_or_reported(data):
     sink = Sink()
-    made = read_overlay(Source("p.overlay.yaml", data), sink)
-    assert (made is None) == bool(len(sink))
+    refinement = read_overlay(Source("p.overlay.yaml", data), sink)
+    assert (refinement is None) == bool(len(sink))
 
 
 @given(structures(), overlays, st.randoms(use_true_random=False))
-def test_an_overlay_of_a_random_model_is_no_fault(graph, overlay, random):
+def test_overlays_of_random_models_leave_a_valid_graph(graph, overlay, random):
     ids = [element.id for element in graph] or ["none"]
     text = json.dumps(overlay, ensure_ascii=False)
     for word in WORDS:
         text = text.replace(json.dumps(word), json.dumps(random.choice(ids), ensure_ascii=False))
     sink = Sink()
-    made = read_overlay_text(text, sink)
-    if made is None:
-        assert [diagnostic.rule.code for diagnostic in sink] == ["SM323"] * len(sink)
+    refinement = read_overlay_text(text, sink)
+    if refinement is None:
+        assert list_codes(sink) == ["SM323"] * len(sink)
         return
-    graph.store(Refinement, [made])
+    graph.store(Refinement, [refinement])
     Overlay().run(graph, sink)
     assert verify(graph) == []
     once = print_text(graph)

@@ -1,11 +1,12 @@
-"""Contracts of services: pre- and postconditions of operations and actions."""
+"""Contracts of services: preconditions and postconditions of operations and actions."""
 
 import pytest
+from pass_runs import derive_contracts, list_codes, print_conjuncts
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text
-from sysmlc.logic.contract import Contract, IntegerDomain
-from sysmlc.logic.printing import print_formula
+from sysmlc.logic.contract import IntegerDomain
+from sysmlc.logic.services.conditions import iter_services
 from sysmlc.passes import pipeline
 from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.synthesis.games.game import make_game
@@ -29,46 +30,50 @@ Package p "Plant"
 """
 
 
-def model(*conditions):
-    lines = [
-        f'      Constraint k{at} "{name}" subkind="{kind}" body="{body}"\n'
-        for at, (kind, name, body) in enumerate(conditions)
-    ]
-    return TANK.format(conditions="".join(lines).replace(' subkind=""', ""))
+def build_tank(*conditions):
+    """Return a tank whose operation has these conditions, each a kind, a name and a body."""
+    constraints = "".join(
+        f'      Constraint k{number} "{name}" subkind="{kind}" body="{body}"\n'
+        for number, (kind, name, body) in enumerate(conditions)
+    )
+    return TANK.format(conditions=constraints.replace(' subkind=""', ""))
 
 
-def derived(text):
-    graph, sink = parse_text(text), Sink()
-    pipeline.run(graph, sink, verify_each=True)
-    return list(graph.derived(Contract)), sink, graph
+def derive(text):
+    """Return the contracts by component."""
+    return {contract.component: contract for contract in derive_contracts(text)[1]}
 
 
-def lines(conjuncts):
-    return [f"{one.class_}: {print_formula(one.formula)}" for one in conjuncts]
+def derive_fill_contract(*conditions):
+    return derive(build_tank(*conditions))["Plant::Tank.fill"]
 
 
-FILL = model(
+def is_realizable(contract):
+    return solve(make_game(contract, Manager())).is_realizable
+
+
+FILL = build_tank(
     ("precondition", "shut", "not open"),
     ("precondition", "", "amount > 0"),
     ("postcondition", "", "level >= amount"),
 )
 
 
-def test_who_asks_keeps_the_preconditions_and_what_is_done_the_postconditions():
-    (contract,), sink, graph = derived(FILL)
-    assert [diagnostic.rule.code for diagnostic in sink] == []
+def test_preconditions_are_assumed_of_the_caller_and_postconditions_are_guaranteed():
+    graph, (contract,), sink = derive_contracts(FILL)
+    assert list_codes(sink) == []
     assert contract.component == "Plant::Tank.fill"
-    assert [f"{one.owner.value} {one.name}" for one in contract.variables] == [
+    assert [f"{v.owner.value} {v.name}" for v in contract.variables] == [
         *("env call", "sys busy", "sys done", "env amount", "sys level", "sys open"),
     ]
-    assert lines(contract.assumptions) == [
+    assert print_conjuncts(contract.assumptions) == [
         "safety: call' -> !open",
         "init: call -> amount>0",
         "safety: call' -> amount'>0",
         "safety: (call | busy) & !done -> !call'",
         "safety: (call | busy) & !done -> amount'=amount",
     ]
-    assert lines(contract.guarantees) == [
+    assert print_conjuncts(contract.guarantees) == [
         "init: !busy & !done",
         "safety: busy' <-> (call | busy) & !done & !done'",
         "safety: done' -> (call | busy) & !done",
@@ -82,44 +87,40 @@ def test_who_asks_keeps_the_preconditions_and_what_is_done_the_postconditions():
         assert conjunct.text.endswith(".")
 
 
-def test_a_service_with_conditions_that_can_be_met_can_be_synthesised():
-    (contract,), _, _ = derived(FILL)
-    assert solve(make_game(contract, Manager())).is_realizable
+def test_a_service_whose_conditions_can_be_met_is_realizable():
+    (contract,) = derive(FILL).values()
+    assert is_realizable(contract)
 
 
-def test_a_postcondition_that_a_precondition_does_not_allow_for_cannot_be_kept():
-    (contract,), _, _ = derived(model(("postcondition", "", "level > amount and level < 3")))
-    assert not solve(make_game(contract, Manager())).is_realizable
-    allowed = ("precondition", "", "amount < 2")
-    (contract,), _, _ = derived(
-        model(allowed, ("postcondition", "", "level > amount and level < 3"))
-    )
-    assert solve(make_game(contract, Manager())).is_realizable
+def test_a_service_whose_postcondition_needs_a_missing_precondition_is_unrealizable():
+    postcondition = ("postcondition", "", "level > amount and level < 3")
+    assert not is_realizable(derive_fill_contract(postcondition))
+    assert is_realizable(derive_fill_contract(("precondition", "", "amount < 2"), postcondition))
 
 
-def test_of_a_condition_of_neither_kind_what_it_speaks_of_counts():
-    (contract,), _, _ = derived(model(("", "", "amount != 1"), ("", "", "level == amount")))
-    assert "safety: call' -> amount'!=1" in lines(contract.assumptions)
-    assert "safety: done' -> level'=amount'" in lines(contract.guarantees)
+def test_a_condition_without_a_kind_is_classified_by_its_variables():
+    contract = derive_fill_contract(("", "", "amount != 1"), ("", "", "level == amount"))
+    assert "safety: call' -> amount'!=1" in print_conjuncts(contract.assumptions)
+    assert "safety: done' -> level'=amount'" in print_conjuncts(contract.guarantees)
 
 
-def test_ranges_alone_are_no_conditions():
-    assert derived(model())[0] == []
+def test_ranges_alone_give_no_contract():
+    assert derive(build_tank()) == {}
 
 
-def test_a_bound_that_the_values_have_already_is_a_condition_all_the_same():
-    (contract,), _, _ = derived(model(("", "", "amount > 0"), ("", "", "level == amount")))
-    amount = next(one for one in contract.variables if one.name == "amount")
+def test_a_bound_that_narrows_a_range_is_also_a_condition():
+    contract = derive_fill_contract(("", "", "amount > 0"), ("", "", "level == amount"))
+    amount = next(variable for variable in contract.variables if variable.name == "amount")
     assert amount.domain == IntegerDomain(1, 4)
-    bounds = [one for one in contract.assumptions if one.origin == "k0"]
-    assert lines(bounds) == ["init: call -> amount>0", "safety: call' -> amount'>0"]
+    bounds = [conjunct for conjunct in contract.assumptions if conjunct.origin == "k0"]
+    assert print_conjuncts(bounds) == ["init: call -> amount>0", "safety: call' -> amount'>0"]
     assert bounds[0].text == "The caller of 'fill' ensures that 'amount > 0' holds."
 
 
-def test_of_an_output_a_bound_is_what_is_promised():
+def test_a_bound_of_an_output_is_guaranteed():
     text = ACTION.format(method="g").replace("f.k ", 'f.b body="0 < level"\n    Constraint f.k ')
-    (contract,) = [one for one in derived(text)[0] if one.component == "Plant::Filling"]
-    assert "safety: done' -> 0<level'" in lines(contract.guarantees)
+    contract = derive(text)["Plant::Filling"]
+    assert "safety: done' -> 0<level'" in print_conjuncts(contract.guarantees)
 
 
 ACTION = """\
@@ -145,18 +146,37 @@ Package p "Plant"
 """
 
 
-def test_an_operation_keeps_the_conditions_of_its_method():
-    found = {one.component: one for one in derived(ACTION.format(method="f"))[0]}
-    assert sorted(found) == ["Plant::Tank.Slow", "Plant::Tank.fill"]
-    level = next(one for one in found["Plant::Tank.fill"].variables if one.name == "level")
+def test_an_operation_has_the_conditions_of_its_method():
+    contracts = derive(ACTION.format(method="f"))
+    assert sorted(contracts) == ["Plant::Tank.Slow", "Plant::Tank.fill"]
+    variables = contracts["Plant::Tank.fill"].variables
+    level = next(variable for variable in variables if variable.name == "level")
     assert level.domain == IntegerDomain(0, 4)
 
 
-def test_an_action_that_no_operation_performs_is_a_service_itself():
-    found = {one.component: one for one in derived(ACTION.format(method="g"))[0]}
-    assert sorted(found) == ["Plant::Filling", "Plant::Tank.fill"]
+def test_an_action_that_is_not_the_method_of_an_operation_is_a_service_itself():
+    assert sorted(derive(ACTION.format(method="g"))) == ["Plant::Filling", "Plant::Tank.fill"]
 
 
 @pytest.mark.parametrize("kind", ["time", "invariant"])
-def test_other_constraints_are_no_conditions(kind):
-    assert derived(model((kind, "", "amount > 1")))[0] == []
+def test_constraints_of_other_kinds_are_no_conditions(kind):
+    assert derive(build_tank((kind, "", "amount > 1"))) == {}
+
+
+SPECIALIZED_ACTION = """\
+Package p "P"
+  Activity a "A"
+    Parameter a.x "x" direction="in"
+      -> typed-by b
+    Constraint a.c "c" subkind="precondition" body="x" language=""
+  {kind} s "S"
+    -> specializes a
+  DataType b "Boolean"
+"""
+
+
+@pytest.mark.parametrize(("kind", "services"), [("Class", 1), ("Activity", 2)])
+def test_a_structure_that_specialises_a_behaviour_is_no_service(kind, services):
+    """In KerML, a structure may specialise a behaviour with conditions."""
+    graph = parse_text(SPECIALIZED_ACTION.format(kind=kind))
+    assert len(list(iter_services(graph, (0, 15), Sink()))) == services

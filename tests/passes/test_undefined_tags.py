@@ -1,6 +1,7 @@
-"""Tags that the profile of the unit does not define are told, once for each stereotype."""
+"""Tags that the profile of the unit does not define are reported once for each stereotype."""
 
 import pytest
+from pass_runs import list_messages
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
@@ -25,28 +26,28 @@ Class b "B"
 """
 
 
-def told(tags: str, external: str = "") -> list[str]:
+def list_undefined_tags(tags: str, external: str = "") -> list[str]:
     sink = Sink()
     check_tags(parse_text(PROFILE.format(tags=tags, external=external)), sink)
-    return [finding.message for finding in sink if finding.rule is UNDEFINED_TAG]
+    return list_messages(sink, UNDEFINED_TAG.code)
 
 
-def test_a_tag_is_told_once():
-    assert told(' tag.numbr="3"') == [
+def test_an_undefined_tag_is_reported_once():
+    assert list_undefined_tags(' tag.numbr="3"') == [
         "tag 'numbr' of stereotype 'Cell' on 'A' and 1 more is not defined by its profile"
     ]
 
 
 @pytest.mark.parametrize("tags", ["", ' tag.number="3"', ' tag.Number="3"', ' tag.maker_of_it="x"'])
-def test_tags_of_the_stereotype_and_of_general_ones_are_not(tags):
-    assert told(tags) == []
+def test_tags_of_the_stereotype_and_its_generals_are_defined(tags):
+    assert list_undefined_tags(tags) == []
 
 
-def test_of_a_stereotype_that_another_file_has_nothing_is_known():
-    assert told(' tag.numbr="3"', external=" external=true") == []
+def test_tags_of_a_stereotype_outside_the_unit_are_not_checked():
+    assert list_undefined_tags(' tag.numbr="3"', external=" external=true") == []
 
 
-def test_without_a_stereotype_nothing_is_known():
+def test_an_empty_model_has_no_undefined_tags():
     sink = Sink()
     check_tags(Graph(), sink)
     assert list(sink) == []

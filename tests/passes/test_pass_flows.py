@@ -1,0 +1,75 @@
+"""The pass ``flows``: connectors and item flows between ports."""
+
+import pytest
+from pass_runs import list_codes, run_until
+
+from sysmlc.ir import Edge
+
+LINE = """\
+Class pallet "Pallet"
+Class gate "Gate"
+  Port in "in" direction="in"
+    -> typed-by pallet
+  Port out "out" direction="out"
+    -> typed-by pallet
+Class line "Line"
+  Property a "a" aggregation="composite"
+    -> typed-by gate
+  Property b "b" aggregation="composite"
+    -> typed-by gate
+  Port feed "feed" direction="in"
+    -> typed-by pallet
+"""
+
+
+def print_connector(id: str, *ends: str) -> str:
+    text = f'  Connector {id} "{id}"\n    -> end {id}.0 {id}.1\n'
+    for number, end in enumerate(ends):
+        part, _, role = end.rpartition(".")
+        text += f"    ConnectorEnd {id}.{number}\n      -> role {role}\n"
+        text += f"      -> path {part}\n" if part else ""
+    return text
+
+
+def print_item_flow(source: str, target: str) -> str:
+    ends = f"  -> flow-source {source}\n  -> flow-target {target}\n"
+    return f'ItemFlow f "f"\n{ends}  -> conveys pallet\n'
+
+
+@pytest.mark.parametrize(
+    ("ends", "codes"),
+    [
+        (("a.out", "b.in"), []),
+        (("a.in", "b.in"), ["SM315"]),
+        (("feed", "a.in"), []),
+        (("feed", "a.out"), ["SM315"]),
+    ],
+)
+def test_connectors_whose_ends_have_wrong_directions_are_reported(ends, codes):
+    assert list_codes(run_until(LINE + print_connector("c", *ends), "flows")[1]) == codes
+
+
+@pytest.mark.parametrize(("ends", "codes"), [(("feed", "in"), []), (("in", "feed"), ["SM310"] * 2)])
+def test_an_item_flow_from_a_part_to_an_input_of_its_block_is_reported(ends, codes):
+    text = LINE + print_connector("c", "feed", "a.in") + print_item_flow(*ends)
+    assert list_codes(run_until(text, "flows")[1]) == codes
+
+
+def test_an_item_flow_is_realised_by_a_connector_unless_there_are_two_candidates():
+    text = LINE + print_connector("c", "a.out", "b.in") + print_connector("d", "b.out", "a.in")
+    graph, _ = run_until(text + print_item_flow("out", "in"), "flows")
+    assert graph.targets(graph["f"], Edge.REALIZING) == []
+    text = LINE + print_connector("c", "a.out", "b.in")
+    graph, _ = run_until(text + print_item_flow("out", "in"), "flows")
+    assert graph.targets(graph["f"], Edge.REALIZING) == [graph["c"]]
+
+
+def test_a_tag_of_a_general_classifier_may_give_the_domain():
+    text = LINE + print_connector("c", "a.out", "b.in") + print_item_flow("out", "in")
+    text += 'Class solid "Solid"\n  Application t stereotype="Stuff" tag.domain="physical"\n'
+    text += "    -> subject solid\n"
+    text = text.replace(
+        'Class pallet "Pallet"\n', 'Class pallet "Pallet"\n  -> specializes solid\n'
+    )
+    graph, _ = run_until(text, "flows")
+    assert [graph[id].attrs["domain"] for id in ("f", "c")] == ["physical"] * 2
