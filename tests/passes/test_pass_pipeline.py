@@ -1,4 +1,4 @@
-"""The pipeline: order, ``until``, ``verify_each``, what callers see."""
+"""The pipeline: the order of passes, ``until``, ``verify_each`` and ``after_pass``."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -19,8 +19,8 @@ from sysmlc.passes.pipeline import (
 
 
 @dataclass(frozen=True)
-class Named:
-    """A pass that notes its name."""
+class RecordingPass:
+    """A pass that adds an element of its name."""
 
     name: str
     after: tuple[str, ...] = ()
@@ -30,8 +30,8 @@ class Named:
 
 
 @dataclass(frozen=True)
-class Harmful:
-    """A pass that breaks ownership."""
+class HarmfulPass:
+    """A pass that leaves an invalid graph: an element has an unknown owner."""
 
     name: ClassVar[str] = "harmful"
     after: ClassVar[tuple[str, ...]] = ()
@@ -40,35 +40,40 @@ class Harmful:
         graph.add(Element("a", Kind.PACKAGE)).owner = "nobody"
 
 
-def test_passes_come_after_those_that_they_name_and_else_in_their_order():
-    passes = [Named("c", ("a",)), Named("b"), Named("a", ("absent",)), Named("d", ("c", "b"))]
-    assert [one.name for one in sort_passes(passes)] == ["b", "a", "c", "d"]
+def test_passes_follow_their_predecessors_and_otherwise_retain_their_order():
+    passes = [
+        RecordingPass("c", ("a",)),
+        RecordingPass("b"),
+        RecordingPass("a", ("absent",)),
+        RecordingPass("d", ("c", "b")),
+    ]
+    assert [pass_.name for pass_ in sort_passes(passes)] == ["b", "a", "c", "d"]
 
 
-def test_passes_that_wait_for_one_another_are_refused():
+def test_passes_that_follow_each_other_are_rejected():
     with pytest.raises(ValueError, match="a, b"):
-        sort_passes([Named("a", ("b",)), Named("b", ("a",))])
+        sort_passes([RecordingPass("a", ("b",)), RecordingPass("b", ("a",))])
 
 
 def test_shipped_passes_are_listed_in_an_order_that_they_accept():
     structural = [load(name) for name in NAMES[:6]]
-    assert [one.name for one in sort_passes(structural)] == list(NAMES[:6])
-    assert [one.name for one in sort_passes(reversed(structural))] == list(NAMES[:6])
+    assert [pass_.name for pass_ in sort_passes(structural)] == list(NAMES[:6])
+    assert [pass_.name for pass_ in sort_passes(reversed(structural))] == list(NAMES[:6])
 
 
 def test_all_shipped_passes_run_in_the_order_of_their_names():
-    assert [one.name for one in build_pipeline().passes] == list(NAMES)
+    assert [pass_.name for pass_ in build_pipeline().passes] == list(NAMES)
 
 
-def test_run_stops_behind_the_pass_asked_for_and_shows_each_graph():
-    seen, graph = [], Graph()
-    Pipeline((Named("a"), Named("b"), Named("c"))).run(
-        graph, Sink(), until="b", after_pass=lambda name, made: seen.append((name, len(made)))
+def test_a_run_stops_after_until_and_passes_each_graph_to_the_caller():
+    sizes, graph = [], Graph()
+    Pipeline((RecordingPass("a"), RecordingPass("b"), RecordingPass("c"))).run(
+        graph, Sink(), until="b", after_pass=lambda name, graph: sizes.append((name, len(graph)))
     )
-    assert seen == [("a", 1), ("b", 2)]
+    assert sizes == [("a", 1), ("b", 2)]
 
 
-def test_unknown_pass_is_refused():
+def test_an_unknown_pass_is_rejected():
     for name in ("nothing", ""):
         with pytest.raises(KeyError):
             run(Graph(), Sink(), until=name)
@@ -76,20 +81,20 @@ def test_unknown_pass_is_refused():
             load(name)
 
 
-def test_pass_that_leaves_an_invalid_graph_is_named():
+def test_a_pass_that_leaves_an_invalid_graph_is_named():
     with pytest.raises(InvalidGraphError, match="pass harmful"):
-        Pipeline((Harmful(),)).run(Graph(), Sink(), verify_each=True)
-    Pipeline((Harmful(),)).run(Graph(), Sink())
+        Pipeline((HarmfulPass(),)).run(Graph(), Sink(), verify_each=True)
+    Pipeline((HarmfulPass(),)).run(Graph(), Sink())
 
 
-def test_invalid_graph_of_a_front_end_is_noticed_before_the_first_pass():
+def test_an_invalid_graph_of_a_front_end_is_found_before_the_first_pass():
     graph = Graph()
-    Harmful().run(graph, Sink())
+    HarmfulPass().run(graph, Sink())
     with pytest.raises(InvalidGraphError, match="front end"):
-        Pipeline((Named("b"),)).run(graph, Sink(), verify_each=True)
+        Pipeline((RecordingPass("b"),)).run(graph, Sink(), verify_each=True)
 
 
-def test_run_of_the_first_passes_needs_none_of_the_others():
-    seen: list[str] = []
-    run(Graph(), Sink(), until="classify", after_pass=lambda name, _: seen.append(name))
-    assert seen == ["resolve", "kept", "overlay", "inherit", "classify"]
+def test_a_run_until_a_pass_omits_the_later_passes():
+    names: list[str] = []
+    run(Graph(), Sink(), until="classify", after_pass=lambda name, _: names.append(name))
+    assert names == ["resolve", "kept", "overlay", "inherit", "classify"]

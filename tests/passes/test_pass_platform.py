@@ -1,35 +1,35 @@
-"""The pass ``platform``: machines and services of recipes on the elements of a plant."""
+"""The pass ``platform``: bind the machines and services of recipes to elements of a plant."""
 
 import pytest
+from pass_runs import list_codes, list_diagnostics
 
 from sysmlc.diagnostics import Sink, catalogue
 from sysmlc.ir import parse_text
 from sysmlc.ir.text import print_text
-from sysmlc.passes.platform import Platform
-from sysmlc.passes.platform import rules as _rules
+from sysmlc.passes import pipeline
 from sysmlc.passes.recipe import Recipe
-from sysmlc.recipe.plant import Platform as Found
+from sysmlc.recipe.plant import Platform
 
+PASS = pipeline.load("platform")
 RULES = [rule for rule in catalogue().values() if "SM623" <= rule.code <= "SM630"]
-assert _rules
 
 
 def run(text):
-    """The platform, if there is one, and what was found."""
-    graph, sink, late = parse_text(text), Sink(), Sink()
-    Recipe().run(graph, sink)
-    Platform().run(graph, late)
-    found = graph.derived(Found)
-    return (found[0] if found else None), late
+    """Return the platform or None, and the diagnostics of the pass."""
+    graph, sink = parse_text(text), Sink()
+    Recipe().run(graph, Sink())
+    PASS.run(graph, sink)
+    platforms = graph.derived(Platform)
+    return (platforms[0] if platforms else None), sink
 
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: f"{rule.code}-{rule.name}")
-def test_a_rule_reports_its_wrong_model_and_not_its_right_one(rule):
-    assert [diagnostic.rule.code for diagnostic in run(rule.read_page().wrong)[1]] == [rule.code]
+def test_rule_reports_its_wrong_example_and_not_its_right_one(rule):
+    assert list_codes(run(rule.read_page().wrong)[1]) == [rule.code]
     assert list(run(rule.read_page().right)[1]) == []
 
 
-def test_all_rules_are_there():
+def test_every_code_has_a_rule():
     assert sorted(rule.code for rule in RULES) == [f"SM{n}" for n in range(623, 631)]
 
 
@@ -101,121 +101,128 @@ READ = """\
 """
 
 
-def recipe(service="ReadId", tags='tag.amlId="gate"', parameters=READ, more="", **other):
-    given = {"level": "machine service", **other}
-    return PLANT + RECIPE.format(service=service, tags=tags, parameters=parameters, **given) + more
+def build_model(
+    service="ReadId",
+    tags='tag.amlId="gate"',
+    parameters=READ,
+    elements="",
+    level="machine service",
+):
+    """Return a plant, a recipe with one service of one machine, and further elements."""
+    build_model = RECIPE.format(service=service, tags=tags, parameters=parameters, level=level)
+    return PLANT + build_model + elements
 
 
-def allocation(source, target, name="more", file=""):
-    place = f" @{file}:1" if file else ""
-    return (
-        f'Dependency {name} role="allocate"{place}\n  -> client {source}\n  -> supplier {target}\n'
-    )
+def allocate(source, target, file=""):
+    location = f" @{file}:1" if file else ""
+    ends = f"  -> client {source}\n  -> supplier {target}\n"
+    return f'Dependency more role="allocate"{location}\n{ends}'
 
 
-def offers(text):
-    found, sink = run(text)
-    assert [f"{diagnostic.rule.code}: {diagnostic.message}" for diagnostic in sink] == []
-    return [(one.machine, one.plant, one.operation, one.how) for one in found.offers]
+def list_offers(text):
+    """Return the machine, element, operation and reason of each offer; there are no diagnostics."""
+    platform, sink = run(text)
+    assert list_diagnostics(sink) == []
+    return [(o.machine, o.plant, o.operation, o.how) for o in platform.offers]
+
+
+def list_bindings(platform):
+    return [(binding.machine, binding.plant, binding.how) for binding in platform.bindings]
 
 
 # -- machines ------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
-    ("tags", "more", "how"),
+    ("tags", "elements", "how"),
     [
         ('tag.amlId="gate"', "", "id"),
         ('tag.amlId="{GATE}"', "", "id"),
         ('tag.plantElement="gate"', "", "tag"),
-        ("", allocation("arm", "gate"), "allocation"),
-        ("", allocation("arm", "gate-part"), "allocation"),
-        ("", allocation("arm", "gate-class"), "allocation"),
-        ("", allocation("arm", "base"), "allocation"),
-        ("", allocation("arm", "gate", file="plant.overlay.yaml"), "overlay"),
+        ("", allocate("arm", "gate"), "allocation"),
+        ("", allocate("arm", "gate-part"), "allocation"),
+        ("", allocate("arm", "gate-class"), "allocation"),
+        ("", allocate("arm", "base"), "allocation"),
+        ("", allocate("arm", "gate", file="plant.overlay.yaml"), "overlay"),
     ],
 )
-def test_a_machine_is_bound_by_its_tags_by_an_allocation_or_by_the_overlay(tags, more, how):
-    found, sink = run(recipe(tags=tags, more=more))
-    assert [(one.machine, one.plant, one.how) for one in found.bindings] == [
-        ("Recipes::GateMachine", "gate", how)
-    ]
+def test_a_machine_is_bound_by_tags_by_an_allocation_or_by_the_overlay(tags, elements, how):
+    platform, sink = run(build_model(tags=tags, elements=elements))
+    assert list_bindings(platform) == [("Recipes::GateMachine", "gate", how)]
     assert list(sink) == []
 
 
-def test_an_equal_name_binds_nothing_but_is_suggested():
-    text = recipe(tags="").replace('"GateMachine"', '"Gate1"')
-    found, sink = run(text)
-    assert found.bindings == ()
-    (one,) = sink
-    assert (one.rule.code, one.help) == ("SM624", "did you mean 'Plant::Line::Gate1' (id gate)?")
+def test_an_element_of_the_same_name_is_suggested_but_not_bound():
+    text = build_model(tags="").replace('"GateMachine"', '"Gate1"')
+    platform, (diagnostic,) = run(text)
+    assert platform.bindings == ()
+    assert diagnostic.rule.code == "SM624"
+    assert diagnostic.help == "did you mean 'Plant::Line::Gate1' (id gate)?"
 
 
-def test_a_machine_that_is_an_element_of_the_plant_needs_no_binding():
+def test_a_machine_that_is_an_element_of_the_plant_is_bound_to_itself():
     text = (
-        recipe(tags="")
+        build_model(tags="")
         .replace("-> supplier arm", "-> supplier gate")
         .replace('Instance gate "Gate1"', 'Instance gate "Gate1" level="machine"')
     )
-    found, sink = run(text)
-    assert [(one.machine, one.plant, one.how) for one in found.bindings] == [
-        ("Plant::Line::Gate1", "gate", "itself")
-    ]
+    platform, sink = run(text)
+    assert list_bindings(platform) == [("Plant::Line::Gate1", "gate", "itself")]
     assert list(sink) == []
 
 
-def test_several_ways_to_say_the_same_are_no_fault():
-    assert offers(recipe(more=allocation("arm", "gate")))
-    assert run(recipe(more=allocation("arm", "gate")))[0].bindings[0].how == "id"
+def test_the_id_takes_precedence_over_an_allocation_to_the_same_element():
+    platform, sink = run(build_model(elements=allocate("arm", "gate")))
+    assert platform.offers
+    assert platform.bindings[0].how == "id"
+    assert list(sink) == []
 
 
 # -- services ------------------------------------------------------------------------------------
 
 
 def test_an_operation_that_the_block_inherits_offers_the_service():
-    assert offers(recipe()) == [("Recipes::GateMachine", "gate", "read", "name")]
+    assert list_offers(build_model()) == [("Recipes::GateMachine", "gate", "read", "name")]
 
 
-def test_an_operation_of_a_role_that_the_block_realises_offers_it_too():
-    assert offers(recipe("Carry", parameters="")) == [
+def test_an_operation_of_a_role_that_the_block_realises_offers_the_service():
+    assert list_offers(build_model("Carry", parameters="")) == [
         ("Recipes::GateMachine", "gate", "carry", "name")
     ]
 
 
-def test_the_method_of_an_operation_is_offered_whatever_it_is_called():
-    text = recipe("Anything", tags='tag.amlId="st"', parameters="").replace(
+def test_the_method_of_an_operation_is_offered_under_any_name():
+    text = build_model("Anything", tags='tag.amlId="st"', parameters="").replace(
         "-> method halt", "-> method service"
     )
-    assert offers(text) == [("Recipes::GateMachine", "st", "stop", "method")]
+    assert list_offers(text) == [("Recipes::GateMachine", "st", "stop", "method")]
 
 
-def test_an_operation_may_be_allocated():
-    text = recipe("Anything", parameters="", more=allocation("service", "read"))
-    assert offers(text) == [("Recipes::GateMachine", "gate", "read", "allocation")]
+def test_a_service_may_be_allocated_to_an_operation():
+    text = build_model("Anything", parameters="", elements=allocate("service", "read"))
+    assert list_offers(text) == [("Recipes::GateMachine", "gate", "read", "allocation")]
 
 
-def test_the_element_may_be_allocated_to_the_service_itself():
-    text = recipe(
-        "Carry", parameters="", tags='tag.amlId="oven"', more=allocation("service", "gate")
+def test_a_service_may_be_allocated_to_an_element():
+    text = build_model(
+        "Carry", parameters="", tags='tag.amlId="oven"', elements=allocate("service", "gate")
     )
-    found, _ = run(text)
-    assert [(one.machine, one.plant, one.operation) for one in found.offers] == [
-        ("", "gate", "carry")
-    ]
+    platform, _ = run(text)
+    assert [(o.machine, o.plant, o.operation) for o in platform.offers] == [("", "gate", "carry")]
 
 
-def test_a_service_of_no_machine_is_looked_for_in_the_whole_plant():
-    text = recipe("ReadId", level="infrastructure service").replace(
+def test_a_service_without_a_machine_is_searched_in_the_whole_plant():
+    text = build_model("ReadId", level="infrastructure service").replace(
         "-> client service", "-> client work"
     )
-    assert offers(text) == [("", "gate", "read", "name")]
+    assert list_offers(text) == [("", "gate", "read", "name")]
 
 
-def test_an_infrastructure_service_that_the_plant_does_not_know_is_no_fault():
-    text = recipe("AskDatabase", level="infrastructure service", parameters="").replace(
+def test_an_infrastructure_service_outside_the_plant_is_not_reported():
+    text = build_model("AskDatabase", level="infrastructure service", parameters="").replace(
         "-> client service", "-> client work"
     )
-    assert offers(text) == []
+    assert list_offers(text) == []
 
 
 @pytest.mark.parametrize(
@@ -236,69 +243,66 @@ def test_an_infrastructure_service_that_the_plant_does_not_know_is_no_fault():
         ),
     ],
 )
-def test_parameters_must_fit(parameters, problem):
-    found, sink = run(recipe(parameters=parameters))
-    assert found.offers == ()
-    (one,) = sink
-    assert one.rule.code == "SM627"
-    assert one.message.endswith(f"'Recipes::ReadId': {problem}")
+def test_an_operation_with_different_parameters_is_reported_and_not_offered(parameters, problem):
+    platform, (diagnostic,) = run(build_model(parameters=parameters))
+    assert platform.offers == ()
+    assert diagnostic.rule.code == "SM627"
+    assert diagnostic.message.endswith(f"'Recipes::ReadId': {problem}")
 
 
 @pytest.mark.parametrize(
-    "more",
+    "parameter",
     [
         '    Parameter service.x "spare" multiplicity="0..1"\n',
         '    Parameter service.x "on"\n      -> typed-by arm\n',
     ],
 )
-def test_what_may_be_absent_and_machines_are_not_compared(more):
-    assert offers(recipe(parameters=READ + more))
+def test_optional_parameters_and_machines_as_parameters_are_not_compared(parameter):
+    assert list_offers(build_model(parameters=READ + parameter))
 
 
-def test_a_near_name_of_an_operation_is_suggested():
-    (one,) = run(recipe("ReadID_"))[1]
-    assert (one.rule.code, one.help) == ("SM623", "did you mean 'ReadId'?")
+def test_the_nearest_name_of_an_operation_is_suggested():
+    _, (diagnostic,) = run(build_model("ReadID_"))
+    assert (diagnostic.rule.code, diagnostic.help) == ("SM623", "did you mean 'ReadId'?")
 
 
 # -- the platform as a whole ---------------------------------------------------------------------
 
 
-def test_what_no_recipe_uses_is_listed_by_its_topmost_element():
-    found, _ = run(recipe())
-    assert [(one.id, one.contents) for one in found.unused] == [("oven", 1)]
-    assert [(one.id, one.name, one.type) for one in found.used] == [
-        ("gate", "Plant::Line::Gate1", "Lib::Gate")
-    ]
+def test_unused_elements_are_listed_by_their_topmost_element():
+    platform, _ = run(build_model())
+    assert [(element.id, element.contents) for element in platform.unused] == [("oven", 1)]
+    (used,) = platform.used
+    assert (used.id, used.name, used.type) == ("gate", "Plant::Line::Gate1", "Lib::Gate")
 
 
-def test_without_recipe_or_without_plant_there_is_nothing():
+def test_a_unit_without_recipe_or_without_plant_has_no_platform():
     assert run(PLANT)[0] is None
-    alone = 'Class tag "Tag"\n' + recipe(tags='tag.amlId="gate"')[len(PLANT) :]
-    found, sink = run(alone)
-    assert found is None
+    without_plant = 'Class tag "Tag"\n' + build_model(tags='tag.amlId="gate"')[len(PLANT) :]
+    platform, sink = run(without_plant)
+    assert platform is None
     assert list(sink) == []
 
 
-def test_a_plant_in_sysml_is_what_machines_are_allocated_to():
-    alone = (
-        'Class tag "Tag"\nPackage q "Plant"\n  Class belt "Belt"\n    Operation o "Run"\n'
-        + recipe("Run", tags="", parameters="", more=allocation("arm", "belt"))[len(PLANT) :]
-    )
-    assert offers(alone) == [("Recipes::GateMachine", "belt", "o", "name")]
+def test_a_plant_in_sysml_consists_of_the_elements_that_machines_are_allocated_to():
+    recipe = build_model("Run", tags="", parameters="", elements=allocate("arm", "belt"))
+    plant = 'Class tag "Tag"\nPackage q "Plant"\n  Class belt "Belt"\n    Operation o "Run"\n'
+    offers = list_offers(plant + recipe[len(PLANT) :])
+    assert offers == [("Recipes::GateMachine", "belt", "o", "name")]
 
 
-def test_the_graph_stays_as_it_is_and_twice_equals_once():
-    graph = parse_text(recipe())
+def test_the_pass_leaves_the_elements_unchanged_and_is_idempotent():
+    graph = parse_text(build_model())
     Recipe().run(graph, Sink())
     before = print_text(graph)
-    Platform().run(graph, Sink())
-    once = graph.derived(Found)
-    Platform().run(graph, Sink())
-    assert graph.derived(Found) == once
+    PASS.run(graph, Sink())
+    once = graph.derived(Platform)
+    PASS.run(graph, Sink())
+    assert graph.derived(Platform) == once
     assert print_text(graph) == before
 
 
-def test_the_order_of_the_model_does_not_matter():
-    blocks = recipe().split("\nPackage ")
-    turned = "\nPackage ".join([blocks[0], *reversed(blocks[1:])])
-    assert run(turned + "\n")[0] == run(recipe())[0]
+def test_the_order_of_packages_does_not_matter():
+    first, *packages = build_model().split("\nPackage ")
+    reordered = "\nPackage ".join([first, *reversed(packages)])
+    assert run(reordered + "\n")[0] == run(build_model())[0]

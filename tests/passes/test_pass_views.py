@@ -1,4 +1,4 @@
-"""The pass ``views``: diagrams of authors become elements of the graph."""
+"""The pass ``views``: each diagram of the model becomes a view in the graph."""
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Kind
@@ -16,8 +16,8 @@ Class far "Pallet" external=true href="lib.uml#_pallet"
 """
 
 
-def drawing(**fields):
-    given = {
+def make_drawing(**fields):
+    defaults = {
         "id": "d",
         "name": "Gates",
         "type": "Class Diagram",
@@ -26,10 +26,10 @@ def drawing(**fields):
         "source": "a.uml",
         "ordinal": 7,
     }
-    return Drawing(**(given | fields))
+    return Drawing(**(defaults | fields))
 
 
-def refined(*drawings, text=PLANT):
+def run_views(*drawings, text=PLANT):
     graph, sink = parse_text(text), Sink()
     graph.store(Drawing, drawings)
     pipeline.load("views").run(graph, sink)
@@ -37,12 +37,13 @@ def refined(*drawings, text=PLANT):
     return graph, sink
 
 
-def shown(graph, id="d"):
-    return [one.id for one in graph.targets(graph[id], Edge.REFERENCES)]
+def list_shown(graph, id="d"):
+    """Return the ids of the elements that a diagram shows."""
+    return [element.id for element in graph.targets(graph[id], Edge.REFERENCES)]
 
 
-def test_a_drawing_becomes_a_view_below_its_owner():
-    graph, sink = refined(drawing(owner="plant", context="gate", shown=("gate",)))
+def test_a_diagram_becomes_a_view_below_its_owner():
+    graph, sink = run_views(make_drawing(owner="plant", context="gate", shown=("gate",)))
     view = graph["d"]
     assert (view.kind, view.name, view.owner, view.ordinal) == (Kind.VIEW, "Gates", "plant", 7)
     assert view.attrs == {
@@ -51,33 +52,35 @@ def test_a_drawing_becomes_a_view_below_its_owner():
         "diagram_type": "Class Diagram",
         "relations": (),
     }
-    assert shown(graph) == ["gate"]
+    assert list_shown(graph) == ["gate"]
     assert graph.target(view, Edge.REPRESENTS) is graph["gate"]
     assert list(sink) == []
 
 
-def test_an_id_means_the_element_of_the_drawings_own_file():
-    graph, _ = refined(drawing(shown=("lift",)), drawing(id="e", file="b.uml", shown=("lift",)))
-    assert shown(graph) == ["a.uml#lift"]
-    assert shown(graph, "e") == ["b.uml#lift"]
+def test_an_id_refers_to_an_element_of_the_file_of_the_diagram():
+    graph, _ = run_views(
+        make_drawing(shown=("lift",)), make_drawing(id="e", file="b.uml", shown=("lift",))
+    )
+    assert list_shown(graph) == ["a.uml#lift"]
+    assert list_shown(graph, "e") == ["b.uml#lift"]
 
 
-def test_an_href_means_the_element_or_its_stand_in():
-    graph, sink = refined(drawing(shown=("a.uml#gate", "lib.uml#_pallet")))
-    assert shown(graph) == ["gate", "far"]
+def test_an_href_refers_to_the_element_or_its_stub():
+    graph, sink = run_views(make_drawing(shown=("a.uml#gate", "lib.uml#_pallet")))
+    assert list_shown(graph) == ["gate", "far"]
     assert list(sink) == []
 
 
-def test_lines_that_are_edges_are_kept_with_the_ids_of_the_graph():
+def test_lines_between_existing_elements_become_relations():
     lines = ((Edge.SPECIALIZES, "gate", "lift"), (Edge.SPECIALIZES, "gate", "gone"))
-    graph, sink = refined(drawing(shown=("gate", "g1", "g2"), relations=lines))
+    graph, sink = run_views(make_drawing(shown=("gate", "g1", "g2"), relations=lines))
     assert graph["d"].attrs["relations"] == (("specializes", "gate", "a.uml#lift"),)
     assert list(sink) == []
 
 
-def test_nesting_and_rows_are_kept_as_far_as_they_are_known():
-    graph, _ = refined(
-        drawing(
+def test_nesting_and_compartments_of_existing_elements_are_preserved():
+    graph, _ = run_views(
+        make_drawing(
             shown=("gate", "lift"), paths=(("gate", "lift"), ("gate", "gone")), listed=("lift",)
         )
     )
@@ -85,33 +88,33 @@ def test_nesting_and_rows_are_kept_as_far_as_they_are_known():
     assert graph["d"].attrs["listed"] == ("a.uml#lift",)
 
 
-def test_what_is_in_no_file_is_reported():
-    _, sink = refined(drawing(owner="plant", shown=("gate", "gone", "x.uml#far away")))
-    (found,) = sink
-    assert (found.rule.code, found.subject.name) == ("SM162", "Plant::Gates")
-    assert found.message == (
+def test_shown_elements_outside_the_unit_are_reported():
+    _, sink = run_views(make_drawing(owner="plant", shown=("gate", "gone", "x.uml#far away")))
+    (diagnostic,) = sink
+    assert (diagnostic.rule.code, diagnostic.subject.name) == ("SM162", "Plant::Gates")
+    assert diagnostic.message == (
         "2 of the 3 elements that diagram 'Gates' shows are in no file of the unit"
     )
 
 
-def test_a_diagram_without_an_id_or_with_that_of_an_element_has_one_of_its_own():
-    graph, _ = refined(drawing(id="gate"), drawing(id=""))
+def test_a_diagram_with_an_empty_or_used_id_gets_another_id():
+    graph, _ = run_views(make_drawing(id="gate"), make_drawing(id=""))
     assert graph["gate"].kind is Kind.CLASS
     assert graph["a.uml#gate"].kind is Kind.VIEW
     assert len(graph.of_kind(Kind.VIEW)) == 2
 
 
-def test_without_drawings_nothing_happens_and_twice_is_once():
-    graph, _ = refined()
+def test_the_pass_is_idempotent_and_without_diagrams_changes_nothing():
+    graph, _ = run_views()
     assert print_text(graph) == print_text(parse_text(PLANT))
-    graph, _ = refined(drawing(shown=("gate",)))
+    graph, _ = run_views(make_drawing(shown=("gate",)))
     once = print_text(graph)
-    graph.store(Drawing, [drawing(shown=("gate",))])
+    graph.store(Drawing, [make_drawing(shown=("gate",))])
     pipeline.load("views").run(graph, Sink())
     assert print_text(graph) == once
 
 
-def test_a_diagram_is_no_view_of_sysml_when_it_is_read_again():
+def test_a_diagram_does_not_get_the_role_of_a_sysml_view():
     graph = parse_text('View v "Gates" subkind="diagram"\nView w "Safety"\n')
     pipeline.load("classify").run(graph, Sink())
     assert (graph["v"].role, graph["w"].role) == ("", "view")

@@ -1,4 +1,4 @@
-"""What holds for every model: valid graphs stay valid, twice equals once, order does not matter."""
+"""Passes on random graphs: they leave valid graphs, are idempotent and ignore the order."""
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -15,7 +15,7 @@ from sysmlc.passes import pipeline
 
 @settings(max_examples=examples(150), deadline=None)
 @given(structures())
-def test_each_pass_leaves_a_valid_graph_and_twice_equals_once(graph):
+def test_each_pass_is_idempotent_and_leaves_a_valid_graph(graph):
     assert verify(graph) == []
     for name in STRUCTURAL:
         pipeline.load(name).run(graph, Sink())
@@ -26,28 +26,34 @@ def test_each_pass_leaves_a_valid_graph_and_twice_equals_once(graph):
 
 @settings(max_examples=examples(200), deadline=None)
 @given(hierarchies())
-def test_features_are_what_the_definition_says(graph):
-    expected = {one.id: set(defined_features(graph, one.id)) for one in graph.of_kind(Kind.CLASS)}
+def test_features_are_those_of_the_definition_in_uml(graph):
+    classes = graph.of_kind(Kind.CLASS)
+    expected = {class_.id: set(list_defined_features(graph, class_.id)) for class_ in classes}
     run_structural_passes(graph, Sink(), "inherit")
-    for id, names in expected.items():
-        found = [one.id for one in graph.targets(graph[id], Edge.FEATURE)]
-        assert len(found) == len(set(found))
-        assert set(found) == names
+    for id, ids in expected.items():
+        features = [feature.id for feature in graph.targets(graph[id], Edge.FEATURE)]
+        assert len(features) == len(set(features))
+        assert set(features) == ids
 
 
-def defined_features(graph: Graph, id: str) -> list[str]:
-    """UML 2.5.1 clause 9.9.4 in so many words: own ones, and those of the generals, without what
-    one of them redefines. There are no circles."""
-    members = [one.id for one in graph.owned(graph[id])]
+def list_defined_features(graph: Graph, id: str) -> list[str]:
+    """Return the features by UML 2.5.1, 9.9.4, in a hierarchy without cycles.
+
+    The features of a class are the features that it owns and those of its generals, without the
+    features that any of these redefines.
+    """
+    members = [feature.id for feature in graph.owned(graph[id])]
     for general in graph.targets(graph[id], Edge.SPECIALIZES):
-        members += defined_features(graph, general.id)
-    hidden = {old.id for one in members for old in graph.targets(graph[one], Edge.REDEFINES)}
-    return [one for one in members if one not in hidden]
+        members += list_defined_features(graph, general.id)
+    redefined = {
+        feature.id for id in members for feature in graph.targets(graph[id], Edge.REDEFINES)
+    }
+    return [id for id in members if id not in redefined]
 
 
 @settings(max_examples=examples(100), deadline=None)
 @given(structures(), st.randoms(use_true_random=False))
-def test_resolving_does_not_depend_on_the_order_of_references(graph, random):
+def test_resolution_does_not_depend_on_the_order_of_references(graph, random):
     text = print_text(graph)
     shuffled = parse_text(text)
     pending = list(shuffled.pending)
@@ -56,13 +62,14 @@ def test_resolving_does_not_depend_on_the_order_of_references(graph, random):
     for reference in pending:
         shuffled.pending.append(reference)
     results = []
-    for one in (parse_text(text), shuffled):
+    for resolved in (parse_text(text), shuffled):
         sink = Sink()
-        run_structural_passes(one, sink, "resolve")
-        results.append((_shape(one), sorted(list_codes(sink))))
+        run_structural_passes(resolved, sink, "resolve")
+        results.append((sort_content(resolved), sorted(list_codes(sink))))
     assert results[0] == results[1]
 
 
-def _shape(graph: Graph) -> tuple[list[str], list[tuple[str, str, str]]]:
-    elements = [f"{one!r} {one.id} {sorted(one.attrs.items())}" for one in graph]
+def sort_content(graph: Graph) -> tuple[list[str], list[tuple[str, str, str]]]:
+    """Return the elements and the edges of a graph in an order of their own."""
+    elements = [f"{element!r} {element.id} {sorted(element.attrs.items())}" for element in graph]
     return sorted(elements), sorted((str(edge), a, b) for edge, a, b in graph.edges())
