@@ -8,7 +8,7 @@ from collections.abc import Callable
 from msgspec import Struct
 
 from sysmlc.backends.base import EmitOptions
-from sysmlc.backends.contracts.backend import list_traced_elements
+from sysmlc.backends.contracts import list_traced_elements
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.ir import Graph
 from sysmlc.logic import formats

@@ -3,7 +3,7 @@
 import pytest
 from reading_v2 import read
 
-from sysmlc.backends.contracts.page import print_page
+from sysmlc.backends.contract_pages import print_page
 from sysmlc.logic.contract import Contract
 from sysmlc.passes import pipeline
 

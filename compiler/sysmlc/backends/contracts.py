@@ -1,9 +1,12 @@
-"""Three files for each contract: JSON for tools, SPIN for checkers, Markdown for people."""
+"""Back end ``contracts``: three files for each contract.
+
+They are JSON for tools, a SPIN formula for model checkers, and a Markdown page for people.
+"""
 
 from msgspec import Struct
 
 from sysmlc.backends.base import EmitOptions
-from sysmlc.backends.contracts.page import print_page
+from sysmlc.backends.contract_pages import print_page
 from sysmlc.backends.templates import TemplateError, Templates
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.ir import Edge, Graph, Kind
@@ -83,7 +86,7 @@ class _Writer(Struct, frozen=True):
 
 
 def list_traced_elements(graph: Graph, contract: Contract) -> list[str]:
-    """Return the ids of the elements that a contract comes from.
+    """Return the ids of the elements from which a contract is derived.
 
     These are the behaviour with all its parts, the constraints on its owner, and the origins of
     variables and conjuncts. An error in any of them may make the contract incomplete.
@@ -98,3 +101,6 @@ def list_traced_elements(graph: Graph, contract: Contract) -> list[str]:
     conjuncts = contract.assumptions + contract.guarantees
     origins |= dict.fromkeys(conjunct.origin for conjunct in conjuncts)
     return [*ids, *(id for id in origins if id in graph)]
+
+
+BACKEND = ContractsBackend()
