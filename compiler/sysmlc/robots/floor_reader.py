@@ -9,7 +9,7 @@ from msgspec.structs import replace
 
 from sysmlc.diagnostics import Rule, Sink
 from sysmlc.ir import Element, Graph, Kind, query
-from sysmlc.logic.names import Names
+from sysmlc.logic.identifiers import Names
 from sysmlc.robots import rules
 from sysmlc.robots.study import Grid, Order, Robot, Study, Target
 

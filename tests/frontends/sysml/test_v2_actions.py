@@ -11,7 +11,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Contract, EnumerationDomain, IntegerDomain, Owner
 from sysmlc.logic.formats import read as read_contracts
 from sysmlc.logic.printing import print_formula
-from sysmlc.logic.simplify import rebuild
+from sysmlc.logic.simplification import rebuild
 from sysmlc.passes import pipeline
 
 CELL = """

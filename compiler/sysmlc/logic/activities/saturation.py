@@ -24,7 +24,7 @@ from sysmlc.logic.activities.token_graph import Store, TokenGraph, TokenNode, Wr
 from sysmlc.logic.activities.value_analysis import MAX_VALUES, ValueAnalysis
 from sysmlc.logic.contract import Domain
 from sysmlc.logic.formula import Const, Formula, Literal
-from sysmlc.logic.simplify import is_satisfiable, substitute
+from sysmlc.logic.simplification import is_satisfiable, substitute
 
 _T = TypeVar("_T")
 _MAX_MOVES = 100_000

@@ -25,8 +25,8 @@ from sysmlc.logic.contract import (
     Variable,
 )
 from sysmlc.logic.formula import Const, Formula
+from sysmlc.logic.identifiers import identifier
 from sysmlc.logic.machines.machine import NO_EVENT
-from sysmlc.logic.names import identifier
 
 _EVENT = "event"
 

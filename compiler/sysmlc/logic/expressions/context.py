@@ -31,7 +31,7 @@ from sysmlc.logic.expressions.named_elements import (
     find_object_values,
     find_port_values,
 )
-from sysmlc.logic.names import make_unique
+from sysmlc.logic.identifiers import make_unique
 
 ASSUMED_RANGE = rule(
     "SM410",

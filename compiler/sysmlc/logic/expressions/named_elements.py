@@ -9,7 +9,7 @@ from functools import cached_property
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic.contract import EnumerationDomain
-from sysmlc.logic.names import make_unique
+from sysmlc.logic.identifiers import make_unique
 
 VALUE_KINDS = (Kind.PROPERTY, Kind.PORT, Kind.FLOW_PROPERTY, Kind.PARAMETER)
 """Kinds of the elements that have a value in a context."""

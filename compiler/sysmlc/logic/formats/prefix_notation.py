@@ -12,7 +12,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Domain
 from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
 from sysmlc.logic.infix import MAX_DEPTH
-from sysmlc.logic.simplify import rebuild
+from sysmlc.logic.simplification import rebuild
 from sysmlc.support.interpreter import allow_recursion
 
 _CHAINS = {"&": f.both, "|": f.either}

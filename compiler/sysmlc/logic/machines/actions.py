@@ -34,8 +34,8 @@ from sysmlc.logic.expressions.expression import (
 from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
 from sysmlc.logic.feature_writes import WriterIndex, find_label
+from sysmlc.logic.identifiers import Names
 from sysmlc.logic.machines.machine import Action, Assign, Raise
-from sysmlc.logic.names import Names
 
 SHARED = rule(
     "SM546",

@@ -35,7 +35,7 @@ from sysmlc.logic.machines.moves import (
     is_chosen_formula,
 )
 from sysmlc.logic.machines.symbolic_path import Path
-from sysmlc.logic.simplify import is_satisfiable, remove_redundant
+from sysmlc.logic.simplification import is_satisfiable, remove_redundant
 
 _Touches = Callable[[Path, str], bool]
 

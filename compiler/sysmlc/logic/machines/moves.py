@@ -35,7 +35,7 @@ from sysmlc.logic.machines.machine import (
 )
 from sysmlc.logic.machines.paths import PathExplorer
 from sysmlc.logic.machines.symbolic_path import MAX_PATHS, Path, TooManyPathsError
-from sysmlc.logic.simplify import remove_redundant, simplify_constant
+from sysmlc.logic.simplification import remove_redundant, simplify_constant
 
 SATURATES = rule(
     "SM428",

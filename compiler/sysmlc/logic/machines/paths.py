@@ -32,7 +32,7 @@ from sysmlc.logic.machines.symbolic_path import (
     set_region,
     split_by_range,
 )
-from sysmlc.logic.simplify import is_satisfiable, substitute
+from sysmlc.logic.simplification import is_satisfiable, substitute
 
 
 class PathExplorer(Struct, frozen=True):

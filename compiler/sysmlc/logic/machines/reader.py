@@ -12,6 +12,7 @@ from sysmlc.ir import Element, Graph, query
 from sysmlc.logic.contract import EnumerationDomain, IntegerDomain, Owner, Variable
 from sysmlc.logic.expressions.context import context_of
 from sysmlc.logic.feature_writes import WriterIndex
+from sysmlc.logic.identifiers import Names
 from sysmlc.logic.machines.actions import ReadingContext, Sharing
 from sysmlc.logic.machines.conflicts import (
     GuardComparison,
@@ -26,7 +27,6 @@ from sysmlc.logic.machines.supported_constructs import is_supported
 from sysmlc.logic.machines.transitions import combine_joins, read_transitions
 from sysmlc.logic.machines.vertices import MachineDraft, add_history_memories, read_regions
 from sysmlc.logic.machines.well_formedness import has_valid_targets, is_well_formed
-from sysmlc.logic.names import Names
 
 NONDETERMINISTIC = rule(
     "SM422",

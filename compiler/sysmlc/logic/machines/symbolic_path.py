@@ -11,7 +11,7 @@ from sysmlc.logic.formula import Const, Formula, Op
 from sysmlc.logic.machines.machine import (
     INACTIVE,
 )
-from sysmlc.logic.simplify import rebuild
+from sysmlc.logic.simplification import rebuild
 
 
 class TooManyPathsError(Exception):

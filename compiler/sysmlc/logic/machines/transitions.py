@@ -17,6 +17,7 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.expressions.expression import Binary, Expression, Unary
 from sysmlc.logic.expressions.expression import Literal as Written
+from sysmlc.logic.identifiers import make_unique
 from sysmlc.logic.machines.actions import (
     ReadingContext,
     read_behaviours,
@@ -38,7 +39,6 @@ from sysmlc.logic.machines.machine import (
 from sysmlc.logic.machines.supported_constructs import JOIN_BESIDE
 from sysmlc.logic.machines.vertices import MachineDraft, list_outgoing
 from sysmlc.logic.machines.well_formedness import find_common_state
-from sysmlc.logic.names import make_unique
 
 
 def _read_occurrence(draft: MachineDraft, trigger: Element, vertex: Vertex) -> Occurrence:

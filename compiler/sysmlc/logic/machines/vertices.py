@@ -7,6 +7,7 @@ from msgspec.structs import replace
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic.contract import BooleanDomain, EnumerationDomain, Owner
 from sysmlc.logic.expressions.expression import Expression
+from sysmlc.logic.identifiers import identifier, make_unique
 from sysmlc.logic.machines.actions import ReadingContext, read_behaviours
 from sysmlc.logic.machines.machine import (
     INACTIVE,
@@ -17,7 +18,6 @@ from sysmlc.logic.machines.machine import (
     submachine_id,
 )
 from sysmlc.logic.machines.supported_constructs import find_initial, find_submachine
-from sysmlc.logic.names import identifier, make_unique
 
 
 @dataclass(slots=True)

@@ -11,7 +11,7 @@ from sysmlc.logic.expressions.context import Context
 from sysmlc.logic.expressions.elaboration import Symbol, find_literal
 from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Var, var, variables
-from sysmlc.logic.simplify import rebuild
+from sysmlc.logic.simplification import rebuild
 
 _DOTTED_NAME = re.compile(r"[^\W\d]\w*(?:\.[^\W\d]\w*)+")
 

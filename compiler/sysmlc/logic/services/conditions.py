@@ -21,7 +21,7 @@ from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.formal_texts import is_formal
 from sysmlc.logic.formula import Formula
-from sysmlc.logic.simplify import simplify_constant
+from sysmlc.logic.simplification import simplify_constant
 
 NOT_FORMAL = rule(
     "SM505",

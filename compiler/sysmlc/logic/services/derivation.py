@@ -22,9 +22,9 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.formula import Formula
-from sysmlc.logic.names import Names
+from sysmlc.logic.identifiers import Names
 from sysmlc.logic.services.conditions import Condition, Service, is_input, iter_services
-from sysmlc.logic.simplify import substitute
+from sysmlc.logic.simplification import substitute
 
 
 class _ServiceCall(Struct, frozen=True):

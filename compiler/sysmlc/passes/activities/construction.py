@@ -20,7 +20,7 @@ from sysmlc.logic.activities.token_graph import (
     TokenGraph,
     TokenNode,
 )
-from sysmlc.logic.names import identifier
+from sysmlc.logic.identifiers import identifier
 from sysmlc.passes.activities import rules
 from sysmlc.passes.activities.draft import Draft, lower_bound
 from sysmlc.passes.activities.drawing import Drawing

@@ -6,7 +6,7 @@ from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, Kind, query
 from sysmlc.ir.element import derived_id
 from sysmlc.logic.activities.token_graph import Guard, NodeKind, TokenEdge, TokenNode
-from sysmlc.logic.names import identifier
+from sysmlc.logic.identifiers import identifier
 from sysmlc.passes.activities.drawing import Drawing, Flow, flow_label
 from sysmlc.passes.activities.exception_analysis import Raising
 from sysmlc.passes.activities.inputs import DecisionInput, Inputs

@@ -10,7 +10,7 @@ from itertools import pairwise
 from sysmlc.ir import Element, Kind
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.token_graph import Firing, Guard, NodeKind, TokenNode
-from sysmlc.logic.names import identifier
+from sysmlc.logic.identifiers import identifier
 from sysmlc.passes.activities.draft import Draft
 from sysmlc.passes.activities.regions import Part
 

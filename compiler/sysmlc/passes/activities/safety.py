@@ -21,7 +21,7 @@ from sysmlc.logic.activities.token_graph import (
     TokenGraph,
     TokenNode,
 )
-from sysmlc.logic.names import Names
+from sysmlc.logic.identifiers import Names
 
 _MIN_NAMED_SIZE = 50
 """A condition gets a name if its size times its uses reaches this number, else formulas explode."""

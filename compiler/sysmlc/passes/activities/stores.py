@@ -17,7 +17,7 @@ from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.feature_writes import FeatureWrite, WriterIndex, find_label
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines.symbolic_path import split_by_range
-from sysmlc.logic.simplify import is_satisfiable, remove_redundant, substitute
+from sysmlc.logic.simplification import is_satisfiable, remove_redundant, substitute
 from sysmlc.passes.activities.assignments import (
     GIVEN_OR_CONSTANT,
     NO_FINITE_DOMAIN,

@@ -27,7 +27,7 @@ from sysmlc.logic.contract import (
     Variable,
 )
 from sysmlc.logic.formula import Formula, Var
-from sysmlc.logic.names import Names
+from sysmlc.logic.identifiers import Names
 from sysmlc.synthesis.algebra.discharge import OpenAssumption, discharge, outputs_of
 from sysmlc.synthesis.algebra.fair_systems import Universe, observe_histories
 from sysmlc.synthesis.algebra.refinement import Entailment, Failure
