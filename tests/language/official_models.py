@@ -44,29 +44,3 @@ def read_xmi_library() -> list[Document]:
     link(documents, sink)
     assert [diagnostic.message for diagnostic in sink] == []
     return documents
-
-
-def count_ids(files: dict[str, bytes]) -> dict[str, int]:
-    """Return how many elements each interchange file has."""
-    return {path: data.count(b"xmi:id=") for path, data in files.items()}
-
-
-def count_with_metamodel(files: dict[str, bytes], folder: Path) -> dict[str, int]:
-    """Return how many elements pyecore reads from each file with the official metamodel.
-
-    pyecore raises an exception for an element or attribute that the metamodel does not have.
-    """
-    from pyecore.resources import URI, ResourceSet
-
-    resources = ResourceSet()
-    metamodel = FOLDER / "interchange/metamodel/SysML.ecore"
-    package = resources.get_resource(URI(str(metamodel))).contents[0]
-    resources.metamodel_registry[package.nsURI] = package
-    counts = {}
-    for path, data in files.items():
-        file = folder / path
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_bytes(data)
-        (root,) = resources.get_resource(URI(str(file))).contents
-        counts[path] = 1 + sum(1 for _ in root.eAllContents())
-    return counts

@@ -7,13 +7,12 @@ import pytest
 from official_models import (
     FOLDER,
     LIBRARY_FOLDER,
-    count_ids,
-    count_with_metamodel,
     load_standard_library,
     parse_folder,
 )
 
 from long_runs import quick_first
+from sysml_metamodel import count_ids, count_with_metamodel
 from sysmlc.diagnostics import Sink
 from sysmlc.language.interchange import InterchangeFiles, interchange_path, link, read, write
 from sysmlc.language.names import resolve
@@ -135,16 +134,18 @@ def test_models_of_the_pilot_have_the_same_trees_after_writing_and_reading():
 @pytest.mark.parametrize(
     "folder", quick_first(["omg-release/examples/Simple Tests", "omg-release/training", "showcase"])
 )
-def test_written_texts_are_valid_for_the_metamodel(folder, tmp_path):
+def test_written_texts_are_valid_for_the_metamodel(folder, tmp_path, corpus):
     _, files, codes = write_folder(FOLDER / folder)
     assert codes == []
-    assert count_with_metamodel(files, tmp_path) == count_ids(files)
+    texts = {path: data.decode() for path, data in files.items()}
+    assert count_with_metamodel(texts, tmp_path, corpus) == count_ids(texts)
 
 
-def test_written_kerml_is_valid_for_the_metamodel(tmp_path):
+def test_written_kerml_is_valid_for_the_metamodel(tmp_path, corpus):
     files = {
         interchange_path(document): data
         for _, document, data in iter_valid_pilot_models(FOLDER / "pilot-xpect/kerml", step=4)
     }
     assert len(files) > 20
-    assert count_with_metamodel(files, tmp_path) == count_ids(files)
+    texts = {path: data.decode() for path, data in files.items()}
+    assert count_with_metamodel(texts, tmp_path, corpus) == count_ids(texts)

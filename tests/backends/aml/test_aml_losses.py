@@ -1,7 +1,7 @@
-"""What CAEX expresses in another form than the graph, and what it cannot express."""
+"""Losses: what CAEX cannot express, or expresses in another form than the graph."""
 
 import pytest
-from writing_aml import refine, save
+from aml_files import refine, save
 
 from sysmlc.backends.aml import rules
 

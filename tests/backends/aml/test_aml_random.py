@@ -3,10 +3,10 @@
 from random import Random
 
 import pytest
+from aml_files import read, round_trip, save
 from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
-from writing_aml import read, round_trip, save
 
 from dialects.random_plants import random_plant
 from sysmlc.sources import Source
@@ -19,7 +19,7 @@ def read_random_plant(seed):
 
 
 def is_unexplained(change):
-    """Return whether a difference is not one that CAEX makes unavoidable.
+    """Whether CAEX could have avoided a difference.
 
     A feature that redefines features of several roles redefines them in the order of the roles.
     An element that only repeats a part of its class loses unresolved references (SM742) and the

@@ -1,9 +1,9 @@
-"""Members inherit names from the standard library, which hide the same names further out."""
+"""Names that members inherit from the standard library hide equal names of outer namespaces."""
 
 import pytest
-from judging import judge
 from library_names import format_member_names
-from writing import lines_of, refine
+from sysml_texts import lines_of, refine
+from toolkit_comparison import compare
 
 from sysmlc.backends.sysml.library import BASES, MEMBER_NAMES_FILE, list_inherited_names
 from sysmlc.support import resources
@@ -21,7 +21,7 @@ Package p "Plant"
 """
 
 
-def test_the_names_are_those_of_the_standard_library():
+def test_the_shipped_names_are_those_of_the_standard_library():
     assert resources.read_text("metamodels", MEMBER_NAMES_FILE) == format_member_names()
 
 
@@ -40,13 +40,13 @@ def test_definitions_have_the_names_of_their_usages(keyword):
         pytest.param("start", "joins", marks=pytest.mark.long),
     ],
 )
-def test_a_block_with_such_a_name_is_named_with_its_package(part, item):
+def test_a_block_with_an_inherited_name_is_referred_to_with_its_package(part, item):
     text = MODEL.format(part=part, item=item)
     assert {f"part a : Plant::{part};", f"in item x : Plant::{item};"} <= {*lines_of(text)}
-    complaints, differences, _ = judge(refine(text))
+    complaints, differences, _ = compare(refine(text))
     assert (complaints, differences) == ([], [])
 
 
-def test_other_names_stay_short():
+def test_other_names_are_not_qualified():
     lines = lines_of(MODEL.format(part="Arm", item="forces"))
     assert {"part a : Arm;", "in item x : forces;"} <= {*lines}

@@ -8,8 +8,8 @@ import sys
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from sysml_texts import lines_of, refine, text_of, write
 from toolkit import load, split_name
-from writing import lines_of, refine, text_of, write
 
 from examples.compiling import PLANT, compile_example
 from long_runs import quick_first
@@ -45,7 +45,7 @@ DataType bool "Boolean" subkind="primitive" external=true href="x#Boolean"
 """
 
 
-def test_blocks_parts_ports_and_values():
+def test_blocks_are_part_definitions_and_interface_blocks_port_definitions():
     assert (
         text_of(STRUCTURE)
         == """\
@@ -79,7 +79,7 @@ package Plant {
     )
 
 
-CONNECTED = """
+CONNECTIONS = """
 Package p "Plant"
   Class line "Line" role="block"
     Property line.a "a" role="part" aggregation="composite"
@@ -121,13 +121,13 @@ Package p "Plant"
 
 
 def test_connections_are_chains_of_features():
-    lines = lines_of(CONNECTED)
+    lines = lines_of(CONNECTIONS)
     assert "interface wire connect a.o to b.i;" in lines
     assert "bind a.speed = b.speed;" in lines
     assert "flow pallets of Pallet from a.o.'item' to b.i.'item';" in lines
 
 
-MEASURED = """
+QUANTITIES = """
 Package p "Plant"
   DataType length "Length" role="value type"
     -> references length.u
@@ -146,7 +146,7 @@ Package p "Plant"
 
 
 def test_quantities_have_types_of_isq_and_units_of_si():
-    lines = lines_of(MEASURED)
+    lines = lines_of(QUANTITIES)
     assert "attribute def Length :> ISQ::LengthValue {" in lines
     assert "attribute :>> mRef = SI::mm;" in lines
     assert "attribute length : Length default = 1.5 [SI::mm];" in lines
@@ -156,10 +156,10 @@ def test_quantities_have_types_of_isq_and_units_of_si():
     assert f"attribute def Strangeness {{ {annotation} }}" in lines
 
 
-def test_every_unit_is_in_si_or_in_our_library():
+def test_every_unit_is_in_si_or_in_the_shipped_library():
     members = [
-        f"attribute a{number} : ISQ::{value} = 1 [{'::'.join(map(quote_name, name.split('::')))}];"
-        for number, (symbol, (value, _)) in enumerate(UNITS.items())
+        f"attribute a{index} : ISQ::{value} = 1 [{'::'.join(map(quote_name, name.split('::')))}];"
+        for index, (symbol, (value, _)) in enumerate(UNITS.items())
         if (name := find_unit_name(Element("u", Kind.UNIT, attrs={"symbol": symbol})))
     ]
     assert len(members) == len(UNITS) > 50
@@ -170,14 +170,14 @@ def load_with_library(text):
     return {"m.sysml": text, "l.sysml": resources.read_text("metamodels", "SysMLC.sysml")}
 
 
-def test_our_library_has_the_names_that_we_import():
+def test_the_shipped_library_has_the_imported_names():
     text = resources.read_text("metamodels", "SysMLC.sysml")
     loaded = load({"l.sysml": text})
     assert loaded.complaints == []
-    short = set(re.findall(r"(?:metadata|item) def <(\w+)>", text))
-    long = {path[1] for path in loaded.elements if len(path) == 2 and path[0] == "SysMLC"}
-    assert short | long == IMPORTED - IMPORTS["ScalarValues"] - OTHERS
-    assert IMPORTS["SysMLC"] <= short | long
+    short_names = set(re.findall(r"(?:metadata|item) def <(\w+)>", text))
+    long_names = {path[1] for path in loaded.elements if len(path) == 2 and path[0] == "SysMLC"}
+    assert short_names | long_names == IMPORTED - IMPORTS["ScalarValues"] - OTHERS
+    assert IMPORTS["SysMLC"] <= short_names | long_names
 
 
 OTHERS = IMPORTS["RequirementDerivation"] | IMPORTS["ModelingMetadata"]
@@ -207,7 +207,7 @@ Package p "Plant"
 """
 
 
-def test_requirements_and_their_relations():
+def test_requirements_are_written_with_their_relations():
     text = text_of(REQUIREMENTS)
     for part in (
         "requirement <R1> 'No jam' {\n        doc /* It never jams. */\n",
@@ -305,7 +305,7 @@ Package p "Plant"
 """
 
 
-PERFORMED = """
+IMPLEMENTED = """
 Package p "Plant"
   Class c "Cell" role="block"
     -> classifier-behavior c.w
@@ -315,7 +315,7 @@ Package p "Plant"
 """
 
 
-STARTED = """
+SIGNAL = """
 Package p "Plant"
   Signal s "start"
   Class c "Cell" role="block"
@@ -334,10 +334,10 @@ Package p "Plant"
 
 
 def test_a_signal_with_an_inherited_name_is_named_with_its_package():
-    assert "transition first idle accept Plant::start then busy;" in text_of(STARTED)
+    assert "transition first idle accept Plant::start then busy;" in text_of(SIGNAL)
 
 
-LOGGED = """
+EFFECT = """
 Class c "Cell" role="block"
   -> classifier-behavior c.m
   StateMachine c.m "life"
@@ -355,14 +355,14 @@ Class c "Cell" role="block"
 
 
 def test_a_transition_has_its_comment_behind_an_effect_with_a_body():
-    text = text_of(LOGGED)
+    text = text_of(EFFECT)
     assert 'language "C" /* log(1) */\n' in text
     assert "} then busy {" in text
     assert "/* the log needs both */" in text
 
 
 def test_an_operation_is_typed_by_the_activity_that_implements_it():
-    assert "perform action fill : Fill;" in text_of(PERFORMED)
+    assert "perform action fill : Fill;" in text_of(IMPLEMENTED)
 
 
 def test_state_machines_are_exhibited_states():
@@ -398,7 +398,7 @@ def test_state_machines_are_exhibited_states():
     ]
 
 
-TAGGED = """
+STEREOTYPE = """
 Package p "Plant"
   Class gate "Gate" role="block"
     Application a "Cell" stereotype="Cell" namespace="urn:cells" tag.speed=2 tag.tools=["x", "y"]
@@ -408,7 +408,7 @@ Package p "Plant"
 
 def test_stereotypes_of_missing_profiles_get_metadata_definitions():
     assert (
-        text_of(TAGGED)
+        text_of(STEREOTYPE)
         == """\
 package Plant {
     part def Gate { @Stereotypes::Cell { speed = 2; tools = ("x", "y"); } }
@@ -445,7 +445,7 @@ Package IH#Plant "Plant" subkind="instance-hierarchy" @plant.aml:2
     ]
 
 
-def test_inherited_features_that_hide_one_another_have_qualified_names():
+def test_a_feature_that_another_inherited_one_hides_is_referred_to_with_its_owner():
     lines = lines_of("""
 Package p "Plant"
   Class a "A" role="block"
@@ -503,12 +503,12 @@ def replace_control_character(char):
 @pytest.mark.parametrize(
     "name", quick_first(["it's", "part", "in", "a b", "1st", "\\", "a\nb", "Tür", "_x"], 2)
 )
-def test_the_toolkit_reads_our_names(name):
+def test_the_toolkit_reads_quoted_names(name):
     loaded = load({"m.sysml": f"package {quote_name(name)} {{ part {quote_name(name)}; }}"})
     assert (name, name) in loaded.elements
 
 
-def test_the_plant_of_the_thesis(golden):
+def test_the_text_of_the_plant_of_the_thesis(golden):
     """The gate in AutomationML, refined by its overlay and its behaviour."""
     compilation = compile_example(PLANT, "sysml")
     published = compilation.list_published()
@@ -523,26 +523,19 @@ def test_the_text_does_not_depend_on_hash_seeds(seed):
         "import sys; sys.path[:0] = sys.argv[1:]\n"
         "from random import Random\n"
         "from dialects.random_models import random_model\n"
-        "from writing import read_xmi, write\n"
+        "from sysml_texts import read_xmi, write\n"
         "files, losses = write(read_xmi(random_model(Random(7), 2)))\n"
         "print(files['model.sysml'], losses)"
     )
     folders = [path for path in sys.path if path.endswith(("tests", "sysml"))]
-    output = subprocess.run(
-        [sys.executable, "-c", script, *folders],
-        env={**os.environ, "PYTHONHASHSEED": seed},
-        capture_output=True,
-        check=True,
-    ).stdout
-    assert (
-        output
-        == subprocess.run(
-            [sys.executable, "-c", script, *folders], capture_output=True, check=True
-        ).stdout
-    )
+    command = [sys.executable, "-c", script, *folders]
+    environment = os.environ | {"PYTHONHASHSEED": seed}
+    seeded = subprocess.run(command, env=environment, capture_output=True, check=True)
+    unseeded = subprocess.run(command, capture_output=True, check=True)
+    assert seeded.stdout == unseeded.stdout
 
 
-TYPED_BY_EACH_OTHER = """
+CYCLIC_TYPES = """
 Package p "Plant"
   Class a "A" role="block"
     Property x "x"
@@ -561,7 +554,7 @@ Package p "Plant"
 
 
 def test_cycles_of_types_are_written():
-    lines = lines_of(TYPED_BY_EACH_OTHER)
+    lines = lines_of(CYCLIC_TYPES)
     assert lines[2:5] == ["ref x :> y;", "part y :> z;", "ref z :> y;"]
     assert lines[-5:-1] == ["connection def k {", "end e : k;", "}", "part i :> i;"]
 

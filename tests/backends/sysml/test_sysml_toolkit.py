@@ -1,29 +1,29 @@
 """The OpenMBEE toolkit loads the text and finds names, metaclasses and types of the model.
 
-The toolkit complains about references that it cannot resolve. ``expected.py`` derives from the
-graph alone what the toolkit has to find.
+The toolkit complains about references that it cannot resolve. ``expected_elements`` derives
+from the graph alone what the toolkit has to find.
 """
 
 from random import Random
 
 import pytest
-from judging import judge, judge_together
+from sysml_texts import read_xmi, refine, write
 from toolkit import load, split_name, sysml
-from writing import read_xmi, refine, write
+from toolkit_comparison import compare, compare_together
 
 from dialects.random_models import random_model
 from examples.compiling import ROOT, compile_example
 from long_runs import quick_first
 
 EXAMPLES = sorted((ROOT / "examples").glob("*/*.uml"))
-JUDGED = {
+ELEMENT_COUNTS = {
     "gate": 25,
     "baygate-behaviour": 125,
     "four-tasks": 82,
     "lego-recipe": 181,
     "hall": 17,
 }
-"""Number of elements that the judge checks in each example."""
+"""Number of elements that are compared in each example."""
 AML = (
     "amlbaselibs_215.aml",
     "amlsec_rolelib.aml",
@@ -50,42 +50,43 @@ XMI = (
 )
 
 
-def count_agreeing(graph):
-    complaints, differences, count = judge(graph)
+def count_compared(graph):
+    """Return how many elements were compared, all without a difference."""
+    complaints, differences, count = compare(graph)
     assert (complaints, differences) == ([], [])
     return count
 
 
 @pytest.mark.parametrize("path", quick_first(EXAMPLES), ids=lambda path: path.stem)
-def test_examples(path):
-    assert count_agreeing(compile_example(path, "ir").graph) == JUDGED[path.stem]
+def test_examples_have_the_expected_elements(path):
+    assert count_compared(compile_example(path, "ir").graph) == ELEMENT_COUNTS[path.stem]
 
 
 @pytest.mark.parametrize("seed", quick_first(range(0, 50, 10)))
-def test_models_at_random(seed):
+def test_random_models_have_the_expected_elements(seed):
     graphs = [read_xmi(random_model(Random(seed + step), 2)) for step in range(10)]
-    complaints, differences, count = judge_together(graphs)
+    complaints, differences, count = compare_together(graphs)
     assert (complaints, differences) == ([], [])
     assert count > 200
 
 
 @pytest.mark.corpus
 @pytest.mark.parametrize("suffix", quick_first([".aml", ".amlx", "_caex215.aml", "_extlibs.aml"]))
-def test_the_gate_of_the_thesis(corpus, suffix):
+def test_the_gate_of_the_thesis_has_the_expected_elements(corpus, suffix):
     path = corpus / "aml" / "baygate" / f"BayGate{suffix}"
-    assert count_agreeing(compile_example(path, "ir").graph) == 28
+    assert count_compared(compile_example(path, "ir").graph) == 28
 
 
 @pytest.mark.corpus
 @pytest.mark.parametrize("name", quick_first(AML))
-def test_real_plants(corpus, name):
-    assert count_agreeing(compile_example(corpus / "aml" / "dev" / name, "ir").graph) > 1
+def test_real_plants_have_the_expected_elements(corpus, name):
+    assert count_compared(compile_example(corpus / "aml" / "dev" / name, "ir").graph) > 1
 
 
 @pytest.mark.corpus
 @pytest.mark.parametrize("name", quick_first(XMI))
-def test_real_models(corpus, name):
-    assert count_agreeing(compile_example(corpus / "xmi" / name, "ir").graph) > 20
+def test_real_models_have_the_expected_elements(corpus, name):
+    assert count_compared(compile_example(corpus / "xmi" / name, "ir").graph) > 20
 
 
 GATE = """
@@ -98,9 +99,9 @@ Package p "Plant"
 
 
 @pytest.mark.long
-def test_the_judge_notices_missing_elements_other_kinds_and_other_types(monkeypatch):
+def test_the_comparison_reports_missing_elements_and_other_kinds_and_types(monkeypatch):
     graph = refine(GATE)
-    assert count_agreeing(graph) == 4
+    assert count_compared(graph) == 4
     files, _ = write(graph)
     text = files["model.sysml"]
     for old, new, problem in (
@@ -110,8 +111,10 @@ def test_the_judge_notices_missing_elements_other_kinds_and_other_types(monkeypa
     ):
         changed = text.replace(old, new)
         assert changed != text
-        monkeypatch.setattr("judging.write", lambda _, text=changed: ({"m.sysml": text}, []))
-        complaints, differences, _ = judge(graph)
+        monkeypatch.setattr(
+            "toolkit_comparison.write", lambda _, text=changed: ({"m.sysml": text}, [])
+        )
+        complaints, differences, _ = compare(graph)
         assert any(problem in difference for difference in differences), differences
         assert bool(complaints) == (new == "part def Sender;")
 

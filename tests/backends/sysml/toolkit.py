@@ -1,4 +1,4 @@
-"""The OpenMBEE toolkit (distribution ``sysml``) as the judge of SysML v2 text.
+"""The OpenMBEE toolkit (distribution ``sysml``) as the oracle for SysML v2 text.
 
 It loads a text with the standard library, raises an exception for a syntax error, and answers
 ``UnresolvedReference`` for each unknown name.
@@ -33,7 +33,7 @@ TYPINGS = ("FeatureTyping", "Subclassification", "ConjugatedPortTyping")
 
 @dataclass
 class Loaded:
-    """A model as the toolkit understands it."""
+    """A model as the toolkit reads it."""
 
     complaints: list = field(default_factory=list)
     elements: dict = field(default_factory=dict)

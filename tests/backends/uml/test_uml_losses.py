@@ -1,8 +1,8 @@
-"""What UML expresses in another form than the graph, and what it cannot express."""
+"""Losses: what UML cannot express, or expresses in another form than the graph."""
 
 import pytest
 from lxml import etree
-from saving import read, refine, round_trip, save
+from uml_files import read, refine, round_trip, save
 
 from dialects.papyrus import XMI
 from sysmlc.backends.uml import rules
@@ -83,7 +83,7 @@ def test_text_is_escaped():
     assert back["p"].name == name
 
 
-def test_a_reference_out_of_the_model_is_an_href():
+def test_a_reference_to_another_model_is_an_href():
     text = """
 Package p "Plant"
   Class gate "Gate"

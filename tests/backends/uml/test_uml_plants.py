@@ -1,4 +1,4 @@
-"""Plants of AutomationML that are saved as UML: a comment stores what UML cannot express."""
+"""AutomationML saved as UML: a comment in the file stores facts that UML cannot express."""
 
 import json
 from random import Random
@@ -6,7 +6,7 @@ from random import Random
 import jsonschema
 import pytest
 from lxml import etree
-from saving import PASSES, read, refine, round_trip, save
+from uml_files import PASSES, read, refine, round_trip, save
 
 from dialects.papyrus import XMI
 from dialects.random_plants import random_plant
@@ -74,9 +74,9 @@ def test_a_plant_is_read_back_without_differences(plant):
 def test_the_comment_is_reported_once_with_its_facts(plant):
     sink = Sink()
     write_document(plant, sink)
-    (diagnostic,) = [item for item in sink if item.rule.code == "SM726"]
-    assert "UML cannot express Document (1)" in diagnostic.notes
-    assert {item.rule.code for item in sink} <= {"SM723", "SM724", "SM726"}
+    (loss,) = [diagnostic for diagnostic in sink if diagnostic.rule.code == "SM726"]
+    assert "UML cannot express Document (1)" in loss.notes
+    assert {diagnostic.rule.code for diagnostic in sink} <= {"SM723", "SM724", "SM726"}
 
 
 def find_comment(text):

@@ -1,4 +1,4 @@
-"""Saves graphs as UML and reads them back, for the tests of the back end ``uml``."""
+"""Graphs that are saved as UML and read back."""
 
 from graph_differences import diff
 from sysmlc.backends.uml.backend import write_document

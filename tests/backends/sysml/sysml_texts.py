@@ -1,4 +1,4 @@
-"""Writes graphs as SysML v2 text, for the tests of the back end ``sysml``."""
+"""Graphs that are written as SysML v2 text."""
 
 from sysmlc.backends.sysml.backend import LIBRARY, print_document
 from sysmlc.diagnostics import Coverage, Sink

@@ -1,4 +1,4 @@
-"""The structure of a graph by names: what two languages can both express of a plant."""
+"""Counts the names in a plant that AutomationML and SysML can both express."""
 
 from collections import Counter
 

@@ -1,4 +1,4 @@
-"""Writes graphs as CAEX 3.0 and reads them back, for the tests of the back end ``aml``."""
+"""Graphs that are written as CAEX 3.0 and read back."""
 
 from lxml import etree
 

@@ -1,20 +1,20 @@
-"""Compares the elements that the toolkit finds in a text with those of the graph."""
+"""Comparison of the elements that the OpenMBEE toolkit finds in a text with those of the graph."""
 
-from expected import list_expected
+from expected_elements import list_expected
+from sysml_texts import write
 from toolkit import load
-from writing import write
 
 
-def judge(graph):
+def compare(graph):
     """Return the complaints of the toolkit, the differences, and the number of elements."""
     files, _ = write(graph)
     loaded = load(files)
-    wanted = list_expected(graph)
-    return loaded.complaints, find_differences(loaded, wanted, ()), len(wanted)
+    expected = list_expected(graph)
+    return loaded.complaints, find_differences(loaded, expected, ()), len(expected)
 
 
-def judge_together(graphs):
-    """Judge many small models in one session, each in a package of its own.
+def compare_together(graphs):
+    """Compare many small models in one session, each in a package of its own.
 
     A text with names from the root (``$::``) needs a session of its own.
     """
@@ -31,20 +31,20 @@ def judge_together(graphs):
     loaded = load(files)
     complaints, differences, count = loaded.complaints, [], 0
     for graph in alone:
-        own_complaints, own_differences, own_count = judge(graph)
-        complaints, differences = complaints + own_complaints, differences + own_differences
-        count += own_count
+        new_complaints, new_differences, new_count = compare(graph)
+        complaints, differences = complaints + new_complaints, differences + new_differences
+        count += new_count
     for number, graph in enumerate(together, 1):
-        wanted = list_expected(graph)
-        count += len(wanted)
-        differences += find_differences(loaded, wanted, (f"m{number}",))
+        expected = list_expected(graph)
+        count += len(expected)
+        differences += find_differences(loaded, expected, (f"m{number}",))
     return complaints, differences, count
 
 
-def find_differences(loaded, wanted, packages):
+def find_differences(loaded, expected, packages):
     """Return the expected elements that the toolkit lacks or finds with another kind or type."""
     differences = []
-    for path, (metaclasses, type_) in wanted.items():
+    for path, (metaclasses, type_) in expected.items():
         path = (*packages, *path)
         name = "::".join(path)
         metaclass_counts = loaded.elements.get(path)
