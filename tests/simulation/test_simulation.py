@@ -205,7 +205,7 @@ def test_one_of_the_runs_that_a_choice_allows_is_enough(last, passes):
         (
             "component: Gate.pass\nsteps:\n - expect: {run_raed: true}\n",
             "SM553",
-            "has no variable 'run_raed'; 'run_read' is near",
+            "has no variable 'run_raed'; did you mean 'run_read'?",
             3,
         ),
         (

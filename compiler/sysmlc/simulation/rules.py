@@ -30,7 +30,7 @@ VARIABLE = rule(
     "SM553",
     "unknown-variable",
     Severity.ERROR,
-    "'{component}' has no variable '{name}'{hint}",
+    "'{component}' has no variable '{name}'; {advice}",
     help="the contract of the component lists its variables",
 )
 VALUE = rule(

@@ -1,7 +1,6 @@
 """Plays scenarios: one passes if some run of the diagram shows every expected value."""
 
 from collections.abc import Iterable, Mapping
-from difflib import get_close_matches
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
@@ -14,6 +13,7 @@ from sysmlc.simulation.players import Player, find_players, find_resting_value
 from sysmlc.simulation.report import Difference, Report, Result, show_value
 from sysmlc.simulation.scenario import Entry, Scenario, read_scenarios
 from sysmlc.sources import Source
+from sysmlc.support.suggestions import did_you_mean
 
 _MAX_RUNS = 10_000
 """Most runs followed at the same time if a diagram leaves choices."""
@@ -90,13 +90,12 @@ def _is_valid_entry(
     name, component = entry.name, scenario.component
     variable = variables.get(name)
     if variable is None:
-        hint = _suggest_name(name, variables)
         sink.report(
             rules.VARIABLE,
             scenario.subject(entry.location),
             component=component,
             name=name,
-            hint=hint,
+            advice=did_you_mean(name, variables),
         )
     elif not contains(variable.domain, entry.value):
         shown, domain = show_value(entry.value), describe(variable.domain)
@@ -110,11 +109,6 @@ def _is_valid_entry(
     else:
         return True
     return False
-
-
-def _suggest_name(name: str, names: Iterable[str]) -> str:
-    matches = get_close_matches(name, list(names), 1)
-    return f"; '{matches[0]}' is near" if matches else ""
 
 
 # -- runs --------------------------------------------------------------------------------------
