@@ -18,7 +18,7 @@ from sysmlc.backends.plantuml import (
     undrawn,
     use_case,
 )
-from sysmlc.backends.plantuml.author.diagrams import FOLDER, draw_author_diagrams
+from sysmlc.backends.plantuml.author_diagrams import FOLDER, draw_author_diagrams
 from sysmlc.backends.plantuml.undrawn import report_overtaken_messages
 from sysmlc.backends.plantuml.views import Diagram
 from sysmlc.backends.templates import TemplateError, Templates

@@ -12,6 +12,7 @@ from msgspec.structs import replace
 
 from sysmlc.backends.plantuml import (
     activity,
+    author_internal_block,
     block_definition,
     boxes,
     labels,
@@ -21,8 +22,7 @@ from sysmlc.backends.plantuml import (
     state_machine,
     use_case,
 )
-from sysmlc.backends.plantuml.author import internal_block as author_parts
-from sysmlc.backends.plantuml.author.selection import FEATURES, LINES, Selection
+from sysmlc.backends.plantuml.author_selection import FEATURES, LINES, Selection
 from sysmlc.backends.plantuml.layout import arrange_boxes
 from sysmlc.backends.plantuml.parametric import Binding, find_bindings
 from sysmlc.backends.plantuml.relations import Relation, iter_use_case_relations, list_relations
@@ -125,7 +125,9 @@ class _Drawer:
         if kind == "uc":
             return self._build_use_case_view(selection)
         if kind in ("ibd", "par"):
-            return self._build_parametric_view(selection) or author_parts.build_view(selection)
+            return self._build_parametric_view(selection) or author_internal_block.build_view(
+                selection
+            )
         if kind in ("act", "stm"):
             kind = Kind.ACTIVITY if kind == "act" else Kind.STATE_MACHINE
             return _build_behaviour_view(selection, kind)

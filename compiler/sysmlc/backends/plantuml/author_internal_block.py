@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from sysmlc.backends.plantuml import internal_block, labels
-from sysmlc.backends.plantuml.author.selection import Selection
+from sysmlc.backends.plantuml.author_selection import Selection
 from sysmlc.backends.plantuml.connections import Connection, Path, find_free_flows, list_connections
 from sysmlc.backends.plantuml.layout import iter_port_guides
 from sysmlc.backends.plantuml.views import Aliases, InternalView, Line, PartView, PortView
