@@ -377,8 +377,8 @@ def test_a_missing_flow_is_told_once_at_each_of_its_ends():
         if diagnostic.rule.code == "SM603"
     ]
     assert [one.message for one in found] == [
-        "in 'Plant::Mount', nothing leads to 'look'",
-        "in 'Plant::Mount', no way leads from 'grip' to an end",
+        "in 'Plant::Mount', no path leads from the initial node to 'look'",
+        "in 'Plant::Mount', no path leads from 'grip' to a final node",
     ]
 
 

@@ -58,10 +58,10 @@ def test_guards_that_lead_to_exactly_one_way_are_right(guards):
         (("n <= 3", "n >= 3"), "overlap: 'n <= 3' and 'n >= 3' are both true for n = 3"),
         (("x < 0.5", "x > 0.5"), "leave a gap: none is true for x = 0.5"),
         (("colour == Colour::red",), "leave a gap: none is true for colour = green"),
-        (("else", "else"), "have 2 times 'else'"),
-        (("ok", ""), "leave a way without a guard"),
-        (("n + 1", "else"), "are not all true or false: 'n + 1'"),
-        (("n", "else"), "are not all true or false: 'n'"),
+        (("else", "else"), "contain 'else' 2 times"),
+        (("ok", ""), "leave an edge without a guard"),
+        (("n + 1", "else"), "are not all Boolean: 'n + 1'"),
+        (("n", "else"), "are not all Boolean: 'n'"),
     ],
 )
 def test_other_guards_are_told_with_values(guards, problem):
@@ -69,7 +69,7 @@ def test_other_guards_are_told_with_values(guards, problem):
 
 
 def test_a_name_that_nothing_declares_is_told():
-    assert "SM606: in 'g', 'speed' is declared nowhere" in findings("speed > 3", "else")
+    assert "SM606: in 'g', 'speed' is not declared" in findings("speed > 3", "else")
 
 
 def test_text_that_is_no_expression_is_told():

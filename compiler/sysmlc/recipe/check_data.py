@@ -79,15 +79,15 @@ def _iter_guard_problems(
 ) -> Iterator[str]:
     else_count = sum(edge.is_else for edge in edges)
     if else_count > 1:
-        yield f"have {else_count} times 'else'"
+        yield f"contain 'else' {else_count} times"
     unguarded = [edge for edge in edges if edge.guard is None and not edge.is_else]
     if len(edges) > 1 and unguarded:
-        yield "leave a way without a guard"
+        yield "leave an edge without a guard"
         return
     guards = [(edge.text, edge.guard) for edge in edges if edge.guard is not None]
     for text, guard in guards:
         if not is_condition(guard, types):
-            yield f"are not all true or false: '{text}'"
+            yield f"are not all Boolean: '{text}'"
             return
     yield from _iter_conflicts(guards, types, has_else=else_count > 0)
 
@@ -167,10 +167,10 @@ def _iter_undeclared(graph: FlowGraph) -> Iterator[tuple[str, str]]:
             base = name.split(".")[0]
             last = name.replace("::", ".").rpartition(".")[2]
             if not {name, base, last} & declared:
-                yield element, f"'{name}' is declared nowhere"
+                yield element, f"'{name}' is not declared"
     for node in graph.nodes:
         if node.variable and node.variable.split(".")[0] not in declared:
-            yield node.element, f"'{node.variable}' is declared nowhere"
+            yield node.element, f"'{node.variable}' is not declared"
 
 
 def _iter_unset(graph: FlowGraph) -> Iterator[tuple[str, str]]:

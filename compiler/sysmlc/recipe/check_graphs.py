@@ -49,9 +49,9 @@ def _iter_path_problems(graph: FlowGraph) -> Iterator[tuple[str, str]]:
     unreached = [node for node in graph.nodes if node.id not in reached]
     stuck = [node for node in graph.nodes if node.id in reached and node.id not in ending]
     for node in _select_causes(unreached, reverse):
-        yield node.element, f"nothing leads to '{_local_name(node.id)}'"
+        yield node.element, f"no path leads from the initial node to '{_local_name(node.id)}'"
     for node in _select_causes(stuck, pairs):
-        yield node.element, f"no way leads from '{_local_name(node.id)}' to an end"
+        yield node.element, f"no path leads from '{_local_name(node.id)}' to a final node"
 
 
 def _select_causes(nodes: list[Node], pairs: list[tuple[str, str]]) -> list[Node]:
@@ -116,7 +116,7 @@ def _join(branches: list[_Branch]) -> tuple[_Branch, str]:
     """Close the innermost fork if each of its branches arrives; else return a problem."""
     forks = {(*branch[:-1], (branch[-1][0], 0)) if branch else () for branch in branches}
     if len(forks) > 1 or not all(branches) or len(set(branches)) < len(branches):
-        return _common_prefix(branches), "ways that are not branches of one fork meet at"
+        return _common_prefix(branches), "edges that do not come from branches of one fork meet at"
     return branches[0][:-1], ""
 
 

@@ -36,9 +36,9 @@ UNRELEASED = rule(
     "SM618",
     "resource-never-released",
     Severity.WARNING,
-    "task '{task}' can end while '{resource}', taken at '{node}', is not given back",
+    "task '{task}' can end while '{resource}', acquired at '{node}', is not released",
     help=(
-        "call a service that releases it on every way to the end, or mark the function's use of it"
+        "call a service that releases it on every path to the end, or mark the function's use of it"
     ),
 )
 

@@ -27,7 +27,7 @@ NO_MACHINE = rule(
     "SM607",
     "task-without-machine",
     Severity.ERROR,
-    "task '{task}' cannot be done: {problem}",
+    "task '{task}' cannot be performed: {problem}",
     help=(
         "relate the task to machines that offer its services («Capability»), or the service to "
         "those machines"
