@@ -45,7 +45,7 @@ class EmitOptions(Struct, frozen=True):
 
 
 class Backend(Protocol):
-    """Writes one kind of output for the whole graph."""
+    """Writes one kind of output from the graph of a compile unit."""
 
     name: str
     summary: str

@@ -103,7 +103,7 @@ class _Writer(Struct, frozen=True):
         }
 
     def _describe_used(self, used: Used) -> Json:
-        """Describe an element with the recipes' machines that it is and services that it offers."""
+        """Describe an element, the machines that are bound to it, and the services that it offers."""
         return self._describe_plant_element(used) | {
             "machines": [
                 {
@@ -136,7 +136,7 @@ class _Writer(Struct, frozen=True):
         }
 
     def _describe_machine(self, name: str, recipes: tuple[str, ...], element: str) -> Json:
-        """Describe a machine of the recipes with the first element of the plant that it is."""
+        """Describe a machine of the recipes with the first element of the plant it is bound to."""
         plant_elements = [b.plant for b in self.platform.bindings if b.machine == name]
         return {
             "machine": name,

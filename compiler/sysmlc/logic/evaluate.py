@@ -152,6 +152,7 @@ def _iterate_backwards(loop: int, stay: list[bool], goal: list[bool], start: boo
     *start* is the value before the first round: false for strong until, true for weak until.
     """
     truth = [start] * len(goal)
+    # Each round carries values one step backwards: two laps of the trace reach the fixpoint.
     for _ in range(2 * len(goal)):
         next_truth = _shift(loop, truth)
         truth = [

@@ -31,7 +31,7 @@ class Names:
         self._taken = {name.lower() for name in taken}
 
     def new(self, name: str, fallback: str = "x") -> str:
-        """Return a free identifier for the name; names that differ only in case count as equal."""
+        """Return an unused identifier for the name; identifiers differ in more than case."""
         candidate = base = identifier(name, fallback)
         number, lower = 1, base.lower()
         while lower in self._taken:

@@ -247,6 +247,7 @@ def _remove_redundant_conjuncts(
     args: tuple[Formula, ...], domain_by_name: Mapping[str, Domain], facts: tuple[Formula, ...]
 ) -> Formula:
     parts = list(args)
+    # From the end, so that of two equivalent conjuncts the first one is retained.
     for index in reversed(range(len(parts))):
         rest = (*facts, *parts[:index], *parts[index + 1 :])
         parts[index] = _remove_redundant(parts[index], domain_by_name, rest)

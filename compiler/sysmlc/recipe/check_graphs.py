@@ -55,9 +55,9 @@ def _iter_path_problems(graph: FlowGraph) -> Iterator[tuple[str, str]]:
 
 
 def _select_causes(nodes: list[Node], pairs: list[tuple[str, str]]) -> list[Node]:
-    """Return the nodes from which no pair leads to another of *nodes*, else the first node.
+    """Return the nodes from which no pair leads to another of *nodes*; in a cycle the first node.
 
-    The other nodes are faulty only because they lead to one of these.
+    The faults of the other nodes are consequences: they lead to one of these.
     """
     ids = {node.id for node in nodes}
     sources = {source for source, target in pairs if source != target and target in ids}

@@ -136,7 +136,7 @@ def find_resource_modes(node: Node, resource: str, tables: Tables) -> set[str]:
 def _iter_groups(
     graph: FlowGraph, tables: Tables, resource: str
 ) -> Iterator[tuple[list[str], list[str]]]:
-    """Yield, for each node that acquires the resource, the nodes that need it and the reasons."""
+    """Yield a group for each node that acquires the resource: the ids of its nodes, and reasons."""
     modes_by_node = {node.id: find_resource_modes(node, resource, tables) for node in graph.nodes}
     edges = [(edge.source, edge.target) for edge in graph.edges]
     releasing = {id for id, modes in modes_by_node.items() if "release" in modes}

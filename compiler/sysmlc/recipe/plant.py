@@ -141,7 +141,7 @@ class Plant:
         return self.graph.qualified_name(item.element)
 
     def iter_owners(self, item: PlantElement) -> Iterator[PlantElement]:
-        """Iterate over the InternalElements that contain an InternalElement, nearest first."""
+        """Yield the InternalElements that contain an InternalElement, nearest first."""
         element = self.graph.owner(item.element)
         visited = {item.id}
         while element is not None:
@@ -155,7 +155,7 @@ class Plant:
     def _find_owner(self, element: Element) -> PlantElement | None:
         """Return the InternalElement that *element* represents, or None.
 
-        An InternalElement with a definition of its own may be represented by this definition.
+        *element* may be the definition of a single InternalElement instead of its part or instance.
         """
         candidates = self._by_graph_id.get(element.id, [])
         if not candidates and element.subkind == "internal-element":
@@ -176,7 +176,7 @@ def _normalise_id(id: str) -> str:
 
 
 class Binding(Struct, frozen=True):
-    """A machine of a recipe is an element of the plant.
+    """States that a machine of a recipe is an element of the plant.
 
     ``how`` is ``itself``, ``id``, ``tag``, ``allocation`` or ``overlay``; ``by`` is the id of the
     element of the graph that states it.
@@ -189,7 +189,7 @@ class Binding(Struct, frozen=True):
 
 
 class Offer(Struct, frozen=True):
-    """An element of the plant offers a service by an operation.
+    """States that an element of the plant offers a service by an operation.
 
     ``machine`` is empty when the service needs none. ``how`` is ``name``, ``method``, ``call``,
     ``allocation`` or ``overlay``; ``by`` is the id of the element that states it.
@@ -223,10 +223,10 @@ class Unused(Struct, frozen=True):
 
 
 class Platform(Struct, frozen=True):
-    """The recipes of a unit on its plant; all tuples are sorted.
+    """The mapping of the recipes of a unit to its plant; all tuples are sorted.
 
-    ``machines`` and ``services`` are ids (qualified names) with the recipes that use them and
-    their elements in the graph: (name, recipes, element).
+    ``machines`` and ``services`` list those of the recipes: the qualified name, the ids of the
+    recipes that use it, and the id of its element in the graph.
     """
 
     used: tuple[Used, ...]

@@ -33,7 +33,7 @@ def describe_trace(element: str) -> Json:
 
 
 def describe_flow_graph(graph: FlowGraph) -> Json:
-    """Return a graph of level 2 or 3."""
+    """Describe a graph of services (level 2) or functions (level 3)."""
     declarations = {
         "inputs": describe_parameters(graph.inputs),
         "outputs": describe_parameters(graph.outputs),
@@ -67,7 +67,7 @@ def _describe_parameter(parameter: Parameter) -> Json:
 
 
 def describe_type(type_: ValueType) -> object:
-    """Return the name of a type, or an object for a type with parts."""
+    """Return the name of a simple type, or an object for an enumeration, reference or list."""
     match type_:
         case EnumType(name, literals, values):
             numbers = {"values": list(values)} if values else {}

@@ -140,10 +140,12 @@ class FormulaReduction:
         """
         if any(map(has_primes, body.args)):
             raise NotReducibleError(body)
+        # ``p R q``: p ends the obligation that q holds. Else the last operand is the goal.
         goal = body.args[0] if body.op is Op.RELEASE else body.args[-1]
         is_missing = f.negate(goal)
         pending = self._since(is_missing, f.both(trigger, is_missing))
         if body.op is Op.RELEASE:
+            # q must hold in the step of the goal, too, which ends the obligation.
             was_pending = self._previous(pending)
             yield Class.SAFETY, f.implies(f.either(trigger, was_pending), body.args[1])
             return
@@ -214,7 +216,7 @@ class FormulaReduction:
         return has_steps
 
     def _look_back(self, formula: Formula, depth: int) -> Formula:
-        """Return *formula*, evaluated ``depth - 1`` steps ago, as a formula about this step."""
+        """Return the condition that *formula* held ``depth - 1`` steps ago."""
         match formula:
             case Apply(Op.NEXT, (inner,)):
                 return self._look_back(inner, depth - 1)
@@ -240,7 +242,7 @@ class FormulaReduction:
         return self._history.since(stay, goal, self._origin)
 
     def _last_step(self, step: Formula) -> Formula:
-        """Return a bit that is true infinitely often if and only if *step* is."""
+        """Return a bit that is true in the next step if and only if *step* holds now."""
         return self._history.last_step(step, self._origin)
 
     def _is_first_step(self) -> Formula:

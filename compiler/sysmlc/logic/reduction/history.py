@@ -78,9 +78,10 @@ class History:
         self.conjuncts.append(Conjunct(update, Class.SAFETY, origin, text))
 
     def _find_bit(self, stem: str, stay: Formula, goal: Formula, start: bool, origin: str) -> Var:
-        """Return the bit with this *stem* for the two formulas; create it at the first call.
+        """Return the bit for an operator and its operands; create it at the first call.
 
-        The stem selects the rule of the bit: ``was`` and ``always_was`` (of *stay*), or ``since``.
+        *stem*, with which the name of the bit begins, selects the operator: ``was`` (*stay* held in
+        the last step), ``always_was`` (*stay* has always held) or ``since``.
         """
         if has_primes(stay) or has_primes(goal):
             raise ValueError("a history bit cannot refer to the next step")

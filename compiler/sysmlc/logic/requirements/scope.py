@@ -17,7 +17,7 @@ _DOTTED_NAME = re.compile(r"[^\W\d]\w*(?:\.[^\W\d]\w*)+")
 
 
 class Scope(Struct, frozen=True):
-    """Variables and constants by the names that formulas use for them."""
+    """What the names in the formulas about a subject denote: its variables and constants."""
 
     context: Context
     variables: Mapping[str, Variable]
