@@ -133,8 +133,8 @@ class _PageBuilder:
     def _build_conjunct(self, conjunct: Conjunct) -> Row:
         """Build the row of a conjunct.
 
-        The text of a conjunct from a named constraint begins with the quoted name. The row shows the
-        name as a sentence instead, and the requirement or owner of the constraint as its element.
+        The text of a conjunct from a named constraint begins with the quoted name. The row shows
+        the name as a sentence instead, and the requirement or owner of the constraint as element.
         """
         formula = escape_code(print_formula(conjunct.formula))
         element, place = self._label_element(conjunct.origin)

@@ -103,7 +103,7 @@ class _Writer(Struct, frozen=True):
         }
 
     def _describe_used(self, used: Used) -> Json:
-        """Describe an element, the machines that are bound to it, and the services that it offers."""
+        """Describe an element, the machines bound to it, and the services that it offers."""
         return self._describe_plant_element(used) | {
             "machines": [
                 {
