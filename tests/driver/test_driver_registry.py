@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from msgspec import Struct
 
+import sysmlc
 from sysmlc import config
 from sysmlc.config import ConfigError
 from sysmlc.driver import (
@@ -17,6 +18,7 @@ from sysmlc.driver import (
     registry,
     select_backends,
 )
+from sysmlc.logic.contract import Contract, IntegerDomain
 from sysmlc.passes import pipeline
 
 _PROJECT = Path(__file__).parents[2] / "pyproject.toml"
@@ -86,6 +88,35 @@ def test_an_integer_is_accepted_as_a_number(tmp_path):
     assert (
         load_passes_by_name(tmp_path, "[passes.recipe]\ntolerance = 1\n")["recipe"].tolerance == 1
     )
+
+
+MODEL_WITHOUT_RANGES = """
+package Plant {
+    private import ScalarValues::*;
+    part def Gate {
+        attribute level : Integer default = 0;
+        perform action act {
+            attribute count : Integer default = 0;
+            constraint limit { language "LTL" /* G (count <= 4) */ }
+            first start;
+            then decide;
+                if level > 3 then a;
+                else b;
+            action a;
+            action b;
+        }
+    }
+}
+"""
+
+
+def test_the_assumed_range_of_contracts_applies_to_activities(tmp_path):
+    (tmp_path / "sysmlc.toml").write_text("[passes.contracts]\nassumed_high = 7\n")
+    (tmp_path / "gate.sysml").write_text(MODEL_WITHOUT_RANGES)
+    compilation = sysmlc.compile_model(tmp_path / "gate.sysml")
+    (contract,) = compilation.graph.derived(Contract)
+    domains = {variable.name: variable.domain for variable in contract.variables}
+    assert domains["level"] == domains["count"] == IntegerDomain(0, 7)
 
 
 def test_recipe_levels_are_an_option_of_the_recipe_pass(tmp_path):

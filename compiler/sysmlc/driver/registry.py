@@ -98,7 +98,8 @@ def load_passes(options: Mapping[str, Mapping[str, object]]) -> list[Pass]:
             raise ConfigError(f"passes.{name}: unknown pass; {advice}")
     loaded = [pipeline.load(name) for name in pipeline.NAMES]
     loaded += [_load_pass(entry) for entry in plug_ins.values()]
-    return pipeline.sort_passes(_set_options(step, options.get(step.name, {})) for step in loaded)
+    configured = [_set_options(step, options.get(step.name, {})) for step in loaded]
+    return pipeline.sort_passes(_share_assumed_range(configured))
 
 
 def _load_pass(entry: EntryPoint) -> Pass:
@@ -124,6 +125,20 @@ def _set_options(step: Pass, options: Mapping[str, object]) -> Pass:
             raise ConfigError(f"{where}: {value!r} is no {type(default).__name__}")
     replace = structs.replace if isinstance(step, Struct) else dataclasses.replace
     return cast("Pass", replace(cast("Any", step), **options))
+
+
+def _share_assumed_range(steps: Iterable[Pass]) -> list[Pass]:
+    """Return the passes, with the assumed range of ``contracts`` also set for ``activities``.
+
+    Activities get the domains of their variables before contracts are derived.
+    """
+    by_name = {step.name: step for step in steps}
+    contracts = cast("Any", by_name.get("contracts"))
+    if contracts is not None and "activities" in by_name:
+        assumed_range = contracts.assumed_low, contracts.assumed_high
+        activities = cast("Any", by_name["activities"])
+        by_name["activities"] = structs.replace(activities, assumed_range=assumed_range)
+    return list(by_name.values())
 
 
 def _list_option_names(step: Pass) -> list[str]:

@@ -60,10 +60,11 @@ class Contracts(Struct, frozen=True):
 
     def run(self, graph: Graph, sink: Sink) -> None:
         """Store the Contracts of behaviours, of subjects of requirements and of services."""
+        assumed_range = self.assumed_low, self.assumed_high
         # `_add_formulas` finds contracts by component, so that these names must be distinct before.
         derived = [*self._derive_machines(graph, sink), *_derive_activities(graph)]
-        derived = _add_formulas(graph, _number_components(graph, derived, sink), sink)
-        assumed_range = self.assumed_low, self.assumed_high
+        derived = _number_components(graph, derived, sink)
+        derived = _add_formulas(graph, derived, assumed_range, sink)
         required = list(requirements.derive(graph, derived, assumed_range, sink))
         _report_general(graph, required, sink)
         derived = [*derived, *required]
@@ -181,7 +182,9 @@ OUTSIDE_GR1 = rule(
 )
 
 
-def _add_formulas(graph: Graph, contracts: list[Contract], sink: Sink) -> list[Contract]:
+def _add_formulas(
+    graph: Graph, contracts: list[Contract], assumed_range: tuple[int, int], sink: Sink
+) -> list[Contract]:
     """Return the contracts, extended by the formulas in constraints of the model."""
     by_component = {contract.component: contract for contract in contracts}
     performed = _Performers(graph, contracts)
@@ -190,9 +193,9 @@ def _add_formulas(graph: Graph, contracts: list[Contract], sink: Sink) -> list[C
             continue
         for component in _list_components(graph, constraint, performed):
             if component in by_component:
-                by_component[component] = _add_formula(
-                    graph, by_component[component], constraint, sink
-                )
+                contract = by_component[component]
+                scope = _find_scope(graph, contract, assumed_range)
+                by_component[component] = _add_formula(graph, contract, constraint, scope, sink)
             else:
                 _report_orphan(graph, constraint, component, sink)
     return list(by_component.values())
@@ -263,10 +266,14 @@ def _report_orphan(graph: Graph, constraint: Element, component: str, sink: Sink
     sink.report(NO_CONTRACT, graph.subject(constraint), constraint=name, component=component)
 
 
-def _add_formula(graph: Graph, contract: Contract, constraint: Element, sink: Sink) -> Contract:
+def _add_formula(
+    graph: Graph, contract: Contract, constraint: Element, scope: Scope | None, sink: Sink
+) -> Contract:
+    """Return the contract, extended by the formula of a constraint; report a formula with a fault.
 
+    *scope* has the features of the contract's action, and is None for a machine.
+    """
     name = constraint.name or "<Constraint>"
-    scope = _find_scope(graph, contract)
     domains = {variable.name: variable.domain for variable in contract.variables}
     domains = domains if scope is None else domains | scope.domains
     subject = graph.subject(constraint)
@@ -304,12 +311,12 @@ def _report_general(graph: Graph, contracts: Iterable[Contract], sink: Sink) -> 
         sink.report(OUTSIDE_GR1, graph.subject(constraint), constraint=name)
 
 
-def _find_scope(graph: Graph, contract: Contract) -> Scope | None:
+def _find_scope(graph: Graph, contract: Contract, assumed_range: tuple[int, int]) -> Scope | None:
     """Return the scope of an action, whose features formulas may use, or None for a machine."""
     origin = graph[contract.origin]
     if origin.kind not in _ACTIONS:
         return None
-    return scope_of(context_of(graph, definition_of(graph, origin)), contract)
+    return scope_of(context_of(graph, definition_of(graph, origin), assumed_range), contract)
 
 
 def _extend(contract: Contract, conjuncts: list[Conjunct]) -> Contract:

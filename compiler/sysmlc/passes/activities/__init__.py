@@ -45,12 +45,15 @@ class Activities(Struct, frozen=True):
 
     ``max_markings`` bounds the search for a second token on a flow. In activities with more than
     ``collapse_over`` edges, control nodes that only pass tokens on are removed. An activity whose
-    structured nodes are nested deeper than ``max_depth`` gets no token graph.
+    structured nodes are nested deeper than ``max_depth`` gets no token graph. ``assumed_range`` is
+    the range of Integers without a declared range; ``load_passes`` takes it from the options
+    ``assumed_low`` and ``assumed_high`` of the pass ``contracts``.
     """
 
     max_markings: int = 20_000
     collapse_over: int = 40
     max_depth: int = 100
+    assumed_range: tuple[int, int] = (0, 15)
 
     name: ClassVar[str] = "activities"
     after: ClassVar[tuple[str, ...]] = ("classify", "flows")
@@ -92,7 +95,7 @@ class Activities(Struct, frozen=True):
             sink.report(rules.EMPTY, graph.subject(activity), activity=activity.name)
             raise activity_drawing.CannotPlayError
         # The order matters: the stores need the nodes, and the checks of guards need the stores.
-        scope = Scope(graph, activity, sink)
+        scope = Scope(graph, activity, self.assumed_range, sink)
         inputs = Inputs(graph, scope, sink)
         tokens = activity_tokens.build(graph, drawing, inputs, context.raising, sink)
         actions, writers = _list_played_actions(drawing, tokens), context.writers

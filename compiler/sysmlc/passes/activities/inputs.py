@@ -48,13 +48,18 @@ class UnreadableError(ValueError):
 
 
 class Scope:
-    """Symbol table of an activity: its own properties and those of the classifier around it."""
+    """Symbol table of an activity: its own properties and those of the classifier around it.
 
-    def __init__(self, graph: Graph, activity: Element, sink: Sink) -> None:
+    An Integer without a range gets *assumed_range*.
+    """
+
+    def __init__(
+        self, graph: Graph, activity: Element, assumed_range: tuple[int, int], sink: Sink
+    ) -> None:
         above = (a for a in graph.ancestors(activity) if a.kind in _CLASSIFIERS)
         self._graph, self._sink = graph, sink
-        self._outer = context_of(graph, next(above, None))
-        self._inner = context_of(graph, activity)
+        self._outer = context_of(graph, next(above, None), assumed_range)
+        self._inner = context_of(graph, activity, assumed_range)
         self._variables = {**self._outer.variables, **self._inner.variables}
         self._declared: dict[str, Formula] = {}
 
