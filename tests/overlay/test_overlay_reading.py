@@ -1,4 +1,4 @@
-"""Overlays as text: what is said of bad ones, and what the good ones come to."""
+"""Overlays as text: diagnostics of faulty overlays, and the content of valid overlays."""
 
 import json
 
@@ -15,17 +15,20 @@ from sysmlc.support import resources
 RIGHT = "overlay: 1\nitems:\n  MiniPallet: {domain: physical}\n"
 
 
-def list_findings(data):
-    """Code, line, column and message of each finding; nothing of a bad overlay is used."""
+def list_diagnostics(data):
+    """Return code, line, column and message of each diagnostic; a faulty overlay gives None."""
     sink = Sink()
     text = data.encode("utf-8") if isinstance(data, str) else data
     refinement = read_overlay(Source("p.overlay.yaml", text), sink)
     assert (refinement is None) == bool(len(sink))
-    places = [(diagnostic, diagnostic.subject.place) for diagnostic in sink]
-    return [(f.rule.code, place.line, place.column, f.message) for f, place in places]
+    diagnostics = [(diagnostic, diagnostic.subject.place) for diagnostic in sink]
+    return [
+        (diagnostic.rule.code, place.line, place.column, diagnostic.message)
+        for diagnostic, place in diagnostics
+    ]
 
 
-def bomb(levels=12, width=9):
+def print_nested_aliases(levels=12, width=9):
     rows = ["a0: &a0 [x, x]"]
     for level in range(1, levels):
         names = ", ".join([f"*a{level - 1}"] * width)
@@ -49,14 +52,14 @@ def bomb(levels=12, width=9):
         ("overlay: 1\nitems: " + "[" * 5000, 2, 27, "it is nested too deeply"),
         ("overlay: 1\nitems: " + "{a: " * 5000, 2, 84, "it is nested too deeply"),
         ("overlay: 1\nitems:\n" + "- " * 5000, 3, 39, "it is nested too deeply"),
-        (bomb(), 5, 0, "its aliases make it too large"),
+        (print_nested_aliases(), 5, 0, "its aliases make it too large"),
         ("overlay: 1\nitems: [" + "x," * 50_001, 2, 0, "it has too many values"),
         (b"#" * ((4 << 20) + 1), 1, 1, "it is larger than 4 MB"),
     ],
     ids=lambda value: str(value)[:24],
 )
 def test_bad_yaml_is_reported_with_its_location(data, line, column, problem):
-    ((code, found_line, found_column, message),) = list_findings(data)
+    ((code, found_line, found_column, message),) = list_diagnostics(data)
     assert code == "SM320"
     assert problem in message
     assert (found_line, found_column if column else 0) == (line, column)
@@ -138,23 +141,23 @@ def test_bad_yaml_is_reported_with_its_location(data, line, column, problem):
     ],
 )
 def test_each_violation_of_the_schema_is_reported_with_its_location(text, findings):
-    assert list_findings(text) == findings
+    assert list_diagnostics(text) == findings
 
 
-def test_a_misspelt_word_is_answered_with_the_nearest():
+def test_for_an_unknown_key_the_nearest_key_is_suggested():
     sink = Sink()
     read_overlay(Source("p.overlay.yaml", RIGHT.replace("domain", "domian").encode()), sink)
     assert [diagnostic.help for diagnostic in sink] == ["did you mean 'domain'?"]
 
 
-def test_places_count_characters_and_bytes():
+def test_locations_have_columns_in_characters_and_offsets_in_bytes():
     top = parse_yaml('\ufeffoverlay: 1\n"é": {x: ü, y: 1}\n'.encode())
     inner = top.entries["é"].entries["y"]
     assert inner.spot == (2, 16, 3 + 11 + 5 + 1 + 1 + 10)
     assert top.keys["é"][:2] == (2, 1)
 
 
-def test_plain_words_are_names_and_quoted_digits_are_too():
+def test_plain_words_and_quoted_digits_are_strings():
     top = parse_yaml(
         b"a: no\nb: 0x1F\nc: '12'\nd: 12\ne: 1.5\nf: true\ng: ~\nh: 2024-01-01\n1: x\n"
     )
@@ -171,14 +174,14 @@ def test_plain_words_are_names_and_quoted_digits_are_too():
     }
 
 
-def test_anchors_may_be_used_for_what_is_said_again():
+def test_an_alias_repeats_the_content_of_its_anchor():
     text = RIGHT + "connectors:\n  a: &one\n    flows: [{item: MiniPallet, to: x}]\n  b: *one\n"
     refinement = read_overlay(Source("p.overlay.yaml", text.encode()), Sink())
     assert [connector.key.text for connector in refinement.connectors] == ["a", "b"]
     assert refinement.connectors[0].flows == refinement.connectors[1].flows
 
 
-def test_entries_have_an_order_of_their_own():
+def test_entries_are_sorted_by_their_keys():
     rows = ["  B: {domain: physical}\n", "  A: {domain: information}\n"]
     refinements = [
         read_overlay(
@@ -192,7 +195,7 @@ def test_entries_have_an_order_of_their_own():
     assert names[0] == names[1] == [("A", "information"), ("B", "physical")]
 
 
-def test_files_that_terms_name_are_known():
+def test_the_files_that_an_overlay_names_are_listed():
     text = (
         "overlay: 1\nblocks:\n  A:\n    behavior: 'models/gate.uml#Gate::Handle'\n"
         "    values: {v: {type: 'types.uml#T::V'}}\n"
@@ -202,7 +205,7 @@ def test_files_that_terms_name_are_known():
     assert list_files(refinement) == ["models/gate.uml", "types.uml"]
 
 
-def test_the_schema_is_a_schema_and_its_words_are_explained():
+def test_the_schema_is_valid_and_describes_each_property():
     schema = json.loads(resources.read_text("metamodels", "sysmlc-overlay.schema.json"))
     Draft202012Validator.check_schema(schema)
     assert all(
@@ -219,11 +222,11 @@ def test_the_schema_is_a_schema_and_its_words_are_explained():
         ("a", ("a",)),
     ],
 )
-def test_paths_are_split_as_those_of_caex(path, names):
+def test_paths_are_split_like_those_of_caex(path, names):
     assert split_path(path) == names
     assert split_path(join_path(names)) == names
 
 
-def test_files_are_named_from_where_the_overlay_is():
+def test_files_are_named_relative_to_the_overlay():
     assert name_in_unit("a/p.overlay.yaml", "../b/gate.uml") == "b/gate.uml"
     assert name_in_unit("p.overlay.yaml", "./gate.uml") == "gate.uml"

@@ -1,4 +1,4 @@
-"""What follows from a model: same-machine groups, sub-tasks, and that a stale file is noticed."""
+"""Derived content of a recipe: same-machine groups, sub-tasks, and the check of stale content."""
 
 from itertools import pairwise
 
@@ -24,28 +24,40 @@ from sysmlc.recipe.model import (
 )
 
 
-def made(order: str, does: dict[str, str], machines: dict[str, str], equipment: str) -> Model:
-    """A task of services in a row; each does something with ``hand`` and runs on some machines."""
+def derive_row(
+    order: str, hand_modes: dict[str, str], machines: dict[str, str], equipment: str
+) -> Model:
+    """Return a recipe with one task, whose services run in *order*.
+
+    *hand_modes* states how services use the resource ``hand``, *machines* on which machines they
+    run, and *equipment* on which machines the task runs.
+    """
     names = order.split()
     nodes = [Node(name, "service", ref=name.upper()) for name in names]
     chain = ["start", *names, "end"]
     edges = tuple(FlowEdge(a, b) for a, b in pairwise(chain))
-    graph = FlowGraph(
+    service_graph = FlowGraph(
         "T", nodes=(Node("start", "initial"), *nodes, Node("end", "final")), edges=edges
     )
     services, functions, graphs = [], [], []
     for name in sorted(set(names)):
-        offers = tuple(Provider(m, 100) for m in machines[name].split())
-        kind = "machine" if offers else "infrastructure"
-        refined = name.upper() if name in does else ""
+        providers = tuple(Provider(m, 100) for m in machines[name].split())
+        kind = "machine" if providers else "infrastructure"
+        implementation = name.upper() if name in hand_modes else ""
         services.append(
-            Service(name.upper(), kind, providers=offers, duration=50, implementation=refined)
+            Service(
+                name.upper(), kind, providers=providers, duration=50, implementation=implementation
+            )
         )
-        uses = tuple(Resource("hand", mode) for mode in does.get(name, "").split())
+        uses = tuple(Resource("hand", mode) for mode in hand_modes.get(name, "").split())
         functions.append(Function(f"f{name}", duration=Range(100, 100), resources=uses))
-        inner = (Node("s", "initial"), Node("c", "function", ref=f"f{name}"), Node("e", "final"))
-        ways = (FlowEdge("s", "c"), FlowEdge("c", "e"))
-        graphs.append(FlowGraph(name.upper(), nodes=inner, edges=ways))
+        function_nodes = (
+            Node("s", "initial"),
+            Node("c", "function", ref=f"f{name}"),
+            Node("e", "final"),
+        )
+        function_edges = (FlowEdge("s", "c"), FlowEdge("c", "e"))
+        graphs.append(FlowGraph(name.upper(), nodes=function_nodes, edges=function_edges))
     modes = tuple(Mode((machine,), 1000) for machine in equipment.split())
     recipe = Recipe("R", (Task("t", equipment=modes, implementation="T"),))
     return derive(
@@ -53,83 +65,88 @@ def made(order: str, does: dict[str, str], machines: dict[str, str], equipment: 
             recipe,
             services=tuple(services),
             functions=tuple(functions),
-            service_graphs=(graph,),
+            service_graphs=(service_graph,),
             function_graphs=tuple(graphs),
         )
     )
 
 
-def groups(model: Model) -> list[tuple[str, ...]]:
-    """Same-machine groups of the task."""
+def list_groups(model: Model) -> list[tuple[str, ...]]:
+    """Return the same-machine groups of the task."""
     return [group.nodes for group in model.recipe.tasks[0].derived.same_machine]
 
 
-def findings(model: Model, code: str) -> list[str]:
-    """Messages of one rule."""
+def list_messages(model: Model, code: str) -> list[str]:
+    """Return the messages of one rule."""
     sink = Sink()
     validate(model, sink, Subject)
-    return [one.message for one in sink if one.rule.code == code]
+    return [diagnostic.message for diagnostic in sink if diagnostic.rule.code == code]
 
 
 ARMS = {"pick": "A B", "look": "", "turn": "A B", "place": "A B", "wash": "A B"}
-HAND = {"pick": "acquire", "turn": "hold", "place": "release"}
+HAND_MODES = {"pick": "acquire", "turn": "hold", "place": "release"}
 
 
-def test_what_touches_the_resource_between_taking_and_giving_back_is_a_group():
-    model = made("wash pick look turn place", HAND, ARMS, "A B")
-    assert groups(model) == [("pick", "turn", "place")]
+def test_services_from_acquiring_to_releasing_a_resource_are_a_group():
+    model = derive_row("wash pick look turn place", HAND_MODES, ARMS, "A B")
+    assert list_groups(model) == [("pick", "turn", "place")]
     (group,) = model.recipe.tasks[0].derived.same_machine
     assert group.because == ("fpick acquires hand", "fturn holds hand", "fplace releases hand")
 
 
-def test_two_takings_are_two_groups():
-    does = {"pick": "acquire", "place": "release", "grab": "acquire", "drop": "release"}
-    arms = dict.fromkeys(does, "A B")
-    assert groups(made("pick place grab drop", does, arms, "A B")) == [
+def test_acquiring_a_resource_twice_makes_two_groups():
+    modes = {"pick": "acquire", "place": "release", "grab": "acquire", "drop": "release"}
+    arms = dict.fromkeys(modes, "A B")
+    assert list_groups(derive_row("pick place grab drop", modes, arms, "A B")) == [
         ("pick", "place"),
         ("grab", "drop"),
     ]
 
 
-def test_a_service_that_takes_and_gives_back_itself_binds_nobody():
-    assert groups(made("wash turn", {"wash": "acquire release"}, ARMS, "A B")) == []
+def test_a_service_that_acquires_and_releases_a_resource_makes_no_group():
+    assert list_groups(derive_row("wash turn", {"wash": "acquire release"}, ARMS, "A B")) == []
 
 
-def test_what_is_never_given_back_is_no_group_but_told():
-    model = made("pick turn", {"pick": "acquire", "turn": "hold"}, ARMS, "A B")
-    assert groups(model) == []
-    assert len(findings(model, "SM618")) == 1
+def test_a_resource_that_is_never_released_is_reported_and_makes_no_group():
+    model = derive_row("pick turn", {"pick": "acquire", "turn": "hold"}, ARMS, "A B")
+    assert list_groups(model) == []
+    assert len(list_messages(model, "SM618")) == 1
 
 
 def test_sub_tasks_use_only_the_machines_of_the_task():
-    sub_tasks = made("pick look place", HAND, ARMS, "B").recipe.tasks[0].derived.sub_tasks
-    assert [(one.node, [m.machines for m in one.alternatives], one.after) for one in sub_tasks] == [
+    sub_tasks = (
+        derive_row("pick look place", HAND_MODES, ARMS, "B").recipe.tasks[0].derived.sub_tasks
+    )
+    assert [
+        (sub_task.node, [m.machines for m in sub_task.alternatives], sub_task.after)
+        for sub_task in sub_tasks
+    ] == [
         ("pick", [("B",)], ()),
         ("look", [], ("pick",)),
         ("place", [("B",)], ("look",)),
     ]
 
 
-def test_the_duration_of_an_infrastructure_service_counts():
-    assert made("pick look place", HAND, ARMS, "A").recipe.tasks[0].derived.duration == Range(
-        250, 250
-    )
+def test_the_duration_of_a_task_includes_infrastructure_services():
+    assert derive_row("pick look place", HAND_MODES, ARMS, "A").recipe.tasks[
+        0
+    ].derived.duration == Range(250, 250)
 
 
-def test_a_group_needs_one_machine_of_the_task():
-    assert findings(made("pick place", HAND, ARMS, "A"), "SM610") == []
+def test_a_group_that_no_machine_of_the_task_can_perform_is_reported():
+    assert list_messages(derive_row("pick place", HAND_MODES, ARMS, "A"), "SM610") == []
     apart = {**ARMS, "place": "C"}
-    assert len(findings(made("pick place", HAND, apart, "A C"), "SM610")) == 1
+    assert len(list_messages(derive_row("pick place", HAND_MODES, apart, "A C"), "SM610")) == 1
     outside = {**ARMS, "pick": "A B", "place": "B C"}
-    assert len(findings(made("pick place", HAND, outside, "A C"), "SM610")) == 1
+    assert len(list_messages(derive_row("pick place", HAND_MODES, outside, "A C"), "SM610")) == 1
 
 
-def test_groups_that_were_changed_by_hand_are_noticed():
-    model = made("pick place", HAND, ARMS, "A B")
+def test_groups_that_were_edited_by_hand_are_reported():
+    model = derive_row("pick place", HAND_MODES, ARMS, "A B")
     task = model.recipe.tasks[0]
     stale = replace(task, derived=replace(task.derived, same_machine=()))
     changed = replace(model, recipe=replace(model.recipe, tasks=(stale,)))
-    (message,) = findings(changed, "SM610")
+    (message,) = list_messages(changed, "SM610")
     assert "not those that follow" in message
     assert derive(changed) == model
 

@@ -1,4 +1,4 @@
-"""Times, loops and order of flow graphs, against results worked out by hand and by playing them."""
+"""Durations, loops and order of flow graphs, compared with a calculation by hand and with runs."""
 
 from random import Random
 
@@ -13,20 +13,27 @@ from sysmlc.recipe.model import FlowEdge, FlowGraph, Node, Range
 TIMES = {"a": (10, 20), "b": (5, 5), "c": (1, 100), "d": (7, 9)}
 
 
-def graph(text: str, **bounds: int) -> FlowGraph:
-    """Graph of ``a>b`` edges; the first letter of a node tells its kind."""
-    kinds = {"i": "initial", "f": "final", "D": "decision", "M": "merge", "F": "fork", "J": "join"}
+def build_graph(text: str, **bounds: int) -> FlowGraph:
+    """Return a graph of edges written ``a>b``; the first letter of a node gives its kind."""
+    list_decision_kinds = {
+        "i": "initial",
+        "f": "final",
+        "D": "decision",
+        "M": "merge",
+        "F": "fork",
+        "J": "join",
+    }
     edges = [pair.split(">") for pair in text.split()]
     names = dict.fromkeys(name for edge in edges for name in edge)
-    nodes = tuple(Node(name, kinds.get(name[0], "service")) for name in sorted(names))
+    nodes = tuple(Node(name, list_decision_kinds.get(name[0], "service")) for name in sorted(names))
     flows = tuple(FlowEdge(a, b, guard=make_variable(f"{a}{b}")) for a, b in edges)
     return add_loop_nodes(FlowGraph("g", nodes=nodes, edges=flows), bounds)
 
 
-def time(text: str, **bounds: int) -> tuple[float, float | None] | None:
-    """Shortest and longest time of a graph."""
-    found = compute_duration(graph(text, **bounds), lambda node: Range(*TIMES[node.id[0]]))
-    return None if found is None else (found.min, found.max)
+def compute_range(text: str, **bounds: int) -> tuple[float, float | None] | None:
+    """Return the shortest and the longest time of a graph."""
+    duration = compute_duration(build_graph(text, **bounds), lambda node: Range(*TIMES[node.id[0]]))
+    return None if duration is None else (duration.min, duration.max)
 
 
 @pytest.mark.parametrize(
@@ -45,43 +52,43 @@ def time(text: str, **bounds: int) -> tuple[float, float | None] | None:
         ("i>D D>a D>f a>f2", {}, (0, 20)),
     ],
 )
-def test_times_are_those_worked_out_by_hand(text, bounds, expected):
-    assert time(text, **bounds) == expected
+def test_durations_equal_those_calculated_by_hand(text, bounds, expected):
+    assert compute_range(text, **bounds) == expected
 
 
-def test_a_step_without_a_time_leaves_the_whole_without():
-    assert compute_duration(graph("i>a a>f"), lambda node: None) is None
+def test_a_graph_with_a_step_of_unknown_duration_has_no_duration():
+    assert compute_duration(build_graph("i>a a>f"), lambda node: None) is None
 
 
-def played(found: FlowGraph, limits: dict[str, int]) -> set[int]:
-    """Every time that playing a graph without forks can take, with fixed times."""
-    done: set[int] = set()
+def list_run_times(graph: FlowGraph, limits: dict[str, int]) -> set[int]:
+    """Return the times of all runs of a graph without forks, in which each step takes longest."""
+    times: set[int] = set()
     stack: list[tuple[str, int, tuple[tuple[str, int], ...]]] = [("i", 0, ())]
-    following: dict[str, list[str]] = {}
-    for edge in found.edges:
-        following.setdefault(edge.source, []).append(edge.target)
+    targets: dict[str, list[str]] = {}
+    for edge in graph.edges:
+        targets.setdefault(edge.source, []).append(edge.target)
     while stack:
-        node, clock, taken = stack.pop()
+        node, clock, counts = stack.pop()
         clock += TIMES[node[0]][1] if node[0] in TIMES else 0
         if node[0] == "f":
-            done.add(clock)
-        for target in following.get(node, ()):
-            rounds = dict(taken)
-            if target == limits_head(node):
+            times.add(clock)
+        for target in targets.get(node, ()):
+            rounds = dict(counts)
+            if target == name_merge(node):
                 rounds[node] = rounds.get(node, 0) + 1
                 if rounds[node] > limits[node] - 1:
                     continue
             stack.append((target, clock, tuple(sorted(rounds.items()))))
-    return done
+    return times
 
 
-def limits_head(decision: str) -> str:
-    """The merge that the random loops go back to."""
+def name_merge(decision: str) -> str:
+    """Return the merge at the start of the loop that *decision* repeats."""
     return "M" + decision[1:] if decision[0] == "D" else ""
 
 
 @pytest.mark.parametrize("seed", range(30))
-def test_longest_times_are_those_of_playing_every_way(seed):
+def test_the_longest_duration_is_that_of_the_longest_run(seed):
     random = Random(seed)
     edges, last, limits = [], "i", {}
     for number in range(random.randint(1, 4)):
@@ -95,54 +102,54 @@ def test_longest_times_are_those_of_playing_every_way(seed):
             edges += [f"{last}>{step}"]
             last = step
     text = " ".join([*edges, f"{last}>f"])
-    expected = max(played(graph(text), limits))
-    assert time(text, **limits)[1] == expected
+    expected = max(list_run_times(build_graph(text), limits))
+    assert compute_range(text, **limits)[1] == expected
 
 
 # -- loops -------------------------------------------------------------------------------------
 
 
-def kinds(found: FlowGraph) -> dict[str, str]:
-    """Kind of each decision or loop."""
-    return {node.id: node.kind for node in found.nodes if node.id[0] == "D"}
+def list_decision_kinds(graph: FlowGraph) -> dict[str, str]:
+    """Return the kind of each decision or loop."""
+    return {node.id: node.kind for node in graph.nodes if node.id[0] == "D"}
 
 
 def test_only_decisions_that_close_a_cycle_become_loops():
-    found = graph("i>D1 D1>M D1>f M>a a>D2 D2>M D2>f")
-    assert kinds(found) == {"D1": "decision", "D2": "loop"}
+    graph = build_graph("i>D1 D1>M D1>f M>a a>D2 D2>M D2>f")
+    assert list_decision_kinds(graph) == {"D1": "decision", "D2": "loop"}
 
 
-def test_a_cycle_that_nothing_leaves_stays():
-    found = graph("i>M M>a a>M")
-    assert find_cycles([node.id for node in found.nodes], [("M", "a"), ("a", "M")]) == [["M", "a"]]
-    assert not any(edge.role for edge in found.edges)
+def test_a_cycle_without_an_exit_is_no_loop():
+    graph = build_graph("i>M M>a a>M")
+    assert find_cycles([node.id for node in graph.nodes], [("M", "a"), ("a", "M")]) == [["M", "a"]]
+    assert not any(edge.role for edge in graph.edges)
 
 
-def test_every_way_round_passes_a_loop_node():
+def test_every_cycle_contains_a_loop_node():
     random = Random(7)
     for _ in range(200):
         names = ["i", "f", *"abc", "D1", "D2", "D3"]
         edges = {("i", "a"), *(("D" + str(n), "f") for n in (1, 2, 3))}
         edges |= {(random.choice(names[2:]), random.choice(names[2:])) for _ in range(8)}
-        found = graph(" ".join(f"{a}>{b}" for a, b in sorted(edges)))
-        plain = {node.id for node in found.nodes if node.kind not in ("loop", "decision")}
-        rest = [(e.source, e.target) for e in found.edges if e.role != "body"]
-        left = find_cycles([node.id for node in found.nodes], rest)
-        assert all(set(part) <= plain for part in left)
+        graph = build_graph(" ".join(f"{a}>{b}" for a, b in sorted(edges)))
+        plain_nodes = {node.id for node in graph.nodes if node.kind not in ("loop", "decision")}
+        edges_outside_bodies = [(e.source, e.target) for e in graph.edges if e.role != "body"]
+        cycles = find_cycles([node.id for node in graph.nodes], edges_outside_bodies)
+        assert all(set(cycle) <= plain_nodes for cycle in cycles)
 
 
 @pytest.mark.parametrize("text", ["i>M M>a a>D D>M D>f", "i>a a>b b>a", "i>M M>D D>a a>M D>b b>f"])
-def test_forward_edges_hold_no_cycle_and_reach_the_same(text):
-    found = graph(text)
-    forward = list_forward_edges(found)
-    names = [node.id for node in found.nodes]
+def test_forward_edges_have_no_cycle_and_follow_the_order_of_nodes(text):
+    graph = build_graph(text)
+    forward = list_forward_edges(graph)
+    names = [node.id for node in graph.nodes]
     assert find_cycles(names, forward) == []
-    rank = {id: number for number, id in enumerate(sort_nodes(found))}
+    rank = {id: number for number, id in enumerate(sort_nodes(graph))}
     assert all(rank[a] < rank[b] for a, b in forward)
 
 
-def test_order_of_nodes_and_edges_does_not_change_times():
+def test_the_order_of_edges_does_not_change_durations():
     text = "i>F F>a F>D D>b D>c b>M c>M a>J M>J J>d d>f"
     edges = text.split()
-    for turn in range(len(edges)):
-        assert time(" ".join(edges[turn:] + edges[:turn])) == (17, 109)
+    for start in range(len(edges)):
+        assert compute_range(" ".join(edges[start:] + edges[:start])) == (17, 109)

@@ -1,4 +1,4 @@
-"""Overlaps and gaps of guards, found by trying values."""
+"""Overlaps and gaps of the guards of a decision are reported with example values."""
 
 import pytest
 
@@ -17,8 +17,8 @@ VARIABLES = (
 )
 
 
-def findings(*guards: str) -> list[str]:
-    """What is said of a decision with these guards."""
+def check_guards(*guards: str) -> list[str]:
+    """Return the diagnostics of a decision with these guards."""
     nodes = [Node("i", "initial"), Node("d", "decision"), Node("f", "final")]
     edges = [FlowEdge("i", "d")]
     for number, text in enumerate(guards):
@@ -30,7 +30,7 @@ def findings(*guards: str) -> list[str]:
     graph = FlowGraph("g", variables=VARIABLES, nodes=tuple(nodes), edges=tuple(edges))
     sink = Sink()
     validate(Model(Recipe("r", ()), service_graphs=(graph,)), sink, Subject)
-    return [f"{one.rule.code}: {one.message}" for one in sink]
+    return [f"{diagnostic.rule.code}: {diagnostic.message}" for diagnostic in sink]
 
 
 @pytest.mark.parametrize(
@@ -46,8 +46,8 @@ def findings(*guards: str) -> list[str]:
         ("ok and n > 2", "ok and n <= 2", "not ok"),
     ],
 )
-def test_guards_that_lead_to_exactly_one_way_are_right(guards):
-    assert findings(*guards) == []
+def test_guards_of_which_exactly_one_is_true_are_valid(guards):
+    assert check_guards(*guards) == []
 
 
 @pytest.mark.parametrize(
@@ -64,14 +64,14 @@ def test_guards_that_lead_to_exactly_one_way_are_right(guards):
         (("n", "else"), "are not all Boolean: 'n'"),
     ],
 )
-def test_other_guards_are_told_with_values(guards, problem):
-    assert any(problem in found for found in findings(*guards))
+def test_faulty_guards_are_reported_with_example_values(guards, problem):
+    assert any(problem in message for message in check_guards(*guards))
 
 
-def test_a_name_that_nothing_declares_is_told():
-    assert "SM606: in 'g', 'speed' is not declared" in findings("speed > 3", "else")
+def test_an_undeclared_name_is_reported():
+    assert "SM606: in 'g', 'speed' is not declared" in check_guards("speed > 3", "else")
 
 
-def test_text_that_is_no_expression_is_told():
-    (found,) = findings("when it is ready", "else")
-    assert found.startswith("SM616: 'when it is ready' at 'd'")
+def test_a_guard_that_is_no_expression_is_reported():
+    (message,) = check_guards("when it is ready", "else")
+    assert message.startswith("SM616: 'when it is ready' at 'd'")

@@ -1,4 +1,4 @@
-"""The shipped profile: complete in itself, and the one that the pass reads."""
+"""The shipped profile is consistent, and it has every tag that the pass reads."""
 
 import re
 from collections import Counter
@@ -14,18 +14,18 @@ PROFILE = etree.parse(resources.path("metamodels", "sysmlc.profile.uml")).getroo
 PASSES = Path(sysmlc.passes.__file__).parent
 
 
-def elements(type_: str) -> dict[str, etree._Element]:
-    """Elements of an xmi:type by name."""
-    found = (one for one in PROFILE.iter() if one.get(f"{XMI}type") == type_)
-    return {one.get("name"): one for one in found}
+def list_elements(type_: str) -> dict[str, etree._Element]:
+    """Return the elements of an xmi:type by name."""
+    elements = (element for element in PROFILE.iter() if element.get(f"{XMI}type") == type_)
+    return {element.get("name"): element for element in elements}
 
 
-def features(owner: etree._Element, tag: str) -> set[str]:
-    """Names of its features."""
-    return {one.get("name") for one in owner.findall(tag)}
+def list_features(owner: etree._Element, tag: str) -> set[str]:
+    """Return the names of the features of an element."""
+    return {feature.get("name") for feature in owner.findall(tag)}
 
 
-def test_the_profile_has_the_stereotypes_of_the_design():
+def test_the_profile_has_the_expected_stereotypes():
     names = {
         "Recipe",
         "Task",
@@ -38,33 +38,33 @@ def test_the_profile_has_the_stereotypes_of_the_design():
         "Capability",
         "Loop",
     }
-    assert names <= elements("uml:Stereotype").keys() <= names | {"Service"}
+    assert names <= list_elements("uml:Stereotype").keys() <= names | {"Service"}
 
 
-def test_ids_are_unique_and_references_lead_somewhere():
-    ids = Counter(one.get(f"{XMI}id") for one in PROFILE.iter() if one.get(f"{XMI}id"))
+def test_ids_are_unique_and_references_name_existing_elements():
+    ids = Counter(element.get(f"{XMI}id") for element in PROFILE.iter() if element.get(f"{XMI}id"))
     assert max(ids.values()) == 1
-    for one in PROFILE.iter():
+    for element in PROFILE.iter():
         for name in ("type", "association", "general", "memberEnd", "references", "eSuperTypes"):
-            assert set((one.get(name) or "").split()) <= ids.keys()
+            assert set((element.get(name) or "").split()) <= ids.keys()
 
 
-def test_each_extension_is_there_from_both_sides():
+def test_each_base_property_of_a_stereotype_has_an_extension():
     bases = {
         (name, feature.removeprefix("base_"))
-        for name, one in elements("uml:Stereotype").items()
-        for feature in features(one, "ownedAttribute")
+        for name, stereotype in list_elements("uml:Stereotype").items()
+        for feature in list_features(stereotype, "ownedAttribute")
         if feature.startswith("base_")
     }
-    assert {f"E_{name}_{metaclass}" for name, metaclass in bases} == elements(
+    assert {f"E_{name}_{metaclass}" for name, metaclass in bases} == list_elements(
         "uml:Extension"
     ).keys()
 
 
 def test_the_ecore_definition_has_the_same_features():
-    classes = elements("ecore:EClass")
-    for name, stereotype in elements("uml:Stereotype").items():
-        assert features(stereotype, "ownedAttribute") == features(
+    classes = list_elements("ecore:EClass")
+    for name, stereotype in list_elements("uml:Stereotype").items():
+        assert list_features(stereotype, "ownedAttribute") == list_features(
             classes[name], "eStructuralFeatures"
         )
 
@@ -73,8 +73,7 @@ def test_every_tag_that_the_pass_reads_is_in_the_profile():
     code = "".join(path.read_text(encoding="utf-8") for path in PASSES.glob("recipe/*.py"))
     read = set(re.findall(r"tags\.\w+\(\"(\w+)\"", code))
     read |= set(re.findall(r"tags\.range\(\"\w+\", \"(\w+)\"", code))
-    known = set().union(
-        *(features(one, "ownedAttribute") for one in elements("uml:Stereotype").values())
-    )
+    stereotypes = list_elements("uml:Stereotype").values()
+    attributes = set().union(*(list_features(s, "ownedAttribute") for s in stereotypes))
     assert len(read) > 20
-    assert read <= known
+    assert read <= attributes

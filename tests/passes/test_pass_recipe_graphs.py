@@ -1,0 +1,98 @@
+"""The pass ``recipe``: the service graphs of tasks, with their loops, guards and assignments."""
+
+from recipe_runs import derive_model, derive_service_graph, print_application, shorten_id
+
+import recipe_samples as samples
+from sysmlc.logic.expressions.expression import Binary, Literal, Unary
+from sysmlc.recipe.expression import make_variable
+
+
+def test_results_are_assigned_to_variables_and_guards_are_expressions():
+    nodes, graph = derive_service_graph()
+    assert nodes["look"].assign == (("ok", "ok"),)
+    guards = {edge.text: edge.guard for edge in graph.edges if edge.text}
+    assert guards == {"ok": make_variable("ok"), "else": None}
+    assert {edge.text for edge in graph.edges if edge.is_else} == {"else"}
+
+
+def test_a_decision_that_goes_back_is_a_loop_with_body_and_exit():
+    nodes, graph = derive_service_graph(
+        "s m", "m l", "l d", "d m ok", "d g else", "g a", "a b", "b e"
+    )
+    loop = nodes["good?"]
+    assert (loop.kind, loop.expression, loop.max_iterations) == ("loop", make_variable("ok"), None)
+    roles = {shorten_id(e.target): e.role for e in graph.edges if e.source == loop.id}
+    assert roles == {"after": "body", "grip": "exit"}
+
+
+def test_the_condition_of_a_loop_is_the_negated_guard_of_its_exit():
+    nodes, _ = derive_service_graph("s m", "m l", "l d", "d m else", "d g ok", "g a", "a b", "b e")
+    assert nodes["good?"].expression == Unary("not", make_variable("ok"))
+
+
+def test_a_tag_of_the_decision_bounds_the_iterations_of_a_loop():
+    bounded = '"good?" subkind="decision"\n      ' + print_application(
+        "d", "Loop", 'tag.maxIterations="4"'
+    )
+    nodes, _ = derive_service_graph(
+        "s m",
+        "m l",
+        "l d",
+        "d m ok",
+        "d g else",
+        "g a",
+        "a b",
+        "b e",
+        nodes=samples.NODES.replace('"good?" subkind="decision"', bounded),
+    )
+    assert nodes["good?"].max_iterations == 4
+
+
+def test_several_assignments_of_an_action_become_a_chain_of_nodes():
+    nodes, graph = derive_service_graph(
+        "s g",
+        "g x",
+        "x l",
+        "l a",
+        "a e",
+        nodes=samples.NODES
+        + '    Action x "count" subkind="opaque" body="n := n + 1; ok := true"\n',
+    )
+    assert nodes["count"].variable == "n"
+    assert nodes["count"].expression == Binary("+", make_variable("n"), Literal(1))
+    assert nodes["count#2"].variable == "ok"
+    ends = {(shorten_id(edge.source), shorten_id(edge.target)) for edge in graph.edges}
+    assert {("grip", "count"), ("count", "count#2"), ("count#2", "look")} <= ends
+
+
+def test_an_object_flow_orders_nodes_without_a_control_flow():
+    flow = "    ObjectFlow o1\n      -> flow-source l.ok\n      -> flow-target a.in\n"
+    nodes = samples.NODES.replace(
+        '"place" subkind="call-behavior"\n      -> calls place\n',
+        '"place" subkind="call-behavior"\n      -> calls place\n'
+        '      Pin a.in "ok" direction="in"\n        -> typed-by Boolean\n',
+        1,
+    )
+    nodes_by_id, graph = derive_service_graph("s g", "g l", "a e", nodes=nodes + flow)
+    assert nodes_by_id["place"].bind == (("ok", make_variable("ok")),)
+    items = {(shorten_id(e.source), shorten_id(e.target), e.item) for e in graph.edges}
+    assert ("look", "place", "Plant::Boolean") in items
+
+
+def test_an_activity_without_initial_and_final_node_gets_both():
+    """By UML, an action without incoming flows starts, and the last action ends the activity."""
+    nodes = samples.NODES.replace('    Control s "start" subkind="initial"\n', "")
+    nodes = nodes.replace('    Control e "end" subkind="final"\n', "")
+    steps = ("g l", "l d", "d a ok", "d b else", "a m", "b m")
+    _, graph = derive_service_graph(*steps, nodes=nodes)
+    ends = {(shorten_id(edge.source), shorten_id(edge.target)) for edge in graph.edges}
+    assert {("initial", "grip"), ("after", "final")} <= ends
+
+
+def test_an_unnamed_attribute_or_pin_is_named_by_its_kind():
+    text = samples.task().replace('Property mount.n "n"', "Property mount.n")
+    text = text.replace('Pin l.ok "ok"', "Pin l.ok")
+    graph = derive_model(text).service_graphs[0]
+    assert [variable.name for variable in graph.variables] == ["ok", "pin", "property"]
+    look = next(node for node in graph.nodes if node.id == "Plant::Mount::look")
+    assert look.assign == (("pin", "pin"),)
