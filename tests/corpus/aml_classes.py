@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from lxml import etree
+from reading_corpus import local_name
 
 STANDARD_LIBRARIES = Path(__file__).parents[2] / "metamodels" / "automationml-libraries.aml"
 
@@ -18,10 +19,6 @@ REFERENCES = {
     "RoleRequirements": ("RefBaseRoleClassPath", "RoleClass"),
 }
 """Elements that refer to classes: the attribute, and the kind of the class."""
-
-
-def local(node):
-    return etree.QName(node).localname
 
 
 def list_classes(root):
@@ -51,7 +48,7 @@ def iter_unresolved(root):
     aliases = {node.get("Alias") for node in root.iter("{*}ExternalReference")}
     ids = {_normalize_id(node.get("ID")) for node in root.iter(etree.Element) if node.get("ID")}
     for ordinal, node in enumerate(root.iter(etree.Element)):
-        attribute, tag = REFERENCES.get(local(node), ("", ""))
+        attribute, tag = REFERENCES.get(local_name(node), ("", ""))
         text = node.get(attribute, "").strip() if attribute else ""
         if text and not _means_element(node, tag, text, ids):
             alias, separator, path = text.partition("@")
@@ -63,7 +60,7 @@ def iter_unresolved(root):
 def _means_element(node, tag, text, ids):
     """Whether a reference names an element, or the class around it by its bare name."""
     owner = node.getparent()
-    is_owner = local(node) == local(owner) == tag and text == owner.get("Name")
+    is_owner = local_name(node) == local_name(owner) == tag and text == owner.get("Name")
     return is_owner or _normalize_id(text) in ids or _normalize_id(text.split("/")[0]) in ids
 
 

@@ -29,7 +29,7 @@ class Difference:
         return f"{self.left.kind} {self.left.name!r} {self.aspect}: {self.before} | {self.after}"
 
 
-Reason = tuple[str, Callable[["Agreement", Difference], bool]]
+Reason = tuple[str, Callable[[Difference], bool]]
 """A reason for differences, and a predicate for the differences that it explains."""
 
 
@@ -66,11 +66,11 @@ class Agreement:
         counts: Counter[str] = Counter()
         unexplained: list[str] = []
         for difference in self.differences:
-            name = next((n for n, fits in table if fits(self, difference)), None)
-            if name is None:
+            reason = next((name for name, fits in table if fits(difference)), None)
+            if reason is None:
                 unexplained.append(str(difference))
             else:
-                counts[name] += 1
+                counts[reason] += 1
         return counts, unexplained
 
     def _compare(self, left: str, right: str) -> Iterator[Difference]:

@@ -171,9 +171,7 @@ def read_graph(corpus, name, has_snapshots=True):
 def test_differences_of_two_files_with_one_model_have_reasons(corpus, files):
     names = (files.left, files.right)
     agreement = Agreement(*(read_graph(corpus, name, files.has_snapshots) for name in names))
-    counts, unexplained = agreement.explain(
-        (reason.why, lambda _, d, fits=reason.fits: fits(d)) for reason in files.reasons
-    )
+    counts, unexplained = agreement.explain((reason.why, reason.fits) for reason in files.reasons)
     assert unexplained == []
     assert counts == {reason.why: reason.count for reason in files.reasons}
     assert agreement.count_pairs() >= files.min_pairs

@@ -18,7 +18,7 @@ def expected_validity(corpus):
     return {row["file"]: row["valid"] for row in rows if "valid" in row}
 
 
-def test_the_files_that_violate_their_schema_are_those_in_the_measurement(
+def test_files_violate_their_schema_as_measured(
     corpus, expected_validity
 ):
     schemas = load_schemas(corpus / "aml" / "schema")

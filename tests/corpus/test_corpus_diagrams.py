@@ -64,7 +64,7 @@ def test_every_diagram_has_its_name_and_type(name, corpus, compile_once):
     assert views == {id: (title, type_) for id, (title, type_, _) in expected.items()}
 
 
-def test_tank_control_has_its_fifteen_drawings(compile_once):
+def test_tank_control_has_fourteen_drawings_and_seven_tables(compile_once):
     words = Counter(
         view.attrs["diagram"] for view in list_views(compile_once("Tank_control_2.mdzip"))
     )

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from lxml import etree
+from reading_corpus import local_name
 
 _XSI = "{http://www.w3.org/2001/XMLSchema-instance}type"
 _TOOL_DATA = ("Extension", "eAnnotations", "Documentation")
@@ -42,7 +43,7 @@ def iter_references(data: bytes, features: frozenset[str]) -> Iterator[Reference
     for element in iter_content(root):
         target = _xmi_attribute(element, "}idref")
         if target:
-            yield _make_reference(element.getparent(), _local_name(element), target, elements)
+            yield _make_reference(element.getparent(), local_name(element), target, elements)
         for feature, ids in iter_attributes(element, root, elements, features):
             for id in ids:
                 yield _make_reference(element, feature, id, elements)
@@ -61,7 +62,7 @@ def classify_child(
     """Return owner's type, feature and "child" if *element* refers to one of *elements*."""
     if _xmi_attribute(element, "}idref") not in elements:
         return None
-    return _type_of(element.getparent()), _local_name(element), "child"
+    return _type_of(element.getparent()), local_name(element), "child"
 
 
 def iter_attributes(
@@ -101,7 +102,7 @@ def iter_content(root: etree._Element) -> Iterable[etree._Element]:
     """Yield the elements of the model, without the data of tools."""
     tool_data: set[etree._Element] = set()
     for element in _iter_elements(root):
-        if element.getparent() in tool_data or _local_name(element) in _TOOL_DATA:
+        if element.getparent() in tool_data or local_name(element) in _TOOL_DATA:
             tool_data.add(element)
         else:
             yield element
@@ -121,8 +122,4 @@ def _xmi_attribute(element: etree._Element, name: str) -> str:
 
 
 def _type_of(element: etree._Element) -> str:
-    return (_xmi_attribute(element, "}type") or _local_name(element)).rpartition(":")[2]
-
-
-def _local_name(element: etree._Element) -> str:
-    return etree.QName(element).localname
+    return (_xmi_attribute(element, "}type") or local_name(element)).rpartition(":")[2]

@@ -54,16 +54,13 @@ def is_dialect_difference(change: Change) -> bool:
     Papyrus applies SysML package by package and MagicDraw once. The tools' libraries have
     different names. MagicDraw writes the path of a connector end also where partWithPort states it.
     """
-    is_library = "::" not in change.element or change.element.startswith("SysML::")
-    library_stub = change.detail in ("Profile", "Package") and is_library
-    connector_path = change.detail == "Application" and change.element.endswith(
-        "::NestedConnectorEnd"
-    )
-    application = change.detail.startswith("applies ")
-    import_target = change.element.endswith("::<Import>") and change.detail.startswith(
-        "references "
-    )
-    return library_stub or connector_path or application or import_target
+    element, detail = change.element, change.detail
+    is_in_library = "::" not in element or element.startswith("SysML::")
+    is_library_stub = detail in ("Profile", "Package") and is_in_library
+    is_connector_path = detail == "Application" and element.endswith("::NestedConnectorEnd")
+    is_applied_profile = detail.startswith("applies ")
+    is_import_target = element.endswith("::<Import>") and detail.startswith("references ")
+    return is_library_stub or is_connector_path or is_applied_profile or is_import_target
 
 
 def normalize_outputs(

@@ -46,14 +46,17 @@ class Metamodel:
         for child in element:
             yield from self._check_value(metaclass, str(child.tag), child, features)
         for name, value in element.attrib.items():
-            if not str(name).startswith("{") and name != "href":
-                for word in (
-                    str(value).split() if features.get(str(name)) in self._own_features else [""]
-                ):
-                    target = elements.get(word)
-                    if word and target is None:
-                        yield f"{metaclass}.{name} leads nowhere"
-                    yield from self._check_value(metaclass, str(name), target, features)
+            feature = str(name)
+            if feature.startswith("{") or feature == "href":
+                continue
+            if features.get(feature) not in self._own_features:
+                yield from self._check_value(metaclass, feature, None, features)
+                continue
+            for id_ in str(value).split():
+                target = elements.get(id_)
+                if target is None:
+                    yield f"{metaclass}.{feature} names no element"
+                yield from self._check_value(metaclass, feature, target, features)
 
     def _check_value(
         self, metaclass: str, name: str, value: Element | None, features: dict[str, str]
@@ -68,11 +71,11 @@ class Metamodel:
             and feature_type in self._own_features
             and not self._fits(value, feature_type)
         ):
-            yield f"{metaclass}.{name} wants {feature_type}, not {metaclass_of(value)}"
+            yield f"{metaclass}.{name} has the type {feature_type}, not {metaclass_of(value)}"
 
     def _fits(self, value: Element, feature_type: str) -> bool:
-        untyped = value.get(f"{{{XMI}}}type") is None
-        return untyped or self._specializes(metaclass_of(value), feature_type)
+        is_untyped = value.get(f"{{{XMI}}}type") is None
+        return is_untyped or self._specializes(metaclass_of(value), feature_type)
 
     def _collect_features(self, metaclass: str) -> dict[str, str]:
         features: dict[str, str] = {}

@@ -45,7 +45,7 @@ def test_every_part_of_an_interaction_is_drawn(seed, tmp_path):
 
 @pytest.mark.long
 @pytest.mark.plantuml
-def test_real_plantuml_renders_them(tmp_path, plantuml):
+def test_plantuml_renders_every_drawing(tmp_path, plantuml):
     drawings = {
         f"{seed}/{path}": text
         for seed in SEEDS

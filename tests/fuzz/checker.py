@@ -95,7 +95,7 @@ class Checker:
     def run(self, *args: str) -> CommandResult:
         """Run a command; fail if it crashes or exceeds the limits."""
         result = self._server.run(self.folder, *args)
-        assert not result.is_fault, result.summary
+        assert not result.is_crash, result.summary
         assert result.seconds <= SECONDS, result.summary
         assert result.megabytes <= MEGABYTES, result.summary
         return result

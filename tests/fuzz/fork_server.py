@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Self
 
 MEGABYTE = 1 << 20
-_SHOWN = 50_000_000
+_MAX_OUTPUT = 50_000_000
 _TESTS = Path(__file__).parents[1]
 
 
@@ -49,7 +49,7 @@ class CommandResult:
         return f"exit {self.code}, {self.seconds} s, {self.megabytes} MB: {start}"
 
     @property
-    def is_fault(self) -> bool:
+    def is_crash(self) -> bool:
         """Whether the command crashed: killed, a traceback, or an internal error of sysmlc."""
         signs = ("Traceback (most recent", "fault of sysmlc", "SM900", "SM901", "SM905")
         output = self.out + self.err
@@ -71,7 +71,7 @@ class ForkServer:
 
     def run(self, folder: Path, *args: str, limits: Limits | None = None) -> CommandResult:
         """Run ``sysmlc ARGS`` in *folder* and return its result."""
-        request = {"folder": str(folder), "args": args, "bounds": asdict(limits or Limits())}
+        request = {"folder": str(folder), "args": args, "limits": asdict(limits or Limits())}
         assert self._process.stdin
         assert self._process.stdout
         self._process.stdin.write(json.dumps(request) + "\n")
@@ -93,7 +93,7 @@ def _serve_commands() -> None:
     _import_commands()
     for line in sys.stdin:
         request = json.loads(line)
-        result = _run_command(request["folder"], request["args"], Limits(**request["bounds"]))
+        result = _run_command(request["folder"], request["args"], Limits(**request["limits"]))
         print(json.dumps(asdict(result)), flush=True)
 
 
@@ -114,7 +114,7 @@ def _run_command(folder: str, args: Sequence[str], limits: Limits) -> CommandRes
 
 def _read_output(stream: object) -> str:
     stream.seek(0)
-    return stream.read(_SHOWN).decode("utf-8", "replace")
+    return stream.read(_MAX_OUTPUT).decode("utf-8", "replace")
 
 
 def _run_child(folder: str, args: Sequence[str], limits: Limits, out: int, err: int) -> None:

@@ -58,7 +58,7 @@ class Hunter:
         folder = self._prepare_folder(mutant)
         result = self._compile(self._server, folder, mutant)
         self._count_result(mutant, result)
-        if result.is_fault:
+        if result.is_crash:
             yield Failure(mutant, f"exit {result.code}: {_find_main_line(result)}")
         elif result.seconds > SECONDS:
             yield Failure(mutant, f"{result.seconds:.1f} s of processor time")

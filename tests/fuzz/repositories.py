@@ -323,7 +323,7 @@ def take_snapshot(folder: Path) -> dict[str, str]:
 
 
 def _find_faults(result: CommandResult) -> Iterator[str]:
-    if result.is_fault:
+    if result.is_crash:
         yield result.summary
     elif result.seconds > SECONDS:
         yield f"{result.seconds:.1f} s of processor time"

@@ -39,12 +39,12 @@ def test_hostile_repositories_change_only_their_output_folder(fork_server, tmp_p
 @pytest.mark.long
 @pytest.mark.corpus
 @pytest.mark.parametrize("first", range(FIRST_REAL, FIRST_REAL + REAL, BATCH))
-def test_hostile_repositories_with_real_models(fork_server, tmp_path, corpus, first):
+def test_hostile_repositories_with_real_models_change_only_their_output_folder(fork_server, tmp_path, corpus, first):
     models = list_models(corpus, LARGEST, [*SUFFIXES])
     assert find_unanswered(fork_server, tmp_path, range(first, first + BATCH), models) == []
 
 
-def test_a_repository_is_the_same_for_its_seed():
+def test_a_seed_determines_its_repository():
     models = list_models(None, 0)
     assert make_repository(FIRST_SEED, models) == make_repository(FIRST_SEED, models)
     assert make_repository(FIRST_SEED, models) != make_repository(FIRST_SEED + 1, models)
