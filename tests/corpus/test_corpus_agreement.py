@@ -42,7 +42,7 @@ class FilePair:
     has_snapshots: bool = True
     """Whether to read the snapshots of profiles and libraries in a file.
 
-    Only files that both have snapshots agree about the meaning of profiles.
+    Only files that both have snapshots agree about the meaning of propair.
     """
 
 
@@ -77,8 +77,8 @@ FILE_PAIRS = {
                 lambda d: d.left.kind == "ObjectFlow" and d.aspect == "-> flow-source",
             ),
         ),
-        # Later: nine activities on streaming with a class, a package and an association, and
-        # additions to the activities that test classes with two ends.
+        # The mdxml is later: nine activities on streaming with a class, a package and an
+        # association, and additions to the activities that test classes with two ends.
         only_left={
             "Activity": 9,
             "ObjectFlow": 7,
@@ -93,7 +93,7 @@ FILE_PAIRS = {
             "Control": 1,
             "Package": 1,
         },
-        # The end of the association, as it was; and an import of the library of primitive types.
+        # The earlier end of the association, and an import of the library of primitive types.
         only_right={"Import": 1, "Property": 1},
     ),
     "Tank control: project, and plain XML of a near revision": FilePair(
@@ -116,7 +116,7 @@ FILE_PAIRS = {
         min_pairs=1034,
         reasons=(
             Reason(
-                "only the extension says that the id in MagicDraw's own library is Real's",
+                "only the extension identifies Real by its id in MagicDraw's own library",
                 4,
                 lambda d: (
                     d.left.name in ("Latitude", "Longitude") and d.aspect in ("-> typed-by", "role")
@@ -145,7 +145,7 @@ FILE_PAIRS = {
                 ),
             ),
             Reason(
-                "Eclipse leaves out tags that have their default",
+                "Eclipse omits tags with their default value",
                 7,
                 lambda d: (
                     differs_in_tag("Repeatable", "Required", "Mappable")(d) and d.before == "false"
@@ -167,31 +167,31 @@ def read_graph(corpus, name, has_snapshots=True):
     return lower(sources, ("resolve", "classify"))[0]
 
 
-@pytest.mark.parametrize("files", FILE_PAIRS.values(), ids=FILE_PAIRS)
-def test_differences_of_two_files_with_one_model_have_reasons(corpus, files):
-    names = (files.left, files.right)
-    agreement = Agreement(*(read_graph(corpus, name, files.has_snapshots) for name in names))
-    counts, unexplained = agreement.explain((reason.why, reason.fits) for reason in files.reasons)
+@pytest.mark.parametrize("pair", FILE_PAIRS.values(), ids=FILE_PAIRS)
+def test_differences_of_two_files_with_one_model_have_reasons(corpus, pair):
+    names = (pair.left, pair.right)
+    agreement = Agreement(*(read_graph(corpus, name, pair.has_snapshots) for name in names))
+    counts, unexplained = agreement.explain((reason.why, reason.fits) for reason in pair.reasons)
     assert unexplained == []
-    assert counts == {reason.why: reason.count for reason in files.reasons}
-    assert agreement.count_pairs() >= files.min_pairs
+    assert counts == {reason.why: reason.count for reason in pair.reasons}
+    assert agreement.count_pairs() >= pair.min_pairs
     assert agreement.measure_agreement() >= 0.99
-    assert agreement.count_only_left() == Counter(files.only_left)
-    assert agreement.count_only_right() == Counter(files.only_right)
+    assert agreement.count_only_left() == Counter(pair.only_left)
+    assert agreement.count_only_right() == Counter(pair.only_right)
 
 
 SYSML_DIFFERENCES = {
     # 1.7 renames FlowDirection and FeatureDirection, and types texts by its own String.
     "Property -> typed-by": 11,
     "Property default_instance": 2,
-    # 1.7 turns stereotypes that had one base each into ones of Abstraction, Class or Property,
-    # and takes others out of the tree of ElementPropertyPath.
+    # 1.7 replaces the single bases of stereotypes by Abstraction, Class or Property, and removes
+    # stereotypes from the tree of ElementPropertyPath.
     "Stereotype -> extends": 7,
     "Stereotype -> specializes": 3,
-    # 1.7 derives ElementGroup and Stakeholder from comments the other way round.
+    # 1.7 inverts the derivation of ElementGroup and Stakeholder from comments.
     "Property derived": 2,
     "Property multiplicity": 2,
-    # 1.7 has value properties where MagicDraw exports composite ones, public ones where it has
+    # 1.7 has value properties instead of MagicDraw's composite ones, public properties instead of
     # private ones, and the effect of parameters.
     "Property aggregation": 6,
     "Property visibility": 4,

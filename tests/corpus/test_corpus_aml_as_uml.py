@@ -15,7 +15,7 @@ from sysmlc.sources import Source
 pytestmark = pytest.mark.corpus
 
 IGNORED = {"id", "source", "trace"}
-RESPELT_ID = "a value names an ID, which XML does not allow for xmi:id: another one is written"
+RESPELT_ID = "a value names an ID that xmi:id does not allow, so another id is written"
 
 
 def save(graph):

@@ -18,7 +18,7 @@ pytestmark = pytest.mark.corpus
 
 IGNORED = {"id", "source", "trace"}
 NEW_VERSION = "the file is CAEX 3.0 now"
-WRITER = "CAEX 3.0 wants to know who wrote it (SM746)"
+WRITER = "CAEX 3.0 requires the writer of the file (SM746)"
 REASONS = {
     ("attribute", "version: '2.15' -> '3.0'"): NEW_VERSION,
     ("attribute", "version: None -> '3.0'"): NEW_VERSION,

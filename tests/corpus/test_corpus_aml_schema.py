@@ -18,9 +18,7 @@ def expected_validity(corpus):
     return {row["file"]: row["valid"] for row in rows if "valid" in row}
 
 
-def test_files_violate_their_schema_as_measured(
-    corpus, expected_validity
-):
+def test_files_violate_their_schema_as_measured(corpus, expected_validity):
     schemas = load_schemas(corpus / "aml" / "schema")
     counts = {True: 0, False: 0}
     for name, is_valid in sorted(expected_validity.items()):

@@ -39,7 +39,7 @@ READ_ONLY = {
 }
 """Schemas of files that sysmlc reads and does not write."""
 NEVER_WRITTEN = {
-    # A variable of a machine can have a material as its type, but none of the models has one.
+    # The type of a machine's variable can be a material, but no model has such a variable.
     "sysmlc-recipe#/valueType/material",
 }
 
@@ -74,7 +74,7 @@ def find_documents(corpus: Path, folder: Path) -> Iterator[Document]:
         for rule in load_full_catalogue().values()
         for text in (rule.read_page().wrong, rule.read_page().right)
     ]
-    # The rules about comments with JSON show comments that somebody damaged.
+    # The rules about comments with JSON have examples with damaged comments.
     graphs = [text for text in texts if _is_graph(text) and "sysmlc-kept" not in text]
     for number, text in enumerate(graphs):
         model = folder / f"rule{number}.ir"

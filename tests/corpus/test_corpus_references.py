@@ -29,16 +29,19 @@ _TOOL_STEREOTYPES = {
 }
 
 REASONS = {
-    "a stereotype's extension of a metaclass is one edge": (
+    "the extension of a metaclass by a stereotype is a single edge": (
         1341,
         lambda w: w.source in _EXTENSION or w.target_type in _EXTENSION,
     ),
-    "properties base_... are that edge too": (
+    "properties named base_... are part of that edge": (
         10,
         lambda w: w.feature == "redefinedProperty" and w.source != "ExtensionEnd",
     ),
-    "how MagicDraw shows and stores the model": (563, lambda w: w.source in _TOOL_STEREOTYPES),
-    "a diagram of MagicDraw is no element": (161, lambda w: w.target_type == "Diagram"),
+    "stereotypes describe how MagicDraw shows and stores the model": (
+        563,
+        lambda w: w.source in _TOOL_STEREOTYPES,
+    ),
+    "a diagram of MagicDraw is not an element": (161, lambda w: w.target_type == "Diagram"),
     "events are part of the triggers that name them": (
         33,
         lambda w: w.target_type in _EVENTS or w.source in _EVENTS,
@@ -47,15 +50,15 @@ REASONS = {
         76,
         lambda w: w.target_type == "RedefinableTemplateSignature",
     ),
-    "clauses of a conditional node are in their order": (
+    "the order of clauses in a conditional node is an attribute": (
         6,
         lambda w: w.feature in ("predecessorClause", "successorClause"),
     ),
-    "the type of a value is that of what has it": (
+    "the type of a value is the type of its owner": (
         8,
         lambda w: w.source in ("OpaqueExpression", "InstanceValue"),
     ),
-    "an edge has no stereotypes": (1, lambda w: w.target_type == "generalization"),
+    "stereotypes of edges are not represented": (1, lambda w: w.target_type == "generalization"),
     "drawn edges and tags of XMI are notation": (11, lambda w: w.source in ("UMLEdge", "Tag")),
     "the roles of a collaboration are its properties": (
         1,

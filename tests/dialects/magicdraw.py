@@ -307,7 +307,7 @@ def _write_outside_reference(source: Element, reference: Element) -> None:
 def translate_href(href: str) -> tuple[str, str]:
     """Return MagicDraw's reference to an element of the standards' files, and its readable path.
 
-    A reference to another file stays as it is, and its path is empty.
+    A reference to any other file is unchanged, and its path is empty.
     """
     primitives = "UML Standard Profile::UML2 Metamodel::PrimitiveTypes"
     if href.startswith(_PRIMITIVES):

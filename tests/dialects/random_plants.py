@@ -23,7 +23,7 @@ def random_plant(random):
 
 
 class PlantBuilder:
-    """Builds a document; keeps tables of its classes by path and of its masters by id."""
+    """Builds a document; has tables of its classes by path and of its masters by id."""
 
     def __init__(self, random):
         self.random = random

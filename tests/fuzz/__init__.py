@@ -1,1 +1,1 @@
-"""Hostile and spoilt input: a guard that runs sysmlc within limits, and a fuzzer on top of it."""
+"""Hostile and mutated input: a fork server that runs sysmlc within limits, and a fuzzer."""

@@ -136,7 +136,7 @@ _EXPRESSIONS = (
 
 @dataclass(frozen=True, slots=True)
 class Repository:
-    """Files and links below the project, and the command that is run in it."""
+    """Files and links below the project, and the command to run in it."""
 
     seed: int
     files: Mapping[str, bytes]
@@ -151,7 +151,7 @@ class Repository:
 
 
 def make_repository(seed: int, models: Sequence[Path]) -> Repository:
-    """Return the hostile repository of a number; *among* are the models that it may hold."""
+    """Return the hostile repository of a seed; its model is one of *models*."""
     random = Random(seed)
     make = random.choice((_make_overlay, _make_scenario, _make_templates, _make_model, _make_model))
     base = make(seed, random, models)
@@ -164,7 +164,7 @@ def make_repository(seed: int, models: Sequence[Path]) -> Repository:
         files["pyproject.toml"] = table
     links = {}
     if random.random() < 0.4:
-        # A folder that the command line names may be a link; one that a file names may not.
+        # The output folder may be a link if the command line names it, but not if a file does.
         names = ("link", "out/contracts", "out/manifest.json", "t", "m.sysml")
         name = random.choice(names if base.names_output else ("out", *names))
         if name not in files:
@@ -290,7 +290,7 @@ def _mutate_yaml(text: str, random: Random) -> tuple[str, bytes]:
 def run_command(
     repository: Repository, server: ForkServer, folder: Path
 ) -> tuple[CommandResult, list[str]]:
-    """Compile a repository in *folder*. Return how the command ended and what is wrong with it."""
+    """Run the command of a repository in *folder*; return its result and the problems."""
     shutil.rmtree(folder, ignore_errors=True)
     project = folder / PROJECT
     write_files(SENTINELS.items(), folder)
@@ -332,10 +332,10 @@ def _find_faults(result: CommandResult) -> Iterator[str]:
 
 
 def _find_changes(before: Mapping[str, str], folder: Path, repository: Repository) -> Iterator[str]:
-    """Yield what changed outside the output folder.
+    """Yield the changes outside the output folder.
 
-    Where the configuration may choose the folder, new files may be anywhere in the project. What a
-    manifest in the output folder lists, with its digest, belongs to sysmlc.
+    If the configuration may choose the folder, new files may be anywhere in the project. Files
+    that a manifest in the output folder lists with their digest belong to sysmlc.
     """
     after = take_snapshot(folder)
     output = f"{PROJECT}/{OUTPUT}"

@@ -39,7 +39,9 @@ def test_hostile_repositories_change_only_their_output_folder(fork_server, tmp_p
 @pytest.mark.long
 @pytest.mark.corpus
 @pytest.mark.parametrize("first", range(FIRST_REAL, FIRST_REAL + REAL, BATCH))
-def test_hostile_repositories_with_real_models_change_only_their_output_folder(fork_server, tmp_path, corpus, first):
+def test_hostile_repositories_with_real_models_change_only_their_output_folder(
+    fork_server, tmp_path, corpus, first
+):
     models = list_models(corpus, LARGEST, [*SUFFIXES])
     assert find_unanswered(fork_server, tmp_path, range(first, first + BATCH), models) == []
 
@@ -51,7 +53,7 @@ def test_a_seed_determines_its_repository():
 
 
 def test_a_change_outside_the_output_folder_is_detected(fork_server, tmp_path):
-    """The command line may write anywhere, so it serves as a fault that must be noticed."""
+    """The command line may write anywhere, so it serves as a fault that must be detected."""
     files = {"m.sysml": b"package P { part def A; }"}
     for output in ("elsewhere", "../sentinel/new"):
         repository = Repository(0, files, {}, ("build", "m.sysml", "-o", output), "")

@@ -1,11 +1,21 @@
 """Random changes of SysML v2 and KerML texts: tokens, members, names, relations, cycles."""
 
-import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from random import Random
-from typing import TypeVar
 
 from dialects.mutations import pair_in_cycle
+from fuzz.text_choices import (
+    choose_member,
+    choose_name,
+    choose_or,
+    choose_token,
+    fill_in,
+    insert,
+    insert_member,
+    is_kerml,
+    make_member,
+    make_path,
+)
 from fuzz.text_pieces import (
     KERML_KINDS,
     KEYWORDS,
@@ -21,11 +31,9 @@ from fuzz.text_pieces import (
     is_name,
     split_pieces,
 )
-from fuzz.text_templates import EXPRESSIONS, JUNK, KERML_MEMBERS, MEMBERS, MULTIPLICITIES
+from fuzz.text_templates import EXPRESSIONS, JUNK, MULTIPLICITIES
 
-T = TypeVar("T")
 TextChange = Callable[[Pieces, Random], Pieces]
-_PLACEHOLDER = re.compile(r"\$([abc])")
 _LARGE = 3000
 """Number of pieces from which a member is too large to be inserted many times."""
 
@@ -47,75 +55,21 @@ def mutate_text(text: str, random: Random, donor: str = "") -> tuple[str, str]:
     return " ".join(descriptions), "".join(parts)
 
 
-def _choose_or(candidates: Sequence[T], random: Random, default: T) -> T:
-    """Return a random candidate, or *default* if there are none."""
-    return random.choice(candidates) if candidates else default
-
-
-def _choose_token(parts: Pieces, random: Random) -> int:
-    return _choose_or(find_tokens(parts), random, 0)
-
-
-def _choose_member(parts: Pieces, random: Random) -> tuple[int, int]:
-    return _choose_or(find_members(parts), random, (0, 0))
-
-
-def _choose_name(parts: Pieces, random: Random) -> str:
-    """Return a name of the text, in most cases one that the text declares."""
-    index = _choose_or(
-        find_declared_names(parts) if random.random() < 0.7 else find_names(parts), random, -1
-    )
-    return parts[index] if index >= 0 else "none"
-
-
-def _make_path(parts: Pieces, random: Random) -> str:
-    """Return a name, a qualified name or a feature chain; its names may be unrelated."""
-    first, second = _choose_name(parts, random), _choose_name(parts, random)
-    compounds = (f"{first}::{second}", f"{first}.{second}", f"{first}::{first}")
-    return random.choice((first, first, first, *compounds, "none", f"$::{first}"))
-
-
-def _fill_in(pattern: str, parts: Pieces, random: Random) -> str:
-    names_by_letter = {letter: _choose_name(parts, random) for letter in "abc"}
-    return _PLACEHOLDER.sub(lambda match: names_by_letter[match[1]], pattern)
-
-
-def _is_kerml(parts: Pieces) -> bool:
-    """Whether the text is probably KerML."""
-    return sum(p in KERML_KINDS for p in parts) > sum(p in KINDS for p in parts)
-
-
-def _make_member(parts: Pieces, random: Random) -> str:
-    is_other = random.random() < 0.1
-    patterns = KERML_MEMBERS if _is_kerml(parts) != is_other else MEMBERS
-    return _fill_in(random.choice(patterns), parts, random)
-
-
-def _insert(parts: Pieces, index: int, *new: str) -> Pieces:
-    return [*parts[:index], *new, *parts[index:]]
-
-
-def _insert_member(parts: Pieces, random: Random, new: str) -> Pieces:
-    """Insert a member at a random place between other members."""
-    indices = [index + 1 for index, part in enumerate(parts) if part in (";", "{", "}")]
-    return _insert(parts, _choose_or(indices, random, len(parts)), "\n", new, "\n")
-
-
 # -- tokens and lines ----------------------------------------------------------------------------
 
 
 def _drop_token(parts: Pieces, random: Random) -> Pieces:
-    index = _choose_token(parts, random)
+    index = choose_token(parts, random)
     return parts[:index] + parts[index + 1 :]
 
 
 def _duplicate_token(parts: Pieces, random: Random) -> Pieces:
-    index = _choose_token(parts, random)
-    return _insert(parts, index, *parts[index : index + 1], " ")
+    index = choose_token(parts, random)
+    return insert(parts, index, *parts[index : index + 1], " ")
 
 
 def _swap_tokens(parts: Pieces, random: Random) -> Pieces:
-    first, second = _choose_token(parts, random), _choose_token(parts, random)
+    first, second = choose_token(parts, random), choose_token(parts, random)
     swapped = list(parts)
     if parts:
         swapped[first], swapped[second] = parts[second], parts[first]
@@ -123,12 +77,12 @@ def _swap_tokens(parts: Pieces, random: Random) -> Pieces:
 
 
 def _replace_token(parts: Pieces, random: Random) -> Pieces:
-    index, donor = _choose_token(parts, random), _choose_token(parts, random)
+    index, donor = choose_token(parts, random), choose_token(parts, random)
     return [*parts[:index], *parts[donor : donor + 1], *parts[index + 1 :]]
 
 
 def _insert_junk(parts: Pieces, random: Random) -> Pieces:
-    return _insert(parts, random.randrange(len(parts) + 1), random.choice(JUNK))
+    return insert(parts, random.randrange(len(parts) + 1), random.choice(JUNK))
 
 
 def _change_line(parts: Pieces, random: Random) -> Pieces:
@@ -142,7 +96,7 @@ def _change_line(parts: Pieces, random: Random) -> Pieces:
 
 def _unbalance_brackets(parts: Pieces, random: Random) -> Pieces:
     braces = [index for index, part in enumerate(parts) if part in ("{", "}", "(", ")", "[", "]")]
-    index = _choose_or(braces, random, 0)
+    index = choose_or(braces, random, 0)
     return [*parts[:index], *random.choice(([], ["{"], ["}"], ["}", "}"])), *parts[index + 1 :]]
 
 
@@ -154,14 +108,14 @@ def _truncate_text(parts: Pieces, random: Random) -> Pieces:
 
 
 def _drop_member(parts: Pieces, random: Random) -> Pieces:
-    start, end = _choose_member(parts, random)
+    start, end = choose_member(parts, random)
     return parts[:start] + parts[end:]
 
 
 def _drop_many(parts: Pieces, random: Random) -> Pieces:
     """Drop most of the members that begin with the same word."""
     ranges = find_members(parts)
-    start, _ = _choose_or(ranges, random, (0, 0))
+    start, _ = choose_or(ranges, random, (0, 0))
     result = list(parts)
     for begin, end in ranges:
         if parts[begin] == parts[start] and random.random() < 0.7:
@@ -170,17 +124,17 @@ def _drop_many(parts: Pieces, random: Random) -> Pieces:
 
 
 def _duplicate_member(parts: Pieces, random: Random) -> Pieces:
-    start, end = _choose_member(parts, random)
-    return _insert(parts, end, "\n", *parts[start:end])
+    start, end = choose_member(parts, random)
+    return insert(parts, end, "\n", *parts[start:end])
 
 
 def _move_member(parts: Pieces, random: Random) -> Pieces:
-    start, end = _choose_member(parts, random)
-    return _insert_member(parts[:start] + parts[end:], random, "".join(parts[start:end]))
+    start, end = choose_member(parts, random)
+    return insert_member(parts[:start] + parts[end:], random, "".join(parts[start:end]))
 
 
 def _swap_members(parts: Pieces, random: Random) -> Pieces:
-    (a, b), (c, d) = sorted((_choose_member(parts, random), _choose_member(parts, random)))
+    (a, b), (c, d) = sorted((choose_member(parts, random), choose_member(parts, random)))
     if b > c:
         return parts
     return [*parts[:a], *parts[c:d], *parts[b:c], *parts[a:b], *parts[d:]]
@@ -188,20 +142,20 @@ def _swap_members(parts: Pieces, random: Random) -> Pieces:
 
 def _copy_member(parts: Pieces, random: Random) -> Pieces:
     """Copy a member to a random place, perhaps into itself."""
-    start, end = _choose_member(parts, random)
-    return _insert_member(parts, random, "".join(parts[start:end]))
+    start, end = choose_member(parts, random)
+    return insert_member(parts, random, "".join(parts[start:end]))
 
 
 def _copy_into_itself(parts: Pieces, random: Random) -> Pieces:
-    start, end = _choose_member(parts, random)
+    start, end = choose_member(parts, random)
     indices = [index + 1 for index in range(start, end) if parts[index] == "{"]
     if end - start > _LARGE or not indices:
         return parts
-    return _insert(parts, random.choice(indices), *parts[start:end])
+    return insert(parts, random.choice(indices), *parts[start:end])
 
 
 def _empty_body(parts: Pieces, random: Random) -> Pieces:
-    start, end = _choose_or(find_bodies(parts), random, (0, 0))
+    start, end = choose_or(find_bodies(parts), random, (0, 0))
     return (
         [*parts[: start + 1], *parts[end:]]
         if random.random() < 0.5
@@ -215,7 +169,7 @@ def _empty_body(parts: Pieces, random: Random) -> Pieces:
 
 def _add_many_copies(parts: Pieces, random: Random) -> Pieces:
     """Add many copies of one member, with the same name or with different names."""
-    start, end = _choose_member(parts, random)
+    start, end = choose_member(parts, random)
     if not 0 < end - start <= _LARGE // 10:
         return parts
     name_index = next((index for index in range(start, end) if is_name(parts[index])), start)
@@ -226,28 +180,28 @@ def _add_many_copies(parts: Pieces, random: Random) -> Pieces:
         if is_renamed and is_name(parts[name_index]):
             copy[name_index - start] = f"'{parts[name_index].strip(chr(39))} {number}'"
         copies += ["\n", *copy]
-    return _insert(parts, end, *copies)
+    return insert(parts, end, *copies)
 
 
 def _nest_deeply(parts: Pieces, random: Random) -> Pieces:
     """Nest a member deeply: below or above the limit on depth."""
-    start, end = _choose_member(parts, random)
+    start, end = choose_member(parts, random)
     depth = random.choice((20, 90, 300, 700))
     word = random.choice(("part", "action", "state", "package", "class", "if", "loop"))
-    name = _choose_name(parts, random)
+    name = choose_name(parts, random)
     opening = [f"{word} {random.choice((name, f'd{level}'))} {{" for level in range(depth)]
     return [*parts[:start], *opening, *parts[start:end], "}" * depth, *parts[end:]]
 
 
 def _insert_foreign_member(parts: Pieces, donor: Pieces, random: Random) -> Pieces:
     """Insert a member of another text."""
-    start, end = _choose_member(donor, random)
-    return _insert_member(parts, random, "".join(donor[start:end]))
+    start, end = choose_member(donor, random)
+    return insert_member(parts, random, "".join(donor[start:end]))
 
 
 def _insert_template_members(parts: Pieces, random: Random) -> Pieces:
     for _ in range(random.choice((1, 1, 2, 4))):
-        parts = _insert_member(parts, random, _make_member(parts, random))
+        parts = insert_member(parts, random, make_member(parts, random))
     return parts
 
 
@@ -258,28 +212,16 @@ def _misdirect_names(parts: Pieces, random: Random) -> Pieces:
     result = list(parts)
     indices = find_names(parts)
     for index in random.sample(indices, min(len(indices), random.choice((1, 1, 2, 5)))):
-        result[index] = _make_path(parts, random)
+        result[index] = make_path(parts, random)
     return result
 
 
 def _rename_all(parts: Pieces, random: Random) -> Pieces:
     """Replace all uses of one name by another name, which may be in use or odd."""
-    old = _choose_name(parts, random)
-    odd_names = (
-        "none",
-        "''",
-        "'a b'",
-        "'::'",
-        "start",
-        "done",
-        "self",
-        "that",
-        "'",
-        "é",
-        "Parts",
-        "SI",
-    )
-    new = _choose_name(parts, random) if random.random() < 0.6 else random.choice(odd_names)
+    old = choose_name(parts, random)
+    odd_names = ("none", "''", "'a b'", "'::'", "start", "done", "self", "that", "'", "é")
+    odd_names += ("Parts", "SI")
+    new = choose_name(parts, random) if random.random() < 0.6 else random.choice(odd_names)
     return [new if part == old else part for part in parts]
 
 
@@ -299,7 +241,7 @@ def _drop_names(parts: Pieces, random: Random) -> Pieces:
 def _duplicate_names(parts: Pieces, random: Random) -> Pieces:
     """Give several declarations the same name."""
     indices = find_declared_names(parts)
-    result, name = list(parts), _choose_name(parts, random)
+    result, name = list(parts), choose_name(parts, random)
     for index in random.sample(indices, min(len(indices), random.choice((1, 2, 6)))):
         result[index] = name
     return result
@@ -322,10 +264,10 @@ def _make_cycle(parts: Pieces, random: Random) -> Pieces:
 def _change_keyword(parts: Pieces, random: Random) -> Pieces:
     """Replace a keyword by another one, once or everywhere."""
     indices = [index for index in find_tokens(parts) if parts[index] in KEYWORDS]
-    index = _choose_or(indices, random, -1)
+    index = choose_or(indices, random, -1)
     if index < 0:
         return parts
-    kinds = KERML_KINDS if _is_kerml(parts) else KINDS
+    kinds = KERML_KINDS if is_kerml(parts) else KINDS
     new = random.choice(kinds if random.random() < 0.8 else sorted(KEYWORDS))
     if random.random() < 0.2:
         return [new if part == parts[index] else part for part in parts]
@@ -345,16 +287,16 @@ def _swap_definition_and_usage(parts: Pieces, random: Random) -> Pieces:
 
 def _insert_prefix(parts: Pieces, random: Random) -> Pieces:
     """Insert a prefix before a member, whether it may have one or not."""
-    start, _ = _choose_member(parts, random)
+    start, _ = choose_member(parts, random)
     before = random.choice(
-        (*PREFIXES, *PREFIXES, f"#{_choose_name(parts, random)}", "~", "then", "#")
+        (*PREFIXES, *PREFIXES, f"#{choose_name(parts, random)}", "~", "then", "#")
     )
-    return _insert(parts, start, before, " ")
+    return insert(parts, start, before, " ")
 
 
 def _change_relation(parts: Pieces, random: Random) -> Pieces:
     indices = [index for index, part in enumerate(parts) if part in RELATIONS]
-    index = _choose_or(indices, random, -1)
+    index = choose_or(indices, random, -1)
     if index < 0:
         return parts
     return [*parts[:index], random.choice(RELATIONS), *parts[index + 1 :]]
@@ -366,13 +308,13 @@ def _add_relations(parts: Pieces, random: Random) -> Pieces:
     result = list(parts)
     for index in random.sample(indices, min(len(indices), random.choice((1, 1, 3)))):
         sign = random.choice((":", ":>", ":>>", "::>", "=>", ": ~", "references", "subsets"))
-        result[index] = f"{parts[index]} {sign} {_make_path(parts, random)}"
+        result[index] = f"{parts[index]} {sign} {make_path(parts, random)}"
     return result
 
 
 def _set_odd_value(parts: Pieces, random: Random) -> Pieces:
     """Insert an odd expression as a value, or in place of another expression."""
-    expression = _fill_in(random.choice(EXPRESSIONS), parts, random)
+    expression = fill_in(random.choice(EXPRESSIONS), parts, random)
     signs = [
         index for index, part in enumerate(parts) if part in ("=", ":=", "default", "if", "==", "(")
     ]
@@ -381,16 +323,16 @@ def _set_odd_value(parts: Pieces, random: Random) -> Pieces:
         ends = (")", ";", "{", "}", "then", "do", ",")
         end = next((e for e in range(index + 1, len(parts)) if parts[e] in ends), index + 1)
         return [*parts[: index + 1], " ", expression, " ", *parts[end:]]
-    index = _choose_or(find_declared_names(parts), random, -1)
+    index = choose_or(find_declared_names(parts), random, -1)
     sign = random.choice((" = ", " := ", " default ", " default = "))
-    return _insert(parts, index + 1, sign, expression) if index >= 0 else parts
+    return insert(parts, index + 1, sign, expression) if index >= 0 else parts
 
 
 def _add_odd_multiplicity(parts: Pieces, random: Random) -> Pieces:
     indices = find_declared_names(parts)
     result = list(parts)
     for index in random.sample(indices, min(len(indices), 2)):
-        result[index] = parts[index] + _fill_in(random.choice(MULTIPLICITIES), parts, random)
+        result[index] = parts[index] + fill_in(random.choice(MULTIPLICITIES), parts, random)
     return result
 
 
