@@ -25,7 +25,7 @@ UNSUPPORTED = "UML has no such attribute (SM722)"
 @pytest.mark.long
 def test_every_difference_after_reading_back_has_a_reason(corpus, tmp_path, golden):
     lines = []
-    for path in list_models(corpus):
+    for path in list_small_files(corpus):
         reasons = Counter(find_reason(*change) for change in iter_changes(path, tmp_path))
         lines_of_reasons = [f"  {count} {reason}" for reason, count in sorted(reasons.items())]
         lines += [f"{path.parent.name}/{path.name}: {sum(reasons.values())}", *lines_of_reasons]
@@ -45,7 +45,7 @@ def test_saved_papyrus_models_conform_to_the_metamodel(corpus):
         )
 
 
-def list_models(corpus):
+def list_small_files(corpus):
     paths = (path for folder in FOLDERS for path in (corpus / "xmi" / folder).iterdir())
     return sorted(path for path in paths if path.is_file() and path.stat().st_size < LARGE)
 
