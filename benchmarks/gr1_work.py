@@ -14,7 +14,7 @@ from sysmlc.synthesis.algebra.refinement import find_refinement_failures
 from sysmlc.synthesis.controller_synthesis import synthesise_controller
 from sysmlc.synthesis.decision import Options, decide, find_deadline
 from sysmlc.synthesis.games.game import make_game
-from sysmlc.synthesis.unrealizable import unrealizable_core
+from sysmlc.synthesis.unrealizable import find_unrealizable_core
 
 LIMIT = 600.0
 """CPU seconds after which something is given up."""
@@ -65,7 +65,7 @@ def made(name: str, text: str) -> str:
 def cored(name: str, text: str) -> str:
     """Guarantees that cannot be kept together."""
     contract = read(name, text)
-    core = unrealizable_core(make_game(contract, Manager(limits=OPTIONS.limits)))
+    core = find_unrealizable_core(make_game(contract, Manager(limits=OPTIONS.limits)))
     return f"core of {len(core)} of {len(contract.guarantees)}"
 
 

@@ -11,7 +11,7 @@ from sysmlc.synthesis import Manager, make_game
 from sysmlc.synthesis.decision import Options, decide, find_deadline
 from sysmlc.synthesis.games import search_reductions
 from sysmlc.synthesis.games.solver import solve_by_single_moves
-from sysmlc.synthesis.unrealizable import unrealizable_core
+from sysmlc.synthesis.unrealizable import find_unrealizable_core
 
 PURE = Options(engine="autoref")
 LIFTS = "".join(LIFT.replace("0..3", "0..2").format(name) for name in "abc")
@@ -60,7 +60,7 @@ def test_a_ring_of_tokens_is_decided():
 
 def test_a_core_is_found():
     contract = parse_contract("env a: bool\nsys x: bool\npromise always x <-> a'\npromise recurs x")
-    assert len(unrealizable_core(make_game(contract, Manager("autoref")))) == 1
+    assert len(find_unrealizable_core(make_game(contract, Manager("autoref")))) == 1
 
 
 def test_a_deadline_is_found():

@@ -5,7 +5,7 @@ from itertools import combinations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sysmlc.synthesis.unrealizable import minimal_conflict
+from sysmlc.synthesis.unrealizable import find_minimal_conflict
 
 CONFLICTS = st.lists(st.frozensets(st.integers(0, 9), min_size=1, max_size=4), min_size=1)
 
@@ -15,7 +15,7 @@ def test_a_minimal_conflict_conflicts_and_none_of_its_subsets_does(conflicts):
     def is_conflict(items):
         return any(conflict <= set(items) for conflict in conflicts)
 
-    smallest = minimal_conflict(range(10), is_conflict)
+    smallest = find_minimal_conflict(range(10), is_conflict)
     assert is_conflict(smallest)
     assert not any(is_conflict(fewer) for fewer in combinations(smallest, len(smallest) - 1))
     assert list(smallest) == sorted(smallest)
@@ -26,4 +26,4 @@ def test_a_limited_search_still_returns_a_conflict(conflicts, max_checks):
     def is_conflict(items):
         return any(conflict <= set(items) for conflict in conflicts)
 
-    assert is_conflict(minimal_conflict(range(10), is_conflict, max_checks))
+    assert is_conflict(find_minimal_conflict(range(10), is_conflict, max_checks))

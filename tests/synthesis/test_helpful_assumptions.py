@@ -7,7 +7,7 @@ from small_games import random_contract
 
 from sysmlc.logic.printing import print_formula
 from sysmlc.synthesis import Manager, make_game
-from sysmlc.synthesis.unrealizable import explain_unrealizability, helpful_assumptions, is_won
+from sysmlc.synthesis.unrealizable import explain_unrealizability, find_helpful_assumptions, is_won
 
 TURN = """
     env wanted: 0..2
@@ -18,7 +18,7 @@ TURN = """
 
 
 def list_helpful_assumptions(text):
-    assumptions = helpful_assumptions(make_game(parse_contract(text), Manager()))
+    assumptions = find_helpful_assumptions(make_game(parse_contract(text), Manager()))
     return [
         (str(assumption.class_), print_formula(assumption.formula)) for assumption in assumptions
     ]
@@ -52,7 +52,7 @@ def test_each_helpful_assumption_makes_a_random_contract_realizable():
         game = make_game(contract, Manager())
         if is_won(game):
             continue
-        for assumption in helpful_assumptions(game):
+        for assumption in find_helpful_assumptions(game):
             better = replace(contract, assumptions=(*contract.assumptions, assumption))
             assert ExplicitGame(better).is_realizable(), (seed, print_formula(assumption.formula))
             number += 1

@@ -13,7 +13,7 @@ from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic import formats
 from sysmlc.synthesis import Manager, make_game, unrealizable
 from sysmlc.synthesis.decision import Options, decide
-from sysmlc.synthesis.unrealizable import unrealizable_core
+from sysmlc.synthesis.unrealizable import find_unrealizable_core
 
 CORPUS = os.environ.get("SYSMLC_CORPUS")
 LIFT = """
@@ -30,7 +30,7 @@ LIFT = """
 
 
 def find_core(contract):
-    return unrealizable_core(make_game(contract, Manager()))
+    return find_unrealizable_core(make_game(contract, Manager()))
 
 
 def test_the_core_contains_the_conflicting_guarantees():
@@ -72,7 +72,7 @@ def test_a_core_of_many_guarantees_needs_few_games(monkeypatch):
 
 def test_a_limited_search_returns_a_superset_of_the_core():
     contract = parse_contract(LIFT)
-    most = unrealizable_core(make_game(contract, Manager()), max_checks=2)
+    most = find_unrealizable_core(make_game(contract, Manager()), max_checks=2)
     assert set(find_core(contract)) <= set(most)
     assert not ExplicitGame(replace(contract, guarantees=most)).is_realizable()
 
@@ -99,6 +99,6 @@ def test_every_unrealizable_contract_of_din_8580_has_a_core():
         (contract,) = formats.read(path.read_text(encoding="utf-8"), path.name, Sink())
         game = make_game(contract, Manager())
         if not unrealizable.is_won(game):
-            sizes[path.stem] = len(unrealizable_core(game))
+            sizes[path.stem] = len(find_unrealizable_core(game))
     assert len(sizes) == 18
     assert all(0 < size < 12 for size in sizes.values()), sizes

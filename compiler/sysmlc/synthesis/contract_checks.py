@@ -16,7 +16,7 @@ from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.synthesis.decision import Options, Place, Verdict, decide
 from sysmlc.synthesis.games.game import OutsideGr1Error, make_game
 from sysmlc.synthesis.lints import lint
-from sysmlc.synthesis.unrealizable import is_won, unrealizable_core
+from sysmlc.synthesis.unrealizable import find_unrealizable_core, is_won
 from sysmlc.synthesis.witnesses import (
     Party,
     Witness,
@@ -166,7 +166,7 @@ def check_viewpoints(contract: Contract, place: Place, sink: Sink, options: Opti
             Manager(options.engine, options.limits, options.progress),
         )
         is_realizable = is_won(game)
-        core = () if is_realizable else unrealizable_core(game)
+        core = () if is_realizable else find_unrealizable_core(game)
     except (OutsideGr1Error, LimitError):
         return None
     if not is_realizable:

@@ -33,7 +33,7 @@ MAX_CHECKS = 200
 """Checks after which the search ends, although the result may not be minimal."""
 
 
-def minimal_conflict(
+def find_minimal_conflict(
     items: Sequence[T], is_conflict: Callable[[Sequence[T]], bool], max_checks: int = MAX_CHECKS
 ) -> tuple[T, ...]:
     """Return a minimal conflicting subset of the conflicting *items*, in their order.
@@ -84,7 +84,7 @@ class _QuickXplain(Generic[T]):
         return self._is_conflict([self._items[index] for index in indices])
 
 
-def unrealizable_core(game: Game, max_checks: int = MAX_CHECKS) -> tuple[Conjunct, ...]:
+def find_unrealizable_core(game: Game, max_checks: int = MAX_CHECKS) -> tuple[Conjunct, ...]:
     """Return a minimal set of guarantees of a lost game that cannot be satisfied together.
 
     The set may not be minimal if the search ends after *max_checks* games. It is empty if the
@@ -92,7 +92,7 @@ def unrealizable_core(game: Game, max_checks: int = MAX_CHECKS) -> tuple[Conjunc
     """
     parts = (*game.init_guarantees, *game.guarantees, *game.goals)
     guarantees = [part for part in parts if part.conjunct is not None]
-    core = minimal_conflict(
+    core = find_minimal_conflict(
         guarantees,
         lambda subset: not is_won(_keep_guarantees(game, guarantees, subset)),
         max_checks,
@@ -145,7 +145,7 @@ def explain_unrealizability(game: Game, contract: Contract) -> Iterator[str]:
         yield f"the conflicting guarantees are unknown: {problem}"
         return
     try:
-        helpful = helpful_assumptions(game)
+        helpful = find_helpful_assumptions(game)
     except LimitError:
         return
     for assumption in helpful:
@@ -154,8 +154,10 @@ def explain_unrealizability(game: Game, contract: Contract) -> Iterator[str]:
 
 def _describe_conflict(game: Game, contract: Contract) -> Iterator[str]:
     parts = (*game.init_guarantees, *game.guarantees, *game.goals)
-    guarantees = original_conjuncts((part.conjunct for part in parts if part.conjunct), contract)
-    core = original_conjuncts(unrealizable_core(game), contract)
+    guarantees = find_original_conjuncts(
+        (part.conjunct for part in parts if part.conjunct), contract
+    )
+    core = find_original_conjuncts(find_unrealizable_core(game), contract)
     yield (
         f"these {len(core)} of {len(guarantees)} guarantees cannot be satisfied together; "
         "without any one of them the rest can:"
@@ -169,7 +171,7 @@ def _describe_conflict(game: Game, contract: Contract) -> Iterator[str]:
         yield f"{_print_conjunct(conjunct)}{text}"
 
 
-def original_conjuncts(conjuncts: Iterable[Conjunct], contract: Contract) -> list[Conjunct]:
+def find_original_conjuncts(conjuncts: Iterable[Conjunct], contract: Contract) -> list[Conjunct]:
     """Return the conjuncts of *contract* from which *conjuncts* are derived, without repetition.
 
     A conjunct that the reduction to GR(1) has made belongs to the guarantee with its origin. If
@@ -201,15 +203,13 @@ _MAX_VALUES = 6
 """Values of a variable up to which there is a candidate for each value."""
 
 
-def helpful_assumptions(game: Game, max_assumptions: int = 3) -> tuple[Conjunct, ...]:
+def find_helpful_assumptions(game: Game, max_assumptions: int = 3) -> tuple[Conjunct, ...]:
     """Return assumptions each of which makes a lost game realizable, the simplest first.
 
     Raises LimitError.
     """
     bits = max(_SMALL_GAME_BITS, len(game.inputs) + len(game.outputs))
-    candidates = islice(
-        _candidate_assumptions(game), MAX_CANDIDATES * _SMALL_GAME_BITS**2 // bits**2
-    )
+    candidates = islice(_iter_candidates(game), MAX_CANDIDATES * _SMALL_GAME_BITS**2 // bits**2)
     with game.manager.guard():
         return tuple(
             islice(
@@ -219,7 +219,7 @@ def helpful_assumptions(game: Game, max_assumptions: int = 3) -> tuple[Conjunct,
         )
 
 
-def _candidate_assumptions(game: Game) -> Iterator[Conjunct]:
+def _iter_candidates(game: Game) -> Iterator[Conjunct]:
     """Yield candidates, the simplest first.
 
     They state that an input recurs with a value, that it is constant, or that it is constant while
@@ -228,21 +228,21 @@ def _candidate_assumptions(game: Game) -> Iterator[Conjunct]:
     inputs = [game.symbols.variables[name] for name in game.names(Owner.ENVIRONMENT)]
     outputs = [game.symbols.variables[name] for name in game.names(Owner.SYSTEM)]
     for input_variable in inputs:
-        for predicate in _value_predicates(input_variable):
+        for predicate in _list_value_predicates(input_variable):
             yield Conjunct(predicate, Class.LIVENESS, input_variable.origin)
     for input_variable in inputs:
-        yield Conjunct(_frame_condition(input_variable), Class.SAFETY, input_variable.origin)
+        yield Conjunct(_make_frame_condition(input_variable), Class.SAFETY, input_variable.origin)
     for output in outputs:
-        for predicate in _value_predicates(output):
+        for predicate in _list_value_predicates(output):
             for input_variable in inputs:
                 yield Conjunct(
-                    f.implies(predicate, _frame_condition(input_variable)),
+                    f.implies(predicate, _make_frame_condition(input_variable)),
                     Class.SAFETY,
                     input_variable.origin,
                 )
 
 
-def _value_predicates(variable: Variable) -> Sequence[Formula]:
+def _list_value_predicates(variable: Variable) -> Sequence[Formula]:
     """Return for each value the predicate that the variable has it; none for many values."""
     if size(variable.domain) > _MAX_VALUES:
         return ()
@@ -255,7 +255,7 @@ def _value_predicates(variable: Variable) -> Sequence[Formula]:
     )
 
 
-def _frame_condition(variable: Variable) -> Formula:
+def _make_frame_condition(variable: Variable) -> Formula:
     current = f.var(variable.name)
     next_value = f.prime(current)
     return (f.iff if isinstance(variable.domain, BooleanDomain) else f.eq)(next_value, current)
@@ -269,10 +269,10 @@ def _makes_realizable(game: Game, assumption: Conjunct) -> bool:
         extended_game = replace(game, fairness=(*game.fairness, part))
     else:
         extended_game = replace(game, assumptions=(*game.assumptions, part))
-    return is_won(extended_game) and not is_won(_game_against_assumptions(extended_game))
+    return is_won(extended_game) and not is_won(_make_game_against_assumptions(extended_game))
 
 
-def _game_against_assumptions(game: Game) -> Game:
+def _make_game_against_assumptions(game: Game) -> Game:
     """Return a game that the system wins only if it can force a violated assumption."""
     false = Constraint(game.manager.false)
 

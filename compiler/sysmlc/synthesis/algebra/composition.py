@@ -33,7 +33,7 @@ from sysmlc.synthesis.algebra.fair_systems import Universe, observe_histories
 from sysmlc.synthesis.algebra.refinement import Entailment, Failure
 from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.synthesis.games.game import OutsideGr1Error
-from sysmlc.synthesis.unrealizable import minimal_conflict
+from sysmlc.synthesis.unrealizable import find_minimal_conflict
 
 
 class Composition(Struct, frozen=True):
@@ -116,7 +116,7 @@ def _find_contradiction(
     def is_impossible(subset: Sequence[Conjunct]) -> bool:
         return not Entailment(universe, universe.system((*subset, *definitions))).is_possible
 
-    return minimal_conflict(conjuncts, is_impossible) if is_impossible(conjuncts) else ()
+    return find_minimal_conflict(conjuncts, is_impossible) if is_impossible(conjuncts) else ()
 
 
 def _contract_with_environment(composite: Composite) -> Contract:

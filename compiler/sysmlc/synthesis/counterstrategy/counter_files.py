@@ -1,6 +1,6 @@
 """Files that show a counter-strategy: a losing run, a state diagram, and SysML v2 text."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from sysmlc.logic.contract import (
     BooleanDomain,
@@ -28,9 +28,9 @@ _MAX_LABEL_LINES = 4
 """Lines of conditions on an arrow; further conditions are abbreviated."""
 
 
-def _losing_run_diagram(machine: CounterStrategy, contract: Contract) -> str:
+def _draw_losing_run(machine: CounterStrategy, contract: Contract) -> str:
     """Return a sequence diagram of a run in which the component fails in spite of good answers."""
-    title = [f"{format_label(contract.component)}", "cannot keep its contract"]
+    title = [format_label(contract.component), "cannot keep its contract"]
     trace = example_run(machine)
     # A run that ends violates safety guarantees; one that continues misses liveness guarantees.
     if trace.loop < len(trace.steps):
@@ -40,23 +40,20 @@ def _losing_run_diagram(machine: CounterStrategy, contract: Contract) -> str:
     return run_diagram("\\n".join(title), trace, (Party(contract.component, contract),))
 
 
-def _state_diagram(machine: CounterStrategy, contract: Contract) -> str:
+def _draw_states(machine: CounterStrategy, contract: Contract) -> str:
     """Return the counter-strategy as a state diagram: inputs in the states, answers on the arrows.
 
     A note lists the inputs that are the same in all states.
     """
-    constant_inputs = _constant_columns([state.inputs for state in machine.states])
+    constant_inputs = _find_constant_columns([state.inputs for state in machine.states])
     lines = [
         "@startuml",
         f"title what makes {format_label(contract.component)} fail",
         "hide empty description",
     ]
     if constant_inputs:
-        lines += [
-            "note as same",
-            f"  always {_print_values(machine.inputs, machine.states[0].inputs, constant_inputs)}",
-        ]
-        lines += ["end note"]
+        values = _print_values(machine.inputs, machine.states[0].inputs, constant_inputs)
+        lines += ["note as same", f"  always {values}", "end note"]
     varying_inputs = [index for index in range(len(machine.inputs)) if index not in constant_inputs]
     for number, state in enumerate(machine.states):
         inputs = _print_values(machine.inputs, state.inputs, varying_inputs)
@@ -64,40 +61,34 @@ def _state_diagram(machine: CounterStrategy, contract: Contract) -> str:
         lines.append(f'state "{format_label(inputs or "wait")}{ending}" as S{number}')
     lines.append("[*] --> S0")
     for number, state in enumerate(machine.states):
-        for successor, conditions in _list_arrows(state, machine.outputs):
+        for successor, conditions in _iter_arrows(state, machine.outputs):
             answers = "\\n".join(map(format_label, conditions))
             lines.append(f"S{number} --> S{successor} : {answers}")
     return "\n".join((*lines, "@enduml", ""))
 
 
-def _list_arrows(state: State, outputs: Sequence[Variable]) -> Iterator[tuple[int, list[str]]]:
+def _iter_arrows(state: State, outputs: Sequence[Variable]) -> Iterator[tuple[int, list[str]]]:
     """Yield each next state of *state* with conditions on the answers that lead there."""
     if len(state.moves) == 1:
         ((row, successor),) = state.moves.items()
         yield successor, [f"only {_print_values(outputs, row, range(len(row)))}"]
         return
-    for successor, rows in _group_by_successor(state).items():
-        other_rows = [
-            row for row, other_successor in state.moves.items() if other_successor != successor
-        ]
+    for successor, rows, other_rows in _iter_successors(state):
         conditions = [
             " ".join(condition) or "any answer"
             for condition in _describe_conditions(rows, other_rows, outputs)
         ]
-        yield (
-            successor,
-            conditions
-            if len(conditions) <= _MAX_LABEL_LINES
-            else [*conditions[: _MAX_LABEL_LINES - 1], "or more"],
-        )
+        if len(conditions) > _MAX_LABEL_LINES:
+            conditions = [*conditions[: _MAX_LABEL_LINES - 1], "or more"]
+        yield successor, conditions
 
 
-def _group_by_successor(state: State) -> Mapping[int, list[Row]]:
-    """Group the answers of a state by next state."""
-    rows_by_successor: dict[int, list[Row]] = {}
-    for row, successor in state.moves.items():
-        rows_by_successor.setdefault(successor, []).append(row)
-    return rows_by_successor
+def _iter_successors(state: State) -> Iterator[tuple[int, list[Row], list[Row]]]:
+    """Yield each next state, with the answers that lead there and all other answers."""
+    for successor in dict.fromkeys(state.moves.values()):
+        rows = [row for row in state.moves if state.moves[row] == successor]
+        other_rows = [row for row in state.moves if state.moves[row] != successor]
+        yield successor, rows, other_rows
 
 
 def _describe_conditions(
@@ -131,7 +122,7 @@ def _agree_at(left: Row, right: Row, columns: Iterable[int]) -> bool:
     return all(left[column] == right[column] for column in columns)
 
 
-def _constant_columns(rows: Sequence[Row]) -> list[int]:
+def _find_constant_columns(rows: Sequence[Row]) -> list[int]:
     """Return the columns in which all rows agree. A single row has none, which would be all."""
     if len(rows) < 2:
         return []
@@ -150,7 +141,7 @@ QualifiedNames = Callable[[str], str]
 """Returns the qualified name of the element with an id, or an empty string."""
 
 
-def _sysml_text(
+def _write_sysml(
     machine: CounterStrategy, contract: Contract, qualified_name: QualifiedNames
 ) -> str:
     """Return the counter-strategy as SysML v2 text: an environment with a state machine."""
@@ -213,10 +204,7 @@ def _print_state_machine(machine: CounterStrategy) -> Iterator[str]:
         yield "                }"
         yield "            }"
     for number, state in enumerate(machine.states):
-        for successor, rows in _group_by_successor(state).items():
-            other_rows = [
-                row for row, other_successor in state.moves.items() if other_successor != successor
-            ]
+        for successor, rows, other_rows in _iter_successors(state):
             guard = " or ".join(_print_guards(rows, other_rows, machine.outputs))
             condition = "" if guard == "true" else f" if {guard}"
             yield f"            transition first S{number}{condition} then S{successor};"
@@ -242,7 +230,7 @@ def _print_sysml_literal(variable: Variable, value: Literal) -> str:
 
 
 def _quote_name(name: str) -> str:
-    """Return an unrestricted name (KerML 1.0, 8.2.2.3)."""
+    """Return a name in quotes: names of variables may be reserved words (KerML 1.0, 8.2.2.3)."""
     return "'" + name.replace("\\", "\\\\").replace("'", "\\'") + "'"
 
 
@@ -260,6 +248,6 @@ def counterstrategy_files(
     for component, name in assign_file_names(machines_by_component).items():
         machine, contract = machines_by_component[component]
         if len(machine.states) <= MAX_DIAGRAM_STATES:
-            yield f"{name}.counter.puml", _state_diagram(machine, contract)
-        yield f"{name}.counter-run.puml", _losing_run_diagram(machine, contract)
-        yield f"{name}.counter.sysml", _sysml_text(machine, contract, qualified_name)
+            yield f"{name}.counter.puml", _draw_states(machine, contract)
+        yield f"{name}.counter-run.puml", _draw_losing_run(machine, contract)
+        yield f"{name}.counter.sysml", _write_sysml(machine, contract, qualified_name)

@@ -19,7 +19,7 @@ from sysmlc.synthesis.counterstrategy.environment_strategy import (
 )
 from sysmlc.synthesis.decision import Options, Place
 from sysmlc.synthesis.games.game import Game, make_game
-from sysmlc.synthesis.unrealizable import is_won, minimal_conflict, original_conjuncts
+from sysmlc.synthesis.unrealizable import find_minimal_conflict, find_original_conjuncts, is_won
 
 Row = tuple[Literal, ...]
 """Values of variables, in their order."""
@@ -214,7 +214,7 @@ def find_counterstrategies(
 def _find_counterstrategy(contract: Contract, options: Options) -> CounterStrategy:
     environment = find_environment_strategy(contract, options)
     goals = (goal.conjunct for goal in environment.lost_game.game.goals)
-    unmet = original_conjuncts((goal for goal in goals if goal is not None), contract)
+    unmet = find_original_conjuncts((goal for goal in goals if goal is not None), contract)
     with environment.lost_game.arena.manager.guard():
         machine = build_counterstrategy(environment, contract)
         return replace(machine, unmet_guarantees=tuple(unmet))
@@ -237,7 +237,7 @@ def _keep_conflicting_goals(game: Game) -> Game:
     # the strategy would not show the reason.
     if not game.goals or is_won(game):
         return game
-    conflicting = minimal_conflict(
+    conflicting = find_minimal_conflict(
         game.goals, lambda goals: not is_won(replace(game, goals=tuple(goals)))
     )
     return replace(game, goals=conflicting)

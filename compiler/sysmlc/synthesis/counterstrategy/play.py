@@ -9,7 +9,7 @@ from sysmlc.logic.evaluate import is_true
 from sysmlc.logic.formula import Literal, has_past, has_primes
 from sysmlc.logic.printing import print_formula, print_literal
 from sysmlc.synthesis.counterstrategy.environment_strategy import Bits, EnvironmentStrategy
-from sysmlc.synthesis.unrealizable import original_conjuncts
+from sysmlc.synthesis.unrealizable import find_original_conjuncts
 
 MAX_ANSWERS = 2_000
 """Allowed answers that are examined in one step; further answers cannot be given."""
@@ -182,7 +182,7 @@ class Player:
         conjunct = lost.game.goals[rank.goal].conjunct
         if conjunct is None:
             return f"{introduction}. You have lost."
-        (goal,) = original_conjuncts([conjunct], self._contract)
+        (goal,) = find_original_conjuncts([conjunct], self._contract)
         guarantee = f"'{print_formula(goal.formula)}'{_text_in_parentheses(goal)}"
         end = "is violated" if goal.class_ is Class.OTHER else "never holds again"
         return f"{introduction}:\n{guarantee} {end}. You have lost."
