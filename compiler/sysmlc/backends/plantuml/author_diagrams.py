@@ -128,9 +128,10 @@ class _Drawer:
             return self._build_parametric_view(selection) or author_internal_block.build_view(
                 selection
             )
-        if kind in ("act", "stm"):
-            kind = Kind.ACTIVITY if kind == "act" else Kind.STATE_MACHINE
-            return _build_behaviour_view(selection, kind)
+        if kind == "act":
+            return _build_behaviour_view(selection, Kind.ACTIVITY)
+        if kind == "stm":
+            return _build_behaviour_view(selection, Kind.STATE_MACHINE)
         return self._find_sequence_view(selection) if kind == "sd" else None
 
     def _build_use_case_view(self, selection: Selection) -> View:
@@ -191,15 +192,15 @@ def _make_diagram(selection: Selection, kind: str, view: View) -> Diagram:
     )
 
 
-# -- what is not there -------------------------------------------------------------------------
+# -- omissions ---------------------------------------------------------------------------------
 
 
 def _report_not_drawn(selection: Selection, kind: str, sink: Sink) -> None:
-    type_ = str(selection.view.attrs.get("diagram_type", "")) or kind or "diagram"
-    is_drawable = kind in _TITLES
-    reason = f"a {type_} is not drawn"
-    if is_drawable:
+    if kind in _TITLES:
         reason = "it shows nothing of the model that its notation has a place for"
+    else:
+        type_ = str(selection.view.attrs.get("diagram_type", "")) or kind or "diagram"
+        reason = f"a {type_} is not drawn"
     subject = selection.graph.subject(selection.view)
     sink.report(NOT_DRAWN, subject, name=selection.view.name, reason=reason)
 
@@ -230,8 +231,9 @@ def _is_shown_otherwise(selection: Selection, element: Element) -> bool:
     Papyrus stores the frame as a shape, and the regions of a state machine as shapes inside the
     frame. A classifier that is only listed is the type of a drawn element.
     """
-    is_named = element.id in selection.listed and element.kind in CLASSIFIERS
-    return is_named or element is selection.about or element.kind in (Kind.APPLICATION, Kind.REGION)
+    if element is selection.about or element.kind in (Kind.APPLICATION, Kind.REGION):
+        return True
+    return element.id in selection.listed and element.kind in CLASSIFIERS
 
 
 # -- behaviours --------------------------------------------------------------------------------
@@ -310,9 +312,7 @@ def _list_all_relations(graph: Graph) -> list[Relation]:
 
 
 def _build_box_view(selection: Selection, candidates: Iterable[Relation]) -> BoxView:
-    """Return the boxes that the author selected, and the lines that the diagram shows between
-    them.
-    """
+    """Return the boxes that the author selected, and the lines between them."""
     boxed = [item for item in selection.shown if _is_boxed(selection, item)]
     ids = {item.id for item in boxed}
     inside = [relation for relation in candidates if is_inside(selection, relation, ids)]
@@ -390,7 +390,5 @@ def _list_features(selection: Selection, item: Element) -> list[Element]:
 
 
 def _list_below(path: tuple[str, ...], id: str) -> tuple[str, ...]:
-    """Return the ids drawn inside or on the border of the element with *id*, nested ports
-    included.
-    """
+    """Return the ids that a path has inside the element with *id*, or on its border."""
     return path[path.index(id) + 1 :] if id in path else ()

@@ -163,10 +163,8 @@ class _AuthorDrawing:
         graph = self.selection.graph
         for connection in list_connections(graph, owner, find_free_flows(graph).get(owner.id, ())):
             if not self.selection.ids.isdisjoint(connection.shows):
-                source, target = (
-                    self._find_end_alias(prefix, connection.source),
-                    self._find_end_alias(prefix, connection.target),
-                )
+                source = self._find_end_alias(prefix, connection.source)
+                target = self._find_end_alias(prefix, connection.target)
                 if source and target:
                     self.used.append(connection)
                     yield _make_line(source, target, connection)
@@ -197,10 +195,11 @@ class _AuthorDrawing:
         text = format_keyword_label(labels.guillemets(labels.keywords(graph, item)))
         for client in graph.targets(item, Edge.CLIENT):
             for supplier in graph.targets(item, Edge.SUPPLIER):
-                ends = [self._find_drawn_path((element.id,), ()) for element in (client, supplier)]
-                if ends[0] is not None and ends[1] is not None:
-                    source, target = map(self._make_alias, (ends[0], ends[1]))
-                    yield Line(source, "..>", target, text, shows=(item.id,))
+                source = self._find_drawn_path((client.id,), ())
+                target = self._find_drawn_path((supplier.id,), ())
+                if source is not None and target is not None:
+                    ends = (self._make_alias(source), "..>", self._make_alias(target))
+                    yield Line(*ends, text, shows=(item.id,))
 
 
 def _format_row(graph: Graph, feature: Element) -> str:
@@ -233,15 +232,15 @@ def _find_paths(selection: Selection) -> dict[_Ids, None]:
     drawables = [element for element in candidates if element.kind in (*_PARTS, *_PORTS)]
     drawn = [_select_parts_and_ports(graph, path) for path in selection.nesting]
     deeper = {path[-1] for path in drawn if len(path) > 1}
-    paths_found: dict[_Ids, None] = {
+    if not selection.nesting:
+        return _nest_by_type(graph, drawables)
+    paths: dict[_Ids, None] = {
         (element.id,): None for element in drawables if element.id not in deeper
     }
-    if not selection.nesting:
-        paths_found = _nest_by_type(graph, drawables)
     for path in drawn:
         for length in range(1, len(path) + 1):
-            paths_found[path[:length]] = None
-    return paths_found
+            paths[path[:length]] = None
+    return paths
 
 
 def _select_parts_and_ports(graph: Graph, path: _Ids) -> _Ids:
@@ -252,10 +251,10 @@ def _select_parts_and_ports(graph: Graph, path: _Ids) -> _Ids:
 def _nest_by_type(graph: Graph, elements: list[Element]) -> dict[_Ids, None]:
     """Nest each element in all parts whose types have it as a feature, else in the frame."""
     holders = {element.id: _find_holders(graph, element, elements) for element in elements}
-    paths_found: dict[_Ids, None] = {
+    paths: dict[_Ids, None] = {
         (element.id,): None for element in elements if not holders[element.id]
     }
-    level = list(paths_found)
+    level = list(paths)
     while level:
         level = [
             (*path, element.id)
@@ -264,8 +263,8 @@ def _nest_by_type(graph: Graph, elements: list[Element]) -> dict[_Ids, None]:
             # A block may contain itself through its parts; no path has an element twice.
             if path[-1] in holders[element.id] and element.id not in path
         ]
-        paths_found |= dict.fromkeys(level)
-    return paths_found
+        paths |= dict.fromkeys(level)
+    return paths
 
 
 def _find_holders(graph: Graph, feature: Element, parts: list[Element]) -> list[str]:

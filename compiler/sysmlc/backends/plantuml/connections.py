@@ -3,7 +3,7 @@
 Physical items and information have different arrows and colours (thesis 3.4.1).
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 
 from msgspec import Struct
 
@@ -38,7 +38,8 @@ class Path(Struct, frozen=True):
 class Connection(Struct, frozen=True):
     """One line of an internal block diagram; ``shows`` are the ids of its elements.
 
-    ``carried`` are the items that flow over it, each with its domain or an empty text.
+    ``near`` and ``far`` are the multiplicities at source and target. ``carried`` are the items that
+    flow over the line, each with its domain or an empty text.
     """
 
     source: Path
@@ -76,7 +77,8 @@ def list_connections(graph: Graph, block: Element, flows: Iterable[FreeFlow]) ->
         connection for item in members for connection in _iter_connector_lines(graph, item)
     ]
     free_connections = [
-        _make_free_connection(graph, *map(graph.__getitem__, ends)) for ends in flows
+        _make_free_connection(graph, graph[flow], graph[source], graph[target])
+        for flow, source, target in flows
     ]
     return [*connectors, *free_connections, *_iter_allocations(graph, block)]
 
@@ -94,26 +96,26 @@ def _iter_connector_lines(graph: Graph, connector: Element) -> Iterator[Connecti
     if len(located) == len(ends) == 2:
         yield _make_line(graph, connector, located)
     elif len(located) > 2:
-        yield from (_make_line(graph, connector, [located[0], other]) for other in located[1:])
+        for end_and_path in located[1:]:
+            yield _make_line(graph, connector, [located[0], end_and_path])
 
 
 def _make_line(graph: Graph, connector: Element, located: list[tuple[Element, Path]]) -> Connection:
     (near, first), (far, second) = located
     flows = graph.sources(connector, Edge.REALIZING)
-    ways = [_find_direction(graph, flow, first, second) for flow in flows]
-    aims = {"→": _name_of_end(graph, second), "←": _name_of_end(graph, first)}
+    directions = [_find_direction(graph, flow, first, second) for flow in flows]
+    names_of_ends = {}
+    if len(set(directions)) > 1:
+        names_of_ends = {"→": _name_of_end(graph, second), "←": _name_of_end(graph, first)}
     rows = [
-        (
-            _format_item(format_conveyed(graph, flow), way, aims, is_both=len(set(ways)) > 1),
-            _domain_of(flow),
-        )
-        for way, flow in zip(ways, flows, strict=True)
+        (_format_item(format_conveyed(graph, flow), names_of_ends.get(direction)), _domain_of(flow))
+        for direction, flow in zip(directions, flows, strict=True)
     ]
     ends = graph.targets(connector, Edge.END)
     return Connection(
         first,
         second,
-        style_arrow(_choose_arrow(connector, ways), _domain_of(connector)),
+        style_arrow(_choose_arrow(connector, directions), _domain_of(connector)),
         _format_name(graph, connector),
         labels.multiplicity(near),
         labels.multiplicity(far),
@@ -130,13 +132,13 @@ def _name_of_end(graph: Graph, path: Path) -> str:
     return graph[path.ids()[-1]].name
 
 
-def _format_item(text: str, way: str, end_names: Mapping[str, str], is_both: bool) -> str:
+def _format_item(text: str, target_name: str | None) -> str:
     """Return the text of an item flow.
 
-    If the connector has flows in both directions, the text names the end to which the item flows.
+    If the connector has flows in both directions, *target_name* is the end to which the item flows.
     An arrow sign would mislead, because the layout may draw either end on the left.
     """
-    return f"to {end_names[way]}: {text}" if is_both and way in end_names else text
+    return text if target_name is None else f"to {target_name}: {text}"
 
 
 def is_parametric(graph: Graph, connector: Element) -> bool:
@@ -175,11 +177,11 @@ def _format_name(graph: Graph, connector: Element) -> str:
     return " ".join(part for part in (words, text) if part)
 
 
-def _choose_arrow(connector: Element, ways: list[str]) -> str:
+def _choose_arrow(connector: Element, directions: list[str]) -> str:
     if connector.role == "binding connector":
         return "-[dashed]-"
-    tail = "<" if "←" in ways or "⇄" in ways else ""
-    tip = ">" if "→" in ways or "⇄" in ways else ""
+    tail = "<" if "←" in directions or "⇄" in directions else ""
+    tip = ">" if "→" in directions or "⇄" in directions else ""
     return f"{tail}--{tip}"
 
 
@@ -253,8 +255,10 @@ def _make_direct_path(feature: Element) -> Path:
     return Path(port=feature.id) if _is_port(feature) else Path((feature.id,))
 
 
-# The template assigns colours and line styles to these variables of PlantUML. A name of the model
-# cannot refer to them, because ``$`` is escaped in names.
+# -- colours and line styles -------------------------------------------------------------------
+
+# Arrows and labels refer to variables of PlantUML (``$physical_line``), which the template defines.
+# A name of the model cannot refer to them, because ``$`` is escaped in names.
 
 
 def style_arrow(arrow: str, domain: str) -> str:

@@ -18,7 +18,7 @@ def partition(
 ) -> list[list[str]]:
     """Divide *items* into parts so that each part and its neighbours have at most *limit* members.
 
-    *sizes* states as how many members an item counts (1 by default). An item with too many
+    *sizes* states how many members an item stands for (1 by default). An item with too many
     neighbours is a part by itself. The algorithm is greedy: it fills parts with connected items,
     breadth first. Each part has the order of *items*.
     """
@@ -55,8 +55,8 @@ def _iter_connected(
                 for neighbour in dict.fromkeys(neighbours.get(item, ()))
                 if neighbour in unvisited
             ]
-            for other in adjacent:
-                del unvisited[other]
+            for neighbour in adjacent:
+                del unvisited[neighbour]
             queue.extend(adjacent)
 
 
@@ -78,7 +78,9 @@ def split_view(view: GraphView, limit: int = MAX_BOXES) -> list[GraphView]:
     """
     if _count_nodes(view.nodes) <= limit:
         return [view]
-    parts = [_make_part(view, group) for group in _iter_groups(view.nodes, view.lines, limit)]
+    nodes_by_alias = {node.alias: node for top in view.nodes for node in _iter_nodes(top)}
+    groups = _iter_groups(view.nodes, view.lines, limit)
+    parts = [_make_part(view, group, nodes_by_alias) for group in groups]
     return [replace(parts[0], notes=_detach_notes(view.notes)), *parts[1:]]
 
 
@@ -112,43 +114,42 @@ def _close_node(node: Node) -> Node:
 
 
 def _find_neighbours(nodes: Sequence[Node], lines: Sequence[Line]) -> dict[str, list[str]]:
-    home = {alias: node.alias for node in nodes for alias in _iter_aliases(node)}
+    """Return the nodes that lines connect with each node or its content, all by alias."""
+    home = {inner.alias: node.alias for node in nodes for inner in _iter_nodes(node)}
     adjacency: dict[str, list[str]] = {node.alias: [] for node in nodes}
     for line in lines:
         for end, opposite_end in ((line.source, line.target), (line.target, line.source)):
-            if end in home and home[end] != home.get(opposite_end, opposite_end):
-                adjacency[home[end]].append(home.get(opposite_end, opposite_end))
+            neighbour = home.get(opposite_end, opposite_end)
+            if end in home and home[end] != neighbour:
+                adjacency[home[end]].append(neighbour)
     return adjacency
 
 
-def _iter_aliases(node: Node) -> Iterator[str]:
-    yield node.alias
-    for child in node.children:
-        yield from _iter_aliases(child)
-
-
-def _make_part(view: GraphView, group: tuple[Node, ...]) -> GraphView:
-    inside = {alias for node in group for alias in _iter_aliases(node)}
-    nodes_by_alias = {node.alias: node for top in view.nodes for node in _iter_nodes(top)}
-    lines = [line for line in view.lines if line.source in inside or line.target in inside]
-    lines = [line for line in lines if not _is_hidden(line, inside, nodes_by_alias)]
+def _make_part(
+    view: GraphView, group: tuple[Node, ...], nodes_by_alias: Mapping[str, Node]
+) -> GraphView:
+    inside = {inner.alias for node in group for inner in _iter_nodes(node)}
+    lines = [
+        line
+        for line in view.lines
+        if not inside.isdisjoint((line.source, line.target))
+        and not _is_hidden(line, inside, nodes_by_alias)
+    ]
     ends = dict.fromkeys(end for line in lines for end in (line.source, line.target))
     stubs = tuple(_make_stub(nodes_by_alias[end]) for end in ends if end not in inside)
     return GraphView((*group, *stubs), tuple(lines))
 
 
-def _is_hidden(line: Line, inside: set[str], nodes_by_alias: dict[str, Node]) -> bool:
+def _is_hidden(line: Line, inside: set[str], nodes_by_alias: Mapping[str, Node]) -> bool:
     """Whether the line connects a node that has no content in this part with that content.
 
     The part with the content shows the line.
     """
     for end, opposite_end in ((line.source, line.target), (line.target, line.source)):
-        if (
-            end in inside
-            and opposite_end not in inside
-            and opposite_end in set(_iter_aliases(nodes_by_alias[end]))
-        ):
-            return True
+        if end in inside and opposite_end not in inside:
+            content = {node.alias for node in _iter_nodes(nodes_by_alias[end])}
+            if opposite_end in content:
+                return True
     return False
 
 

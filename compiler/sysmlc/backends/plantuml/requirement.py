@@ -10,8 +10,9 @@ from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import is_requirement
 from sysmlc.support.plantuml_text import escape_line, wrap_lines
 
-_WORDS = {"derive": "deriveReqt"}
-_EDGES = {
+_KEYWORDS = {"derive": "deriveReqt"}
+"""Keywords of relations that differ from the role."""
+_ROLES = {
     Edge.SATISFIES: "satisfy",
     Edge.DERIVES: "derive",
     Edge.VERIFIES: "verify",
@@ -60,13 +61,13 @@ def _iter_relations(graph: Graph) -> Iterator[Relation]:
             for supplier in graph.targets(item, Edge.SUPPLIER):
                 drawn.add((item.role, client.id, supplier.id))
                 yield _make_relation(item.role, client.id, supplier.id, item)
-    for edge, source, target in graph.edges(*_EDGES):
-        if (_EDGES[edge], source, target) not in drawn:
-            yield _make_relation(_EDGES[edge], source, target, None)
+    for edge, source, target in graph.edges(*_ROLES):
+        if (_ROLES[edge], source, target) not in drawn:
+            yield _make_relation(_ROLES[edge], source, target, None)
 
 
 def _make_relation(role: str, client: str, supplier: str, item: Element | None) -> Relation:
-    text = f"«{_WORDS.get(role, role)}»"
+    text = f"«{_KEYWORDS.get(role, role)}»"
     if item is not None and item.name:
         text += f" {item.name}"
     shows = (item.id,) if item is not None else ()
@@ -79,36 +80,35 @@ def _draw_package(
     requirements: list[Element],
     candidates: Iterable[Relation],
 ) -> Iterator[Diagram]:
-    own_ids = {item.id for item in requirements}
+    ids = [requirement.id for requirement in requirements]
     package_relations = [
-        relation for relation in candidates if own_ids & {relation.source, relation.target}
+        relation
+        for relation in candidates
+        if not {relation.source, relation.target}.isdisjoint(ids)
     ]
-    parts = partitioning.partition(
-        [item.id for item in requirements],
-        block_definition.find_neighbours(own_ids, package_relations),
-    )
+    neighbours = block_definition.find_neighbours(set(ids), package_relations)
+    parts = partitioning.partition(ids, neighbours)
     title = graph.qualified_name(package) if package is not None else "model"
     for index, part in enumerate(parts):
-        inside = [r for r in package_relations if {r.source, r.target} & set(part)]
+        relations = [r for r in package_relations if {r.source, r.target} & set(part)]
         yield Diagram(
             kind="req",
             name=partitioning.number_part(title, index, len(parts)),
             frame=escape_line(f"req [package] {title}"),
             heading=("Requirement diagram", title),
-            view=_build_view(graph, [graph[id] for id in part], inside),
+            view=_build_view(graph, [graph[id] for id in part], relations),
             about=package.id if package is not None else "",
             footer=escape_line(partitioning.make_footer(index, len(parts), title)),
         )
 
 
-def _build_view(graph: Graph, shown: list[Element], inside: list[Relation]) -> BoxView:
+def _build_view(graph: Graph, shown: list[Element], relations: list[Relation]) -> BoxView:
     aliases = Aliases()
     boxes = [make_box(graph, item, aliases) for item in shown]
-    outside = [id for r in inside for id in (r.source, r.target) if id not in aliases]
-    boxes += [_make_other_box(graph, graph[id], aliases) for id in dict.fromkeys(outside)]
-    return arrange_boxes(
-        boxes, [block_definition.make_line(relation, aliases) for relation in inside]
-    )
+    outside = [id for r in relations for id in (r.source, r.target) if id not in aliases]
+    boxes += [_make_outer_box(graph, graph[id], aliases) for id in dict.fromkeys(outside)]
+    lines = [block_definition.make_line(relation, aliases) for relation in relations]
+    return arrange_boxes(boxes, lines)
 
 
 def make_box(graph: Graph, item: Element, aliases: Aliases) -> Box:
@@ -135,7 +135,7 @@ def _format_row(graph: Graph, part: Element) -> tuple[str, ...]:
     return wrap_lines(labels.feature(graph, part), _TEXT_WIDTH)
 
 
-def _make_other_box(graph: Graph, item: Element, aliases: Aliases) -> Box:
+def _make_outer_box(graph: Graph, item: Element, aliases: Aliases) -> Box:
     """Return the box of an element at the other end of a line.
 
     A requirement of another package is a grey stub.
