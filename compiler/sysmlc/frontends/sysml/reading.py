@@ -35,19 +35,20 @@ def read(
         interchange.link(documents, sink, standard)
     if any("!" in source.name for source in sources):
         _check_projects(sources, sink, has_library=not standard.is_core)
-    own = [document for document in documents if not _is_shipped_library(document)]
+    user_documents = [document for document in documents if not _is_shipped_library(document)]
     shipped = [document for document in documents if _is_shipped_library(document)]
     for document in shipped:
         for node in document.root.walk():
             coverage.file(document.path).count(node.kind, Verdict.EXTERNAL)
-    if not own:
+    if not user_documents:
         return
-    shipped += _load_missing_libraries(own, shipped)
-    model = Model([*own, *shipped], standard)
-    own = [document for document in model.documents if document not in shipped]
+    shipped += _load_missing_libraries(user_documents, shipped)
+    model = Model([*user_documents, *shipped], standard)
+    # The model sorts its documents by path.
+    user_documents = [document for document in model.documents if document not in shipped]
     resolve_all(model, sink)
     check(model, sink)
-    apply_severities(own, sink)
+    apply_severities(user_documents, sink)
     graph.store(Model, [*graph.derived(Model), model])
     lowered = [
         document
@@ -55,7 +56,7 @@ def read(
         if document.root.members[0].name in LOWERED and _is_mentioned(document, models)
     ]
     apply_severities(lowered, sink)
-    lower_unit([*own, *lowered], model, graph, sink, coverage)
+    lower_unit([*user_documents, *lowered], model, graph, sink, coverage)
     _mark_external(graph, lowered)
 
 
@@ -131,12 +132,17 @@ def _is_shipped_library(document: Document) -> bool:
     )
 
 
-def _load_missing_libraries(own: Sequence[Document], shipped: Sequence[Document]) -> list[Document]:
+def _load_missing_libraries(
+    user_documents: Sequence[Document], shipped: Sequence[Document]
+) -> list[Document]:
     """Return the shipped libraries that the documents mention and that the unit does not have."""
-    present = {member.name for document in (*own, *shipped) for member in document.root.members}
+    documents = (*user_documents, *shipped)
+    present = {member.name for document in documents for member in document.root.members}
     libraries = []
     for name, file in FILES.items():
-        is_used = any(name in document.text or _is_interchange(document) for document in own)
+        is_used = any(
+            name in document.text or _is_interchange(document) for document in user_documents
+        )
         if is_used and name not in present:
             source = Source(f"{SHIPPED}{file}", resources.read_text("metamodels", file).encode())
             libraries.append(_parse_text(source, "sysml", Sink()))

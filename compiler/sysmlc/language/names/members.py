@@ -1,4 +1,8 @@
-"""Members of one namespace by name: owned and inherited ones (KerML 8.2.3.5.3)."""
+"""Members of one namespace by name: owned and inherited ones (KerML 8.2.3.5.3).
+
+The lookup of a name in a namespace has stages: owned, then inherited, then imported members. A
+later stage counts only if no member of an earlier one fits.
+"""
 
 from abc import abstractmethod
 from collections.abc import Callable, Iterator
@@ -22,10 +26,15 @@ class MemberLookup(GeneralLookup):
         super().__init__(implied, by_role)
         self._owned: dict[Node, SymbolTable] = {}
         self._inherited: dict[Node, dict[str, Hits]] = {}
+        """Inherited members by type and name."""
         self._inheriting: set[Node] = set()
+        """Types whose inherited members are being looked up, to end the recursion in cycles."""
         self._inheritable: dict[Node, frozenset[str] | None] = {}
-        self._names_of: dict[tuple[Node, ...], frozenset[str] | None] = {}
-        self._names_above: dict[Node, frozenset[str]] = {}
+        """Names that a type may inherit; None if they are unknown. Set by the first failure."""
+        self._inheritable_by_generals: dict[tuple[Node, ...], frozenset[str] | None] = {}
+        """The same sets of names by the generals of the type."""
+        self._names_of: dict[Node, frozenset[str]] = {}
+        """Names that a general owns or inherits."""
 
     def abandon(self) -> None:
         """Reset the state of the queries that a RecursionError interrupted."""
@@ -42,10 +51,10 @@ class MemberLookup(GeneralLookup):
 
     def symbol_table(self, scope: Node) -> SymbolTable:
         """Return the owned members of ``scope`` by name."""
-        index = self._owned.get(scope)
-        if index is None:
-            index = self._owned[scope] = build_symbol_table(scope)
-        return index
+        table = self._owned.get(scope)
+        if table is None:
+            table = self._owned[scope] = build_symbol_table(scope)
+        return table
 
     def own_members(self, scope: Node, name: str) -> Hits:
         """Return the owned members with that name.
@@ -53,8 +62,10 @@ class MemberLookup(GeneralLookup):
         A feature without a declared name is included only if its naming reference resolves.
         """
         hits = self.symbol_table(scope).get(name)
-        if hits is None:
-            return NO_HITS
+        return NO_HITS if hits is None else self._select_named(hits)
+
+    def _select_named(self, hits: list[Node]) -> Hits:
+        """Return the members with a declared name or a naming reference that resolves."""
         return tuple(
             [hit for hit in hits if hit.name or hit.short_name or self._has_resolved_name(hit)]
         )
@@ -67,18 +78,17 @@ class MemberLookup(GeneralLookup):
         return relation is None or self.target(feature, relation) is not None
 
     def _iter_stages(self, scope: Node, name: str, without: Node | None) -> Iterator[Hits]:
-        """Yield the members visible inside ``scope`` by name: owned, inherited, imported ones."""
+        """Yield the members visible inside ``scope`` by name: owned, inherited, imported ones.
+
+        The effective name of ``without`` is being computed, so that it counts only if ``name`` is
+        one of its declared names.
+        """
         hits = self.symbol_table(scope).get(name)
         if hits is not None:
-            if (
-                without in hits
-                and without is not None
-                and name not in (without.name, without.short_name)
-            ):
-                hits = [hit for hit in hits if hit is not without]
-            yield tuple(
-                [hit for hit in hits if hit.name or hit.short_name or self._has_resolved_name(hit)]
-            )
+            if without is not None and without in hits:
+                is_declared = name in (without.name, without.short_name)
+                hits = hits if is_declared else [hit for hit in hits if hit is not without]
+            yield self._select_named(hits)
         if scope.kind in TYPES:
             yield self.inherited(scope, name)
         if self.imports(scope):
@@ -149,17 +159,22 @@ class MemberLookup(GeneralLookup):
         Called when a lookup failed, so that later failures are cheap. None where a general imports
         names, has unknown generals, or is in a cycle.
         """
-        key = self.all_generals(scope)
-        if key not in self._names_of:
-            names_of_generals = [self._collect_names(general, {}) for general in key]
-            complete = [names for names in names_of_generals if names is not None]
-            is_complete = len(complete) == len(names_of_generals)
-            self._names_of[key] = frozenset().union(*complete) if is_complete else None
-        return self._names_of[key]
+        generals = self.all_generals(scope)
+        if generals not in self._inheritable_by_generals:
+            names_of_generals = [self._collect_names(general, {}) for general in generals]
+            known = [names for names in names_of_generals if names is not None]
+            is_complete = len(known) == len(generals)
+            self._inheritable_by_generals[generals] = (
+                frozenset().union(*known) if is_complete else None
+            )
+        return self._inheritable_by_generals[generals]
 
     def _collect_names(self, general: Node, pending: dict[Node, None]) -> frozenset[str] | None:
-        """Return the names that ``general`` owns or inherits; ``pending`` has its callers."""
-        names = self._names_above.get(general)
+        """Return the names that ``general`` owns or inherits; None if they are unknown.
+
+        ``pending`` has the generals whose names are being collected.
+        """
+        names = self._names_of.get(general)
         if names is not None:
             return names
         stated, implied = self._generals.get(general), self._implied_generals.get(general)
@@ -175,7 +190,7 @@ class MemberLookup(GeneralLookup):
                 return None
             collected |= inherited
         del pending[general]
-        names = self._names_above[general] = frozenset(collected)
+        names = self._names_of[general] = frozenset(collected)
         return names
 
     def _find_in_generals(self, scope: Node, name: str) -> Hits:
@@ -202,11 +217,11 @@ class MemberLookup(GeneralLookup):
                 inherited = self._find_heritable(general, name)
                 if inherited:
                     hits += [hit for hit in inherited if hit not in hits]
-        return tuple(hits) if len(hits) < 2 else self._drop_general(hits)
+        return tuple(hits) if len(hits) < 2 else self._drop_redefined(hits)
 
     def _may_inherit(self, scope: Node, name: str) -> bool:
         """Whether ``scope`` may inherit a member with that name, by the memoised names."""
-        names = self._names_of.get(self.all_generals(scope))
+        names = self._inheritable_by_generals.get(self.all_generals(scope))
         return names is None or name in names
 
     def _find_heritable(self, general: Node, name: str) -> Hits:
@@ -221,7 +236,7 @@ class MemberLookup(GeneralLookup):
                 return tuple(hits)
         return self.inherited(general, name) or self.imported_members(general, name, inside=False)
 
-    def _drop_general(self, hits: list[Node]) -> Hits:
+    def _drop_redefined(self, hits: list[Node]) -> Hits:
         """Return the members that no other one of ``hits`` redefines."""
         redefined = {general for hit in hits for general in self.redefined_features(hit)}
         return tuple(hit for hit in hits if hit not in redefined)

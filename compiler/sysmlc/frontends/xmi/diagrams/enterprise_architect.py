@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from sysmlc.frontends.xmi.diagrams import contents
+from sysmlc.frontends.xmi.diagrams import common
 from sysmlc.ir.pending import Drawing
 from sysmlc.sources import Source
 from sysmlc.sources.xml import make_plain_parser, parse
@@ -23,19 +23,19 @@ def read_diagrams(model: Source) -> Iterator[Drawing]:
     xml_parser.StartElementHandler = reader.start
     xml_parser.EndElementHandler = reader.end
     parse(model, xml_parser)
-    relations = contents.read_relations(model)
+    relations = common.read_relations(model)
     for draft in reader.drafts:
         yield Drawing(
             draft.id,
             draft.name,
             draft.type,
-            contents.abbreviate_type(draft.profile_type, draft.type),
+            common.abbreviate_type(draft.profile_type, draft.type),
             model.name,
             model.name,
             draft.ordinal,
             draft.owner,
             shown=tuple(draft.shown),
-            relations=contents.select_relations(relations, draft.shown),
+            relations=common.select_relations(relations, draft.shown),
         )
 
 

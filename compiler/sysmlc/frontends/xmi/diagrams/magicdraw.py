@@ -7,7 +7,7 @@ therefore read without namespaces. A project saved as one XML file contains it a
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 
-from sysmlc.frontends.xmi.diagrams import contents
+from sysmlc.frontends.xmi.diagrams import common
 from sysmlc.ir.pending import Drawing
 from sysmlc.sources import Source
 from sysmlc.sources.xml import make_plain_parser, parse
@@ -37,9 +37,9 @@ class ShapeReader:
             self._has_element.append(attributes.get("elementClass") == _FRAME)
         elif name == "elementID" and not self._has_element[-1]:
             self._has_element[-1] = True
-            id = contents.read_target(attributes).rpartition("#")[2]
+            id = common.read_target(attributes).rpartition("#")[2]
             if id:
-                path = contents.extend_path(self._open_paths[-1], id)
+                path = common.extend_path(self._open_paths[-1], id)
                 self._open_paths[-1] = path
                 self.paths[path] = None
 
@@ -100,7 +100,7 @@ class _Draft:
 
 
 def _finish(
-    file: str, draft: _Draft, shapes: ShapeReader, relations: Mapping[str, contents.Relation]
+    file: str, draft: _Draft, shapes: ShapeReader, relations: Mapping[str, common.Relation]
 ) -> Drawing:
     id = draft.attributes.get("xmi:id", "")
     drawn = {path[-1]: None for path in shapes.paths}
@@ -109,7 +109,7 @@ def _finish(
         id,
         draft.attributes.get("name", ""),
         draft.type,
-        contents.abbreviate_type(draft.type, draft.base_type),
+        common.abbreviate_type(draft.type, draft.base_type),
         file,
         file,
         draft.ordinal,
@@ -118,7 +118,7 @@ def _finish(
         tuple(shown),
         tuple(path for path in shapes.paths if len(path) > 1),
         tuple(target for target in shown if drawn and target not in drawn),
-        contents.select_relations(relations, shown),
+        common.select_relations(relations, shown),
     )
 
 
@@ -128,7 +128,7 @@ class _ModelReader:
     def __init__(self) -> None:
         self.drafts: list[_Draft] = []
         self.shapes: dict[str, ShapeReader] = {}
-        self.relation_reader = contents.RelationReader()
+        self.relation_reader = common.RelationReader()
         self._ordinal = -1
         self._open: list[str] = []
         self._draft: _Draft | None = None

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from sysmlc.frontends.xmi.diagrams import contents
+from sysmlc.frontends.xmi.diagrams import common
 from sysmlc.ir.pending import Drawing
 from sysmlc.sources import Source
 from sysmlc.sources.xml import make_plain_parser, parse
@@ -17,7 +17,7 @@ _LABELS = ("StereotypeLabel", "StereotypeBrace", "StereotypeCompartment", "Stere
 
 def read_diagrams(notation: Source, model: Source) -> Iterator[Drawing]:
     """Yield the diagrams in the notation file of a model. Raises SourceError."""
-    relations = contents.read_relations(model)
+    relations = common.read_relations(model)
     reader = _NotationReader()
     xml_parser = make_plain_parser()
     xml_parser.StartElementHandler = reader.start
@@ -30,7 +30,7 @@ def read_diagrams(notation: Source, model: Source) -> Iterator[Drawing]:
             draft.id,
             draft.name,
             draft.type,
-            contents.abbreviate_type(draft.profile_type, draft.type),
+            common.abbreviate_type(draft.profile_type, draft.type),
             model.name,
             notation.name,
             draft.ordinal,
@@ -38,7 +38,7 @@ def read_diagrams(notation: Source, model: Source) -> Iterator[Drawing]:
             draft.context,
             shown,
             tuple(path for path in paths if len(path) > 1),
-            relations=contents.select_relations(relations, shown),
+            relations=common.select_relations(relations, shown),
         )
 
 
@@ -77,7 +77,7 @@ class _Draft:
             node.path = parent.path if parent else ()
             node.is_visible = node.is_visible and (parent is None or parent.is_visible)
             if node.is_visible and node.target:
-                node.path = contents.extend_path(node.path, node.target)
+                node.path = common.extend_path(node.path, node.target)
                 paths[node.path] = None
         return list(paths)
 
@@ -114,11 +114,11 @@ class _NotationReader:
         if name in _NODES:
             self._add_node(draft, attributes)
         elif name == "element" and parent in _NODES:
-            self._open_nodes[-1].target = contents.read_target(attributes)
+            self._open_nodes[-1].target = common.read_target(attributes)
         elif name == "element" and parent == _DIAGRAM:
-            draft.context = contents.read_target(attributes)
+            draft.context = common.read_target(attributes)
         elif name == "owner":
-            draft.owner = contents.read_target(attributes)
+            draft.owner = common.read_target(attributes)
         draft.profile_type = attributes.get("diagramKindId", draft.profile_type)
 
     def _add_node(self, draft: _Draft, attributes: dict[str, str]) -> None:

@@ -1,4 +1,4 @@
-"""What the diagrams of all tools have in common: types, shapes inside shapes, and relations."""
+"""Helpers of the readers of all tools: types of diagrams, paths of shapes, drawn relations."""
 
 from collections.abc import Iterable, Mapping
 
@@ -11,6 +11,7 @@ Relation = tuple[Edge, str, str]
 """An edge with the ids or hrefs of its ends."""
 
 _MAX_DEPTH = 40
+"""Longest path of shapes inside shapes; damaged files can nest shapes without end."""
 
 _DIAGRAM_TYPES = (
     ("table", "table"),
@@ -34,7 +35,10 @@ _DIAGRAM_TYPES = (
     ("deployment", "class"),
     ("profile", "class"),
 )
-"""Parts of the tools' names for diagrams, and the abbreviations of annexes A of SysML and UML."""
+"""Parts of the names that tools give diagrams, with the abbreviations of SysML and UML (annex A).
+
+The first part that a name contains decides: "blockdefinition" stands before "class".
+"""
 
 
 def abbreviate_type(*types: str) -> str:
@@ -51,7 +55,10 @@ def abbreviate_type(*types: str) -> str:
 
 
 def read_target(attributes: Mapping[str, str]) -> str:
-    """Return the id or href that an element refers to, with any prefix for XMI."""
+    """Return the id or href that an XML element refers to, or the empty string.
+
+    The prefix of the attribute is ignored, because tools choose different ones for XMI.
+    """
     for name, value in attributes.items():
         if name.rpartition(":")[2] in ("idref", "href"):
             return value
@@ -78,10 +85,14 @@ class RelationReader:
         self._ids: list[str] = []
 
     def start(self, name: str, attributes: Mapping[str, str]) -> None:
-        """Handle the start of an element; ``general`` is an attribute or a child of a relation."""
+        """Handle the start of an element.
+
+        The feature that states the target, such as ``general``, is a child of the relation or one
+        of its attributes.
+        """
         if len(self._ids) > 1 and name in FOLDED_REFERENCES:
-            owner, id = self._ids[-2:]
-            self._add(FOLDED_REFERENCES[name], owner, id, read_target(attributes))
+            owner, relation = self._ids[-2:]
+            self._add(FOLDED_REFERENCES[name], owner, relation, read_target(attributes))
         id = attributes.get("xmi:id", "")
         if self._ids:
             for feature in FOLDED_REFERENCES.keys() & attributes.keys():
