@@ -46,15 +46,14 @@ def write_initial_successions(writer: Writer, member: Member, initial: Element) 
             writer.record_unreachable(flow, "flow-target")
             continue
         flow_member = writer.plan.find(flow)
-        name = ""
+        words = ["first start"]
         if flow_member is not None and flow_member.name:
-            name = f"succession {quote_name(flow_member.name)} "
+            words.insert(0, f"succession {quote_name(flow_member.name)}")
         guard = flow.attrs.get("guard")
-        condition = ""
         if guard is not None:
-            condition = f"if {format_condition(writer, scope, flow, str(guard))} "
+            words.append(f"if {format_condition(writer, scope, flow, str(guard))}")
         body = [] if flow_member is None else write_contents(writer, flow_member)
-        lines.append(Line(f"{name}first start {condition}then {end}", body))
+        lines.append(Line(" ".join([*words, f"then {end}"]), body))
     return lines
 
 
@@ -233,33 +232,55 @@ def write_object_flow(writer: Writer, member: Member) -> list[Line]:
         if target.kind in _STORES:
             writer.record_approximation(element, _PAST_CONTROL, "bindings past it")
         return []
-    is_direct = target.kind is not Kind.CONTROL
-    if is_direct and "guard" in element.attrs:
+    if target.kind is Kind.CONTROL:
+        return _write_flow_over_control_nodes(writer, member, source, target)
+    if "guard" in element.attrs:
         facts = {"attribute": "guard", "kind": "ObjectFlow"}
         writer.losses.record(UNSAID_ATTRIBUTE, element, **facts)
-    targets = [target] if is_direct else list(_iter_targets_behind(writer, target))
-    # Successions with pins express a flow from pin to pin over control nodes completely.
-    ends = (source, *targets)
-    is_expressed = not is_direct and bool(targets) and all(end.kind is Kind.PIN for end in ends)
-    if not is_direct and not is_expressed:
-        writer.record_approximation(element, _PAST_CONTROL, "bindings past it")
-    has_own_line = is_direct or source.kind in _STORES
+    lines = _write_flow_lines(writer, member, source, [target], member.name)
+    if lines:
+        lines[0].body += write_contents(writer, member)
+    return lines
+
+
+def _write_flow_over_control_nodes(
+    writer: Writer, member: Member, source: Element, control_node: Element
+) -> list[Line]:
+    """Write the flows from a source to all object nodes behind a control node.
+
+    Together with successions, flows from pin to pin express the object flow completely. The
+    succession then has its name and annotations.
+    """
+    targets = list(_iter_targets_behind(writer, control_node))
+    if targets and all(end.kind is Kind.PIN for end in (source, *targets)):
+        lines = _write_flow_lines(writer, member, source, targets, "")
+        for line in lines:
+            line.body.append(make_annotation(writer, member, "Through", {}))
+        return lines
+    writer.record_approximation(member.require_element(), _PAST_CONTROL, "bindings past it")
+    if source.kind not in _STORES:
+        return _write_flow_lines(writer, member, source, targets, "")
+    lines = _write_flow_lines(writer, member, source, targets, member.name)
+    if lines:
+        lines[0].body += write_contents(writer, member)
+    return lines
+
+
+def _write_flow_lines(
+    writer: Writer, member: Member, source: Element, targets: list[Element], name: str
+) -> list[Line]:
+    """Write a line for each target; the first line has the name."""
+    flow = member.require_element()
     source_name = _refer_to_object_node(writer, member.parent, source)
-    name = member.name if has_own_line else ""
     lines: list[Line] = []
-    for end in targets:
-        target_name = _refer_to_object_node(writer, member.parent, end)
+    for target in targets:
+        target_name = _refer_to_object_node(writer, member.parent, target)
         if source_name is None or target_name is None:
             writer.drop(member, "flow ends")
             continue
-        pair = ((source, source_name), (end, target_name))
-        lines.append(Line(_format_object_flow(writer, element, name, *pair)))
+        ends = ((source, source_name), (target, target_name))
+        lines.append(Line(_format_object_flow(writer, flow, name, *ends)))
         name = ""
-    if is_expressed:
-        for line in lines:
-            line.body.append(make_annotation(writer, member, "Through", {}))
-    elif lines and has_own_line:
-        lines[0].body += write_contents(writer, member)
     return lines
 
 

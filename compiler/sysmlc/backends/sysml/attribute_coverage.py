@@ -22,10 +22,9 @@ _ATTRIBUTES = """
     guard_language guard_literal guard_bodies guard_languages guard_instance req_id text symbol
     when when_language when_bodies when_languages condition condition_language condition_bodies
     condition_languages relative port path represents data_type unit default_value category
-    semantics version change_mode copyright ppr interface_ids associated_facet tag data_type
-    stereotype namespace lineage on diagram arguments
-    message_kind description usage property_specific payload initial value_unit variation variant
-    portion individual
+    semantics version change_mode copyright ppr interface_ids associated_facet tag stereotype
+    namespace lineage on diagram arguments message_kind description usage property_specific payload
+    initial value_unit variation variant portion individual
 """
 _EXPRESSED = frozenset(_ATTRIBUTES.split())
 """Attributes that the text expresses for most kinds, or that add nothing to what it expresses."""

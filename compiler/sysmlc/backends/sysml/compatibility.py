@@ -37,17 +37,23 @@ def is_incompatible(plan: Plan, feature: Element, general_feature: Element) -> b
 
 def has_incompatible_ends(plan: Plan, general: Member | None, specific: Member | None) -> bool:
     """Whether ends of an association have other types than the ends that they would redefine."""
-    graph, ends = plan.graph, []
-    for member in (general, specific):
-        association = None if member is None else member.element
-        if association is None or association.kind is not Kind.ASSOCIATION:
-            return False
-        ends.append(graph.targets(association, Edge.END))
-    for general_end, end in zip(*ends, strict=False):
-        wanted, type_ = type_of(graph, general_end), type_of(graph, end)
-        if wanted is not None and type_ is not None and not conforms(graph, type_, wanted):
+    graph = plan.graph
+    pairs = zip(_list_ends(graph, general), _list_ends(graph, specific), strict=False)
+    for general_end, end in pairs:
+        general_type, type_ = type_of(graph, general_end), type_of(graph, end)
+        if general_type is None or type_ is None:
+            continue
+        if not conforms(graph, type_, general_type):
             return True
     return False
+
+
+def _list_ends(graph: Graph, member: Member | None) -> list[Element]:
+    """Return the ends of an association; none for any other member."""
+    association = None if member is None else member.element
+    if association is None or association.kind is not Kind.ASSOCIATION:
+        return []
+    return graph.targets(association, Edge.END)
 
 
 def is_without_parameters(graph: Graph, operation: Element, method: Element) -> bool:

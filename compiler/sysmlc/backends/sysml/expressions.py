@@ -9,7 +9,7 @@ from sysmlc.backends.sysml.plan import Member, Plan
 from sysmlc.backends.sysml.printing import quote_name, quote_string
 from sysmlc.backends.sysml.references import find_by_model_name, format_reference, look_up
 from sysmlc.backends.sysml.writer import Writer
-from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir.query import generals, type_of
 from sysmlc.ir.query.classifiers import unit_of
 from sysmlc.logic.expressions import expression as syntax
@@ -84,7 +84,7 @@ class _ExpressionPrinter:
             return f"{base}.{quote_name(feature.name)}", feature
         return self.print(tree, POSTFIX), None
 
-    def _print_node(self, tree: syntax.Expression) -> tuple[str, int]:  # noqa: PLR0911 - one a kind
+    def _print_node(self, tree: syntax.Expression) -> tuple[str, int]:  # noqa: PLR0911 - a return for each kind
         """Return the text of an expression, and the precedence of its outermost operator."""
         match tree:
             case syntax.Literal(value):
@@ -97,12 +97,17 @@ class _ExpressionPrinter:
             case syntax.Index(base, index):
                 return f"{self.print(base, POSTFIX)}#({self.print(index, 0)})", POSTFIX
             case syntax.Unary(op, operand):
-                return f"{op}{' ' * (op == 'not')}{self.print(operand, UNARY)}", UNARY
+                sign = "not " if op == "not" else op
+                return f"{sign}{self.print(operand, UNARY)}", UNARY
             case syntax.Binary():
                 return self._print_binary(tree)
             case syntax.Conditional(condition, then, otherwise):
-                parts = self.print(condition, 2), self.print(then, 1), self.print(otherwise, 1)
-                return "if {} ? {} else {}".format(*parts), 0
+                test, first, second = (
+                    self.print(condition, 2),
+                    self.print(then, 1),
+                    self.print(otherwise, 1),
+                )
+                return f"if {test} ? {first} else {second}", 0
 
     def _print_binary(self, tree: syntax.Binary) -> tuple[str, int]:
         precedence = PRECEDENCE[tree.op]
@@ -118,12 +123,11 @@ class _ExpressionPrinter:
         return self._find_by_suffix(path) if member is None else member
 
     def _find_first_name(self, name: str) -> Member | None:
-        scope = self._scope
-        if scope is not None:
-            for namespace in (scope, *scope.namespaces):
-                member = find_by_model_name(self._plan, namespace, name)
-                if member is not None and member.shape.keyword not in _WITHOUT_VALUE:
-                    return member
+        scopes = [] if self._scope is None else [self._scope, *self._scope.namespaces]
+        for namespace in scopes:
+            member = find_by_model_name(self._plan, namespace, name)
+            if member is not None and member.shape.keyword not in _WITHOUT_VALUE:
+                return member
         return look_up(self._plan, None, name)
 
     def _find_by_suffix(self, path: tuple[str, ...]) -> Member | None:
@@ -201,18 +205,25 @@ def _format_number(writer: Writer, scope: Member | None, feature: Element, value
 def _format_text(writer: Writer, scope: Member | None, feature: Element, text: str) -> str:
     """Return a text as an enumeration literal or number if the type allows it, else as a string."""
     type_ = type_of(writer.graph, feature)
-    if type_ is not None:
-        for general in (type_, *generals(writer.graph, type_)):
-            if general.kind is Kind.ENUMERATION:
-                for literal in writer.graph.owned(general):
-                    if literal.kind is Kind.ENUMERATION_LITERAL and literal.name == text:
-                        name = writer.refer_to(scope, feature, Edge.REFERENCES, literal)
-                        return name or quote_string(text)
-            is_primitive = general.name in _NUMBERS and general.attrs.get("external")
-            if is_primitive and _is_number(text):
-                number = float(text) if "." in text else int(text)
-                return _format_number(writer, scope, feature, number)
+    family = [] if type_ is None else [type_, *generals(writer.graph, type_)]
+    for general in family:
+        literal = _find_literal(writer.graph, general, text)
+        if literal is not None:
+            name = writer.refer_to(scope, feature, Edge.REFERENCES, literal)
+            return name or quote_string(text)
+        is_number_type = general.name in _NUMBERS and general.attrs.get("external")
+        if is_number_type and _is_number(text):
+            number = float(text) if "." in text else int(text)
+            return _format_number(writer, scope, feature, number)
     return quote_string(text)
+
+
+def _find_literal(graph: Graph, type_: Element, name: str) -> Element | None:
+    """Return the literal of an enumeration by its name; None for any other type."""
+    if type_.kind is not Kind.ENUMERATION:
+        return None
+    literals = (item for item in graph.owned(type_) if item.kind is Kind.ENUMERATION_LITERAL)
+    return next((literal for literal in literals if literal.name == name), None)
 
 
 def _is_number(text: str) -> bool:

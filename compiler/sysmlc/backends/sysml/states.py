@@ -92,12 +92,12 @@ def write_transition(writer: Writer, member: Member) -> list[Line]:
     accepts = [format_trigger(writer, member, trigger) for trigger in triggers] or [""]
     name = member.name
     for accept in accepts:
-        lines.append(_write_transition(writer, member, name, (source, target), accept, body))
+        lines.append(_write_line(writer, member, name, (source, target), accept, body))
         name, body = "", []
     return lines
 
 
-def _write_transition(
+def _write_line(
     writer: Writer,
     member: Member,
     name: str,
