@@ -10,7 +10,7 @@ LocatedNode = tuple[Document, Node]
 """A node and its file."""
 
 _UNINDEXED_LOOKUPS = 8
-"""Number of inexact lookups that search a joined text before an index is built."""
+"""Number of inexact lookups that search all IDs as one text, before an index is built."""
 
 
 class Identifiers:
@@ -33,10 +33,10 @@ class Identifiers:
             self._index([id for document in documents for id in document.ids])
 
     def _index(self, ids: list[str]) -> None:
-        """Number the IDs. The loop runs only for files with repeated IDs, which are few."""
+        """Number the IDs; an ID that occurs several times has the number of its first row."""
         rows = compress(range(len(ids)), ids)
-        numbers: dict[str, int] = {}
-        numbers.update(zip(filter(None, ids), rows, strict=True))
+        numbers = dict(zip(filter(None, ids), rows, strict=True))
+        # Most files repeat no ID, so the loop, which is slower than the two lines above, is rare.
         if len(numbers) < len(ids) - ids.count(""):
             numbers = {}
             for number, id in enumerate(ids):
@@ -109,15 +109,17 @@ class Identifiers:
         number = self._numbers.get(id)
         if number is None or id in self._repeated:
             return None
+        return self._find_row(number)
+
+    def _find_row(self, number: int) -> tuple[Document, int]:
         if number < self._starts[1]:
             return self._documents[0], number
         index = bisect_right(self._starts, number) - 1
         return self._documents[index], number - self._starts[index]
 
     def _locate(self, number: int) -> LocatedNode:
-        index = bisect_right(self._starts, number) - 1
-        document = self._documents[index]
-        return document, document.node(number - self._starts[index])
+        document, row = self._find_row(number)
+        return document, document.node(row)
 
 
 def _normalize(id: str) -> str:

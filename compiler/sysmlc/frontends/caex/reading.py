@@ -27,8 +27,9 @@ def read(sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage
     """
     ordered = sorted(sources, key=lambda source: source.name)
     with pause_garbage_collection():
-        read_results = [_read_document(source, sink) for source in ordered]
-        documents = [document for document in read_results if document is not None]
+        documents = [
+            document for source in ordered if (document := _read_document(source, sink)) is not None
+        ]
         standard_libraries = libraries.StandardLibraries()
         context = Context(documents, graph, sink, standard_libraries.provide)
         _lower_unit(context)

@@ -32,11 +32,12 @@ def lower_action(lowering: "Lowering", node: Node, owner: Element) -> Element:
     body = nodes.body_of(node)
     has_steps = any(map(_is_step, body))
     statements = expressions.list_statements(body) if has_steps else None
-    effect = None if statements is None else expressions.write_effect(statements)
-    if statements is not None and effect is not None:
-        action = _add_action(lowering, node, owner, "opaque", body=effect)
-        lowering.lower_all(list_members_beside(body, statements), action)
-        return action
+    if statements is not None:
+        effect = expressions.write_effect(statements)
+        if effect is not None:
+            action = _add_action(lowering, node, owner, "opaque", body=effect)
+            lowering.lower_all(list_members_beside(body, statements), action)
+            return action
     is_group = subkind in _STRUCTURED_SUBKINDS or (has_steps and not subkind)
     if is_group and _find_called(node) is None:
         return _lower_group(lowering, node, owner, subkind)
@@ -44,8 +45,12 @@ def lower_action(lowering: "Lowering", node: Node, owner: Element) -> Element:
 
 
 def _is_step(node: Node) -> bool:
-    is_reference = node.kind == "ReferenceUsage" and not node.name
-    return not (nodes.is_annotation(node) or "direction" in node.attributes or is_reference)
+    is_parameter = "direction" in node.attributes
+    return not (nodes.is_annotation(node) or is_parameter or _is_nameless_reference(node))
+
+
+def _is_nameless_reference(node: Node) -> bool:
+    return node.kind == "ReferenceUsage" and not node.name
 
 
 def _add_action(
@@ -79,8 +84,7 @@ def _lower_call(lowering: "Lowering", node: Node, owner: Element, subkind: str) 
     default_subkind = "opaque" if called is None else "call-behavior"
     action = _add_action(lowering, node, owner, subkind or default_subkind)
     for member in nodes.body_of(node):
-        is_reference = member.kind == "ReferenceUsage" and not member.name
-        if is_reference and "direction" not in member.attributes:
+        if _is_nameless_reference(member) and "direction" not in member.attributes:
             for reference in nodes.list_references(member, "FeatureTyping", "Subsetting"):
                 lowering.connect_reference(Edge.CALLS, action, reference)
         else:
@@ -110,12 +114,11 @@ def _assign_partitions(lowering: "Lowering", node: Node, owner: Element, action:
     """Assign an action to the partitions that metadata names."""
     if "Partition" not in annotations.shipped_metadata_of(node):
         return
+    names = _list_texts(annotations.metadata_value(node, "Partition", "names"))
     represented = _list_texts(annotations.metadata_value(node, "Partition", "represents"))
-    for number, name in enumerate(
-        _list_texts(annotations.metadata_value(node, "Partition", "names"))
-    ):
-        element_name = represented[number] if number < len(represented) else ""
-        _defer_partition(lowering, action, owner, name, element_name)
+    padding = [""] * len(names)
+    for name, represented_name in zip(names, [*represented, *padding], strict=False):
+        _defer_partition(lowering, action, owner, name, represented_name)
 
 
 def _defer_partition(

@@ -33,17 +33,10 @@ _TYPES: dict[str, RowHandler] = (
 """Handlers of elements, by metaclass; the tables of ``metaclasses`` say how others are lowered."""
 
 _ALWAYS_VALUES = frozenset(
-    {
-        "lowerValue",
-        "upperValue",
-        "lower",
-        "upper",
-        "defaultValue",
-        "joinSpec",
-        "upperBound",
-        "specification",
-    }
-    | {"clause", "handler", "endData", "weight", "nameExpression"}
+    """
+    lowerValue upperValue lower upper defaultValue joinSpec upperBound specification clause handler
+    endData weight nameExpression
+    """.split()  # noqa: SIM905 - a list of words
 )
 """Features whose content is a value whatever its metaclass."""
 
@@ -53,6 +46,7 @@ def lower_document(unit: Unit, file: LoweredDocument, sink: Sink) -> Context:
     context = Context(unit, file, sink)
     document = file.document
     row = 0
+    # The elements below `xmi:XMI` are the roots; without it, the only root is the document element.
     if namespaces.is_xmi(document.namespace(0)):
         context.verdicts[0] = Verdict.MAPPED
         row = 1

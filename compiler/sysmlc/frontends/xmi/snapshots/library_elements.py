@@ -6,7 +6,7 @@ from sysmlc.frontends.xmi import vocabulary as v
 from sysmlc.frontends.xmi.metaclasses import OWNERS, kind_of
 from sysmlc.frontends.xmi.namespaces import mangle_name
 from sysmlc.frontends.xmi.snapshots.entries import APPLICATION, Entry, Snapshots, canonical_href
-from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, Reference
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, Reference, list_items
 from sysmlc.ir.element import derived_id
 
 _BASE = "base_"
@@ -105,9 +105,9 @@ class LibraryLowering:
 
     def _connect_element(self, element: Element, entry: Entry) -> None:
         for feature in (*entry.references, *entry.values):
-            edge = Edge.PATH if feature == _PATH else None
-            edge = edge or v.REFERENCES_BY_KIND.get((element.kind, feature))
-            edge = edge or v.REFERENCES.get(feature)
+            edge = v.REFERENCES_BY_KIND.get((element.kind, feature)) or v.REFERENCES.get(feature)
+            if feature == _PATH:
+                edge = Edge.PATH
             if edge is not None:
                 self._add_edges(edge, element, entry.targets(feature))
         if element.kind is Kind.CONNECTOR_END and element.owner is not None:
@@ -222,6 +222,5 @@ def _is_metaclass_property(entry: Entry, owner: Element | None) -> bool:
 
 
 def _note_unresolved(graph: Graph, source: Element, edge: Edge) -> None:
-    unresolved = source.attrs.get("unresolved")
-    names = {str(name) for name in unresolved} if isinstance(unresolved, tuple) else set()
+    names = set(map(str, list_items(source.attrs.get("unresolved"))))
     graph.set(source, unresolved=tuple(sorted(names | {edge.value})))
