@@ -58,8 +58,8 @@ def command(
     source = _read(scenario)
     sink = Sink(config.rules)
     result = run_scenarios(compilation.graph, source, sink) if compilation.exit_code() < 2 else None
-    of_model = reports.list_findings(compilation, only_errors=not settings.verbose)
-    reports.print_findings([*of_model, *make_report(sink, [source]).findings], settings)
+    findings = reports.list_findings(compilation, only_errors=not settings.verbose)
+    reports.print_findings([*findings, *make_report(sink, [source]).findings], settings)
     if result is not None:
         terminal.echo_text(result.as_text(), nl=False, err=not reports.allows_sentences(settings))
         _save(junit, result.as_junit())

@@ -74,10 +74,10 @@ def _resolve_document(document: Document, model: Model, sink: Sink) -> None:
     for node in model.nodes(document):
         for relation in node.relations:
             if relation.reference.target is None:
-                _resolve_one(document, node, relation, model, sink)
+                _resolve_relation(document, node, relation, model, sink)
 
 
-def _resolve_one(
+def _resolve_relation(
     document: Document, node: Node, relation: Relation, model: Model, sink: Sink
 ) -> None:
     if relation.reference in model.lookup.abandoned_references:

@@ -41,9 +41,9 @@ class ValueAnalysis:
     def __init__(self, graph: TokenGraph, relation: ConcurrencyRelation, store: Store) -> None:
         self._graph, self._relation, self._store = graph, relation, store
         self._formulas = StepFormulas(graph)
-        variables = (*graph.inputs, *(other.variable for other in graph.stores))
-        domains = {variable.name: variable.domain for variable in variables}
-        self._value_sets = _ValueSets(store, domains)
+        variables = (*graph.inputs, *(stored.variable for stored in graph.stores))
+        variable_domains = {variable.name: variable.domain for variable in variables}
+        self._value_sets = _ValueSets(store, variable_domains)
         self._writes = {write.node: write for write in store.writes}
         self._moves_by_place = index_moves_by_place(relation.moves)
         self._values_at: dict[str, int] = {}
@@ -122,11 +122,9 @@ class ValueAnalysis:
             values &= self._value_sets.filter_values(self._formulas.guard_formula(move.branch))
         if move.is_end and move.node.kind is NodeKind.STRUCTURED:
             return values & self._values_at_completion(move.node.id)
-        return (
-            values & self._value_sets.filter_values(self._formulas.done_formula(move.node))
-            if move.is_end
-            else values
-        )
+        if move.is_end:
+            values &= self._value_sets.filter_values(self._formulas.done_formula(move.node))
+        return values
 
     # -- ends of regions -----------------------------------------------------------------------
 
@@ -190,20 +188,15 @@ class _ValueSets:
 
     def _list_other_valuations(self, *formulas: Formula) -> list[dict[str, Literal]] | None:
         """Return all valuations of the other variables; None if there are too many."""
-        names = {variable.name for formula in formulas for variable in f.variables(formula)} - {
-            self._name
-        }
+        names = {variable.name for formula in formulas for variable in f.variables(formula)}
+        names.discard(self._name)
         other_domains = {name: self._domains[name] for name in sorted(names & self._domains.keys())}
-        if (
-            len(other_domains) < len(names)
-            or self._count_valuations(other_domains) > _MAX_VALUATIONS
-        ):
+        has_unknown_domain = len(other_domains) < len(names)
+        count = domains.count(other_domains) * len(self._values)
+        if has_unknown_domain or count > _MAX_VALUATIONS:
             self.has_given_up = True
             return None
         return list(domains.valuations(other_domains))
-
-    def _count_valuations(self, others: Mapping[str, Domain]) -> int:
-        return domains.count(others) * len(self._values)
 
     def written_values(self, write: Write, before: int) -> int:
         """Return the values that the write may assign, given the values *before*."""

@@ -1,5 +1,6 @@
 """Elaboration of expressions to formulas: resolve names, check types, split values into cases."""
 
+import operator
 from collections.abc import Callable
 from enum import StrEnum
 
@@ -76,6 +77,12 @@ Scope = Callable[[str], Symbol | None]
 _ORDER = {"<": Op.LT, "<=": Op.LE, ">": Op.GT, ">=": Op.GE}
 _EQUALITY = {"==": Op.EQ, "!=": Op.NE}
 _ARITHMETIC = {"+": Op.ADD, "-": Op.SUB, "*": Op.MUL, "/": Op.DIV, "%": Op.MOD}
+_FOLDED: dict[Op, Callable[[int, int], int]] = {
+    Op.ADD: operator.add,
+    Op.SUB: operator.sub,
+    Op.MUL: operator.mul,
+}
+"""Operators whose value for two numbers is computed at once."""
 _CONNECTIVE: dict[str, Callable[[Formula, Formula], Formula]] = {
     "and": f.both,
     "or": f.either,
@@ -252,7 +259,11 @@ def _elaborate_operands(expression: Binary, scope: Scope) -> tuple[GuardedValue,
 def _infer_operands(
     left: Expression, right: Expression, scope: Scope
 ) -> tuple[GuardedValue, GuardedValue]:
-    """Return both values; the domain of one resolves the literals of the other."""
+    """Return both values; the domain of one resolves the literals of the other.
+
+    A plain literal, such as ``auto`` in ``auto == mode``, has no value before the domain of the
+    other side is known, so the right side is elaborated first if the left one fails.
+    """
     try:
         left_value = elaborate_value(left, scope)
     except ElaborationError:
@@ -313,9 +324,9 @@ def _combine(op: Op, left: GuardedValue, right: GuardedValue) -> GuardedValue:
 
 
 def _fold(op: Op, left: Formula, right: Formula) -> Formula:
-    if isinstance(left, Const) and isinstance(right, Const) and op in (Op.ADD, Op.SUB, Op.MUL):
-        a, b = int(left.value), int(right.value)
-        return Const({Op.ADD: a + b, Op.SUB: a - b, Op.MUL: a * b}[op])
+    fold = _FOLDED.get(op)
+    if fold is not None and isinstance(left, Const) and isinstance(right, Const):
+        return Const(fold(int(left.value), int(right.value)))
     return f.compare(op, left, right)
 
 

@@ -39,9 +39,10 @@ class Entailment:
 
     def find_example(self) -> Trace | None:
         """Return a fair run, or None if there is none."""
-        runs = self.runs
-        start = runs.fair & runs.system.init
-        return build_lasso(runs, [pick_state(runs, start)], runs.fair) if self.is_possible else None
+        if not self.is_possible:
+            return None
+        start = pick_state(self.runs, self.runs.fair & self.runs.system.init)
+        return build_lasso(self.runs, [start], self.runs.fair)
 
     def find_violation(self, conjunct: Conjunct) -> Trace | None:
         """Return a run that violates the conjunct, or None if it holds in all runs.
@@ -56,11 +57,9 @@ class Entailment:
 
 def _find_initial_violation(runs: Runs, violation: Node) -> Trace | None:
     states = runs.system.init & runs.fair & violation
-    return (
-        build_lasso(runs, [pick_state(runs, states)], runs.fair)
-        if states != runs.manager.false
-        else None
-    )
+    if states == runs.manager.false:
+        return None
+    return build_lasso(runs, [pick_state(runs, states)], runs.fair)
 
 
 def _find_step_violation(runs: Runs, violation: Node) -> Trace | None:
