@@ -1,4 +1,4 @@
-"""Reads the output of the back end ``ecore`` with pyecore, an independent implementation."""
+"""Read the output of the back end ``ecore`` with pyecore, an independent implementation."""
 
 import json
 from collections.abc import Iterator
@@ -17,46 +17,46 @@ def read_ecore_xmi(path: str) -> Graph:
     metamodel = files.get_resource(str(resources.path("metamodels", "ir.ecore"))).contents[0]
     files.metamodel_registry[metamodel.nsURI] = metamodel
     graph = Graph()
-    objects = list(_objects(files.get_resource(path).contents[0]))
+    objects = list(_iter_objects(files.get_resource(path).contents[0]))
     for obj, owner in objects:
-        graph.add(_read(obj, owner))
+        graph.add(_read_element(obj, owner))
     for obj, _ in objects:
         for edge in Edge:
             if edge is not Edge.OWNS:
                 for target in getattr(obj, feature_name(edge)):
-                    graph.connect(edge, _unescaped(obj.id), _unescaped(target.id))
+                    graph.connect(edge, _unescape(obj.id), _unescape(target.id))
     return graph
 
 
-def _objects(root: EObject) -> Iterator[tuple[EObject, str | None]]:
+def _iter_objects(root: EObject) -> Iterator[tuple[EObject, str | None]]:
     stack: list[tuple[EObject, str | None]] = [(top, None) for top in reversed(root.roots)]
     while stack:
         obj, owner = stack.pop()
         yield obj, owner
-        stack.extend((child, _unescaped(obj.id)) for child in reversed(obj.owns))
+        stack.extend((child, _unescape(obj.id)) for child in reversed(obj.owns))
 
 
-def _read(obj: EObject, owner: str | None) -> Element:
+def _read_element(obj: EObject, owner: str | None) -> Element:
     attrs: dict[str, AttrValue] = {
-        _unescaped(pair.key): _with_tuples(json.loads(pair.value)) for pair in obj.attrs
+        _unescape(pair.key): _convert_lists(json.loads(pair.value)) for pair in obj.attrs
     }
     return Element(
-        _unescaped(obj.id),
+        _unescape(obj.id),
         Kind(obj.eClass.name),
-        _unescaped(obj.name),
+        _unescape(obj.name),
         owner,
         obj.ordinal,
-        _unescaped(obj.source),
+        _unescape(obj.source),
         attrs,
     )
 
 
-def _with_tuples(value: object) -> AttrValue:
+def _convert_lists(value: object) -> AttrValue:
     if isinstance(value, list):
-        return tuple(_with_tuples(item) for item in value)
+        return tuple(_convert_lists(item) for item in value)
     assert value is None or isinstance(value, str | int | float | bool)
     return value
 
 
-def _unescaped(text: str | None) -> str:
+def _unescape(text: str | None) -> str:
     return str(json.loads(f'"{text or ""}"'))

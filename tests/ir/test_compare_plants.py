@@ -1,6 +1,7 @@
-"""What a new export of a plant differs in is told once, in the words of the plant."""
+"""Each change in a new export of a plant is reported once, in the terms of the plant."""
 
 import pytest
+from change_texts import print_changes
 
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.caex import FRONTEND
@@ -42,23 +43,18 @@ def read(text):
     return graph
 
 
-def changed(*replacements):
-    new = LINE
-    for before, after in replacements:
-        assert new.count(before) == 1
-        new = new.replace(before, after)
-    for one, other in ((LINE, new), (LINE, anew(new))):
-        changes = compare(read(one), read(other))
-        yield [
-            f"{c.owner}: {c.what} {c.kind} {c.name}"
-            + (f", {c.aspect}: {c.before or None} => {c.after or None}" if c.aspect else "")
-            + (f" ({c.contents})" if c.contents else "")
-            for c in changes
-        ]
+def compare_exports(before, after):
+    """Return the changes when *after* replaces *before*, with the same ids and with new ids."""
+    assert LINE.count(before) == 1
+    changed_line = LINE.replace(before, after)
+    return [
+        print_changes(compare(read(LINE), read(text)))
+        for text in (changed_line, replace_ids(changed_line))
+    ]
 
 
-def anew(text):
-    """The same plant with other ids."""
+def replace_ids(text):
+    """Return the same plant with other ids."""
     for id in ("line", "cell", "arm", "oven", "a", "tool"):
         text = text.replace(f'ID="{id}"', f'ID="new-{id}"')
     return text
@@ -68,7 +64,7 @@ TOOL = '<InternalElement Name="tool" ID="tool"/>'
 
 
 @pytest.mark.parametrize(
-    ("replacement", "told"),
+    ("replacement", "change"),
     [
         (
             ("<Value>3<", "<Value>4<"),
@@ -93,11 +89,11 @@ TOOL = '<InternalElement Name="tool" ID="tool"/>'
         ),
     ],
 )
-def test_one_change_of_a_plant_is_told_once(replacement, told):
-    for found in changed(replacement):
-        assert found == [told]
+def test_a_change_of_a_plant_is_reported_once(replacement, change):
+    for changes in compare_exports(*replacement):
+        assert changes == [change]
 
 
 def test_another_system_unit_class_is_another_type():
-    for found in changed((ARM, ARM.replace("Lib/Arm", "Lib/BigArm"))):
-        assert "Plant::Line::Cell: retyped instance arm, type: Arm => BigArm" in found
+    for changes in compare_exports(ARM, ARM.replace("Lib/Arm", "Lib/BigArm")):
+        assert "Plant::Line::Cell: retyped instance arm, type: Arm => BigArm" in changes

@@ -1,4 +1,4 @@
-"""Random models and random changes: a comparison tells exactly what was done."""
+"""The comparison of random models reports exactly the change that was made."""
 
 from functools import cache
 from random import Random
@@ -43,12 +43,12 @@ def test_a_model_does_not_differ_from_itself(form, seed):
 
 
 @pytest.mark.parametrize(("form", "seed"), SEEDS)
-def test_new_ids_another_order_and_other_places_are_no_difference(form, seed):
+def test_new_ids_another_order_and_other_locations_are_no_difference(form, seed):
     assert compare(read(form, seed), copy_with_new_ids(read(form, seed), Random(seed))) == []
 
 
 @pytest.mark.parametrize(("form", "seed"), SEEDS)
-def test_without_any_names_every_element_is_still_found_by_what_surrounds_it(form, seed):
+def test_elements_without_names_are_matched_by_their_surroundings(form, seed):
     old, new = read(form, seed), read(form, seed)
     for graph in (old, new):
         for element in list(graph):
@@ -58,23 +58,26 @@ def test_without_any_names_every_element_is_still_found_by_what_surrounds_it(for
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("model", quick_first(SEEDS, 6), ids=str)
-def test_one_change_is_reported_and_nothing_else_with_old_ids_and_with_new_ones(kind, model):
+def test_exactly_the_change_is_reported_with_old_ids_and_with_new_ids(kind, model):
     form, seed = model
     changed = read(form, seed)
     mutation = Mutation(changed, Random(seed))
     expected = (
         [] if not mutation.apply(kind) else [(mutation.change, mutation.name, mutation.aspect)]
     )
-    assert told(compare(read(form, seed), changed)) == expected
-    assert told(compare(read(form, seed), copy_with_new_ids(changed, Random(seed)))) == expected
+    assert list_changes(compare(read(form, seed), changed)) == expected
+    assert (
+        list_changes(compare(read(form, seed), copy_with_new_ids(changed, Random(seed))))
+        == expected
+    )
 
 
-def test_every_kind_of_change_has_been_made():
+def test_every_kind_of_change_is_made_at_least_once():
     for kind in KINDS:
         for form in READERS:
             made = (Mutation(read(*s), Random(s[1])).apply(kind) for s in SEEDS if s[0] == form)
             assert any(made), (kind, form)
 
 
-def told(changes):
+def list_changes(changes):
     return [(str(change.what), change.name, change.aspect) for change in changes]

@@ -1,4 +1,4 @@
-"""Questions to the graph."""
+"""Queries: stereotypes, generals, conformance, types, features, connector ends, bounds."""
 
 import pytest
 
@@ -34,13 +34,13 @@ Connector c1
 )
 
 
-def ids(elements):
+def list_ids(elements):
     return [element.id for element in elements]
 
 
-def test_stereotypes_and_tags():
+def test_stereotypes_and_tags_are_those_of_all_applications():
     gate = GATE["gate"]
-    assert ids(query.applications(GATE, gate)) == ["b", "c"]
+    assert list_ids(query.applications(GATE, gate)) == ["b", "c"]
     assert query.stereotypes(GATE, gate) == ("Block", "Custom")
     assert query.has_stereotype(GATE, gate, "Nothing", "Block")
     assert not query.has_stereotype(GATE, gate, "Nothing")
@@ -51,8 +51,8 @@ def test_stereotypes_and_tags():
     assert query.tag(GATE, gate, "absent") is None
 
 
-def test_generals_end_in_a_circle():
-    assert ids(query.generals(GATE, GATE["gate"])) == ["device"]
+def test_generals_of_a_cycle_are_finite():
+    assert list_ids(query.generals(GATE, GATE["gate"])) == ["device"]
 
 
 def test_generals_come_nearest_first_each_once():
@@ -70,16 +70,16 @@ Class machine "Machine"
 Class thing "Thing"
 """
     )
-    found = query.generals(graph, graph["robot"])
-    assert ids(found) == ["arm", "cart", "axis", "machine", "thing"]
+    generals = query.generals(graph, graph["robot"])
+    assert list_ids(generals) == ["arm", "cart", "axis", "machine", "thing"]
 
 
-def test_a_class_that_is_above_itself_is_not_among_its_generals():
+def test_a_class_that_specialises_itself_is_not_among_its_generals():
     graph = parse_text('Class a "A"\n  -> specializes a b\nClass b "B"\n  -> specializes a\n')
-    assert ids(query.generals(graph, graph["a"])) == ["b"]
+    assert list_ids(query.generals(graph, graph["a"])) == ["b"]
 
 
-def test_conformance_goes_over_generals_and_realised_interfaces():
+def test_a_class_conforms_to_its_generals_and_their_realised_interfaces():
     gate, track = GATE["gate"], GATE["track"]
     assert query.conforms(GATE, gate, gate)
     assert query.conforms(GATE, gate, GATE["device"])
@@ -87,23 +87,23 @@ def test_conformance_goes_over_generals_and_realised_interfaces():
     assert not query.conforms(GATE, gate, track)
 
 
-def test_type_of_a_redefining_feature_is_that_of_the_redefined_one():
+def test_a_redefining_feature_has_the_type_of_the_redefined_feature():
     assert query.type_of(GATE, GATE["gate.in"]).id == "track"
     assert query.type_of(GATE, GATE["track.p"]) is None
 
 
-def test_features_before_inherit_are_the_own_ones():
-    assert ids(query.features(GATE, GATE["gate"])) == ["gate.in"]
-    assert ids(query.ports(GATE, GATE["gate"])) == ["gate.in"]
-    assert ids(query.flow_properties(GATE, GATE["track"])) == ["track.p"]
+def test_features_before_inherit_are_the_owned_features():
+    assert list_ids(query.features(GATE, GATE["gate"])) == ["gate.in"]
+    assert list_ids(query.ports(GATE, GATE["gate"])) == ["gate.in"]
+    assert list_ids(query.flow_properties(GATE, GATE["track"])) == ["track.p"]
 
 
-def test_ends_of_a_connector():
+def test_a_connector_end_has_a_role_an_opposite_end_and_perhaps_a_path():
     connector, first, second = GATE["c1"], GATE["e1"], GATE["e2"]
     assert query.opposite_end(GATE, connector, first) is second
     assert query.role_of(GATE, first).id == "gate.in"
     assert (query.is_boundary(GATE, first), query.is_boundary(GATE, second)) == (True, False)
-    assert ids(query.connectors_of(GATE, GATE["gate.in"])) == ["c1"]
+    assert list_ids(query.connectors_of(GATE, GATE["gate.in"])) == ["c1"]
 
 
 @pytest.mark.parametrize(
@@ -122,5 +122,5 @@ def test_ends_of_a_connector():
         ("-1", None),
     ],
 )
-def test_bounds(multiplicity, expected):
+def test_bounds_of_a_multiplicity(multiplicity, expected):
     assert query.bounds(multiplicity) == expected

@@ -11,9 +11,9 @@ POOL = [Element(f"e{number}", Kind.CLASS) for number in range(40)]
 CHANGES = st.lists(st.tuples(st.booleans(), st.integers(0, 39)), max_size=120)
 
 
-def test_neighbours_behave_like_an_ordered_list_without_repetition():
+def test_neighbours_behave_like_an_ordered_set():
     @given(CHANGES)
-    def same(changes):
+    def compare(changes):
         index, expected = {}, []
         for is_addition, number in changes:
             element = POOL[number]
@@ -27,10 +27,10 @@ def test_neighbours_behave_like_an_ordered_list_without_repetition():
             assert first_neighbour(index, "a") is (expected[0] if expected else None)
             assert ("a" in index) == bool(expected)
 
-    same()
+    compare()
 
 
-def test_a_classifier_with_thousands_of_features_keeps_their_order():
+def test_thousands_of_features_retain_their_order():
     graph = Graph()
     owner = graph.add(Element("c", Kind.CLASS))
     features = [graph.add(Element(f"p{n}", Kind.PROPERTY, owner="c")) for n in range(3000)]
@@ -43,7 +43,7 @@ def test_a_classifier_with_thousands_of_features_keeps_their_order():
     assert graph.owned(owner) == features
 
 
-def three_classes():
+def build_three_classes():
     graph = Graph()
     for id in "abx":
         graph.add(Element(id, Kind.CLASS))
@@ -53,18 +53,18 @@ def three_classes():
 
 
 def test_sources_are_in_the_order_in_which_edges_were_added():
-    graph = three_classes()
+    graph = build_three_classes()
     assert [e.id for e in graph.sources(graph["x"], Edge.TYPED_BY)] == ["a", "b"]
 
 
 def test_sources_follow_the_removal_of_an_element():
-    graph = three_classes()
+    graph = build_three_classes()
     graph.remove(graph["a"])
     assert [e.id for e in graph.sources(graph["x"], Edge.TYPED_BY)] == ["b"]
 
 
 def test_elements_of_a_kind_follow_additions_and_removals():
-    graph = three_classes()
+    graph = build_three_classes()
     assert [e.id for e in graph.of_kind(Kind.CLASS)] == ["a", "b", "x"]
     graph.remove(graph["b"])
     graph.add(Element("b", Kind.PORT))
@@ -73,12 +73,12 @@ def test_elements_of_a_kind_follow_additions_and_removals():
 
 
 def test_an_edge_between_the_same_elements_is_added_once():
-    graph = three_classes()
+    graph = build_three_classes()
     graph.connect(Edge.TYPED_BY, "a", "x")
     assert [e.id for e in graph.sources(graph["x"], Edge.TYPED_BY)] == ["a", "b"]
 
 
-def test_ownership_is_no_edge_to_connect():
-    graph = three_classes()
+def test_ownership_cannot_be_connected_like_an_edge():
+    graph = build_three_classes()
     with pytest.raises(ValueError, match="move"):
         graph.connect(Edge.OWNS, "a", "x")

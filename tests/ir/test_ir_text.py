@@ -1,8 +1,8 @@
-"""The text form: it reads well, and reading it back gives the same graph."""
+"""IR text: its form, and that parsing the printed text gives the same graph."""
 
 import pytest
-from graphs import graphs
 from hypothesis import given
+from random_graphs import graphs
 
 from sysmlc.ir import IrSyntaxError, parse_text, print_text
 
@@ -18,7 +18,7 @@ Package pkg "Plant"
 """
 
 
-def test_a_model_prints_as_it_was_written():
+def test_printing_a_parsed_text_gives_the_same_text():
     assert print_text(parse_text(PLANT)) == PLANT
 
 
@@ -27,12 +27,12 @@ def test_comments_and_blank_lines_are_skipped():
 
 
 @given(graphs())
-def test_parse_of_print_is_the_same_graph(graph):
+def test_parsing_a_printed_graph_gives_the_same_graph(graph):
     text = print_text(graph)
-    again = parse_text(text)
-    assert print_text(again) == text
+    reparsed = parse_text(text)
+    assert print_text(reparsed) == text
     for element in graph:
-        twin = again[element.id]
+        twin = reparsed[element.id]
         assert (twin.kind, twin.name, twin.owner) == (element.kind, element.name, element.owner)
         assert twin.attrs == element.attrs
 
@@ -50,7 +50,7 @@ def test_parse_of_print_is_the_same_graph(graph):
         ("Class a b", "line 1: expected ="),
     ],
 )
-def test_faults_are_told_with_their_line(text, message):
+def test_syntax_errors_name_their_line(text, message):
     with pytest.raises(IrSyntaxError) as caught:
         parse_text(text)
     assert message in str(caught.value)

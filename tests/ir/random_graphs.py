@@ -14,7 +14,7 @@ values = st.recursive(scalars, lambda inner: st.lists(inner, max_size=3).map(tup
 
 @st.composite
 def graphs(draw: st.DrawFn, max_size: int = 12) -> Graph:
-    """A forest of elements with random names, attributes, places and edges."""
+    """Draw a forest of elements with random names, attributes, locations and edges."""
     graph = Graph()
     ids = draw(st.lists(st.text(min_size=1, max_size=6), unique=True, max_size=max_size))
     for number, id in enumerate(ids):
