@@ -78,15 +78,6 @@ def starts_without_collision(starts: Sequence[Sequence[int]], every_run: int) ->
     return difference(every_run, colliding)
 
 
-def _runs_with_several(run_sets: Sequence[P], none: P) -> P:
-    """Return the runs that are in two or more of the sets."""
-    any_seen, several = none, none
-    for run_set in run_sets:
-        several = several | (any_seen & run_set)
-        any_seen = any_seen | run_set
-    return several
-
-
 def union(run_sets: Sequence[P], none: P) -> P:
     """Return the runs that are in at least one of the sets."""
     result = none

@@ -18,7 +18,6 @@ from sysmlc.logic.formats import rules
 from sysmlc.logic.formats.draft import SpecificationFile
 from sysmlc.logic.formats.writing import NotExpressibleError
 
-_BYTE_ORDER_MARK = "\N{ZERO WIDTH NO-BREAK SPACE}"
 __all__ = ["FORMATS", "Format", "NotExpressibleError", "detect_format", "lower", "read", "write"]
 
 

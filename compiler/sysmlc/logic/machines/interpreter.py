@@ -28,7 +28,7 @@ visible in the next step:
 UML 2.5.1 clauses 14.2.3.8 and 14.2.3.9; a step is a run-to-completion step.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from itertools import product
 
 from sysmlc.logic.contract import IntegerDomain, Owner, Variable
@@ -101,18 +101,6 @@ def next_steps(
         for reaction in _list_reactions(machine, now)
     ]
     return _drop_duplicates(valuations)
-
-
-def _run_trace(
-    machine: Machine,
-    inputs: Sequence[Mapping[str, Literal]],
-    choose: Callable[[list[Valuation]], Valuation] = lambda options: options[0],
-) -> list[Valuation]:
-    """Return one trace over the inputs; *choose* selects one of the possible next steps."""
-    trace = [choose(initial_steps(machine, inputs[0]))] if inputs else []
-    for following in inputs[1:]:
-        trace.append(choose(next_steps(machine, trace[-1], following)))
-    return trace
 
 
 # -- before and after --------------------------------------------------------------------------

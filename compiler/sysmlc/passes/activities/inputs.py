@@ -67,11 +67,6 @@ class Scope:
         """Return the names of the variables, which new variables must not reuse."""
         return list(self._variables.values())
 
-    def find_element(self, name: str) -> Element | None:
-        """Return the property or parameter of a name."""
-        feature = self._feature(name) or self._feature(name.removeprefix("self."))
-        return None if feature is None else feature.element
-
     def _feature(self, name: str) -> Feature | None:
         return self._inner.features.get(name) or self._outer.features.get(name)
 
