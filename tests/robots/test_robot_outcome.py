@@ -14,7 +14,12 @@ from sysmlc.robots.mission_contract import mission_contract
 from sysmlc.robots.mission_run import sequence_diagram
 from sysmlc.robots.outcome import allocate_mission, run_study
 from sysmlc.robots.report import study_files, study_markdown
-from sysmlc.robots.robot_controller import build_answers, simulate_travel_times, synthesise_robot
+from sysmlc.robots.robot_controller import (
+    build_answers,
+    measure_travel_times,
+    synthesise_robot,
+    travel_times_of,
+)
 from sysmlc.robots.schedule import build_schedule, shortest_travel_times
 from sysmlc.robots.validation import validate_allocation
 from sysmlc.synthesis import Limits
@@ -179,7 +184,8 @@ def test_reports_are_reproducible(nine):
 def test_a_schedule_has_the_times_of_a_simulation_of_one_robot():
     study = floor(3, 0, targets=(8, 2, 6), deadline=60)
     answers = build_answers(study, synthesise_robot(study, locate_nowhere, Sink(), Options()))
-    schedule = build_schedule(study, simulate_travel_times(study, answers), ((0, 1, 2),))
+    travel_times = travel_times_of(study, measure_travel_times(study, answers))
+    schedule = build_schedule(study, travel_times, ((0, 1, 2),))
     validation = validate_allocation(study, ((0, 1, 2),), answers)
     assert validation.reached == schedule.reached
 

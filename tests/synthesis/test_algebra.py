@@ -1,4 +1,4 @@
-"""Relations between contracts: refinement, compatibility and consistency, with counterexamples."""
+"""Relations between contracts: refinement and compatibility, with counterexamples."""
 
 import os
 from pathlib import Path
@@ -17,7 +17,6 @@ from sysmlc.synthesis import Manager, OutsideGr1Error
 from sysmlc.synthesis.algebra.fair_systems import DomainError, Universe, build_lasso, pick_state
 from sysmlc.synthesis.algebra.refinement import (
     Entailment,
-    find_contract_run,
     find_environment_run,
     find_refinement_failures,
 )
@@ -74,11 +73,6 @@ def test_a_recurring_promise_fails_in_a_loop():
     ((_, failure),) = find_failures(lazy, f"{lazy}\n promise recurs at=3")
     loop = failure.trace.steps[failure.trace.loop :]
     assert all(step["at"] < 3 for step in loop)
-
-
-def test_a_contract_without_runs_is_not_consistent():
-    assert find_contract_run(parse_contract(DOOR), Manager()) is not None
-    assert find_contract_run(parse_contract(f"{DOOR}\n promise always at'=0"), Manager()) is None
 
 
 def test_contradictory_assumptions_have_no_environment_run():

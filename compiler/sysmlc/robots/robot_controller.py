@@ -74,11 +74,6 @@ def travel_times_of(study: Study, times: Times) -> TravelTimes:
     return TravelTimes(journeys, is_simulated=True)
 
 
-def simulate_travel_times(study: Study, answers: Sequence[Answers]) -> TravelTimes:
-    """Simulate the controller, and return the travel times between starts and targets."""
-    return travel_times_of(study, measure_travel_times(study, answers))
-
-
 def _measure_times_to(study: Study, cell: int, answers: Answers) -> dict[int, int]:
     """Return the steps to *cell* from every cell from which a robot reaches it."""
     # One simulation for all cells: each run has another start.

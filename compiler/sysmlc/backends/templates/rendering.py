@@ -34,8 +34,6 @@ class Templates:
         self._folder = folder
         self._process: RenderingProcess | None = None
         self._error: TemplateError | None = None
-        self.has_folder = folder is not None
-        """Whether texts may differ from those of the shipped templates."""
 
     def __enter__(self) -> Self:
         return self

@@ -164,7 +164,6 @@ class _ValueSets:
         """Whether a condition or an expression had too many valuations."""
         self.every = (1 << len(self._values)) - 1
         self._filter_cache: dict[Formula, int] = {}
-        self._image_cache: dict[tuple[Formula, Formula, int], int] = {}
 
     def single(self, value: Literal) -> int:
         """Return the set with one value."""

@@ -1,5 +1,5 @@
-"""Entailment of conjuncts, and refinement, compatibility and consistency of contracts (thesis
-2.2.1; Benveniste et al. 2018).
+"""Entailment of conjuncts, and refinement and compatibility of contracts (thesis 2.2.1; Benveniste
+et al. 2018).
 
 A contract denotes a set of environments (those that satisfy its assumptions) and a set of systems
 (those that satisfy its guarantees in these environments). Each conjunct is decided by itself on the
@@ -145,19 +145,9 @@ def _without_repeated(conjuncts: Sequence[Conjunct], facts: Sequence[Conjunct]) 
 
 def find_environment_run(contract: Contract, manager: Manager) -> Trace | None:
     """Return a run that satisfies the assumptions, or None if the contract is not compatible."""
-    return _find_run(contract, manager, with_guarantees=False)
-
-
-def find_contract_run(contract: Contract, manager: Manager) -> Trace | None:
-    """Return a run that satisfies assumptions and guarantees; None for an inconsistent contract."""
-    return _find_run(contract, manager, with_guarantees=True)
-
-
-def _find_run(contract: Contract, manager: Manager, with_guarantees: bool) -> Trace | None:
     observed = observe_histories((contract,))
     (reduced,) = observed.contracts
-    guarantees = reduced.guarantees if with_guarantees else ()
     with manager.guard():
         universe = Universe(observed.contracts, manager)
-        system = universe.system((*reduced.assumptions, *guarantees, *observed.definitions))
+        system = universe.system((*reduced.assumptions, *observed.definitions))
         return Entailment(universe, system).find_example()

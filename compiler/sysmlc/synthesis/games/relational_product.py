@@ -1,8 +1,7 @@
 """Relational products over partitioned relations, with early quantification.
 
 ``Product`` computes ``exist bits: start & part & part ...`` and quantifies each bit as soon as no
-remaining part depends on it. ``_successor_product`` is the product for the next states of a game;
-for predecessors see ``arena``.
+remaining part depends on it.
 """
 
 from collections.abc import Collection, Iterable, Sequence
@@ -11,7 +10,6 @@ from dataclasses import dataclass
 from msgspec import Struct
 
 from sysmlc.synthesis.bdd.manager import Manager, Node
-from sysmlc.synthesis.games.game import Game
 
 MAX_CLUSTER_NODES = 2_000
 """Nodes up to which parts over the same quantified bits are conjoined beforehand."""
@@ -164,9 +162,3 @@ def _can_join(left: _Stage, right: _Stage) -> bool:
 def _count_last_bits(cluster: _Cluster, remaining: Sequence[_Cluster]) -> int:
     other_bits = frozenset().union(*(other.support for other in remaining if other is not cluster))
     return len(cluster.support - other_bits)
-
-
-def _successor_product(game: Game) -> Product:
-    """Return the product that maps states to their possible next states, over primed bits."""
-    parts = [part.node for part in (*game.assumptions, *game.guarantees)]
-    return Product(game.manager, parts, (*game.inputs, *game.outputs))
