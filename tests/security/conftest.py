@@ -1,4 +1,4 @@
-"""A hostile project in a folder of its own, and the command line in it."""
+"""A project that may be hostile, files outside of it, and the command line in it."""
 
 from pathlib import Path
 
@@ -15,7 +15,7 @@ Package pkg "Plant"
 
 
 class Project:
-    """The project root ``folder`` with a model; files of others lie beside it in ``outside``."""
+    """The project root ``folder`` with a model; ``outside`` is a folder that is no part of it."""
 
     def __init__(self, folder: Path, outside: Path) -> None:
         self.folder = folder

@@ -36,7 +36,7 @@ def generalisation_diamonds(size: int) -> str:
 
 
 def import_circle(size: int) -> str:
-    """Packages that import one another in a circle, and name what stands farthest away."""
+    """Packages that import one another in a circle, with a reference to the most distant one."""
     lines = [
         f"package P{i} {{ public import P{(i + 1) % size}::*; part def A{i}; "
         f"part b{i} : A{(i - 1) % size}; }}"
@@ -106,7 +106,7 @@ def guarded_transitions(size: int) -> str:
 
 
 def choice_chain(size: int) -> str:
-    """Branches behind one another on the way of one transition: 2**size ways."""
+    """Consecutive branches on the path of one transition: 2**size paths."""
     decisions = "\n".join(
         f"decide d{i}; if x == {i} then e{i}; else m{i}; "
         f"action e{i}; then m{i}; merge m{i}; then d{i + 1};"
@@ -234,7 +234,7 @@ _XMI = (
 
 
 def xmi_hrefs(size: int) -> str:
-    """Properties and generalisations that refer to files that are not there."""
+    """Properties and generalisations that refer to files that do not exist."""
     rows = [
         f'<ownedAttribute xmi:type="uml:Property" xmi:id="p{i}" name="p{i}">'
         f'<type xmi:type="uml:Class" href="gone{i}.uml#c{i}"/></ownedAttribute>'
@@ -280,12 +280,12 @@ def aml_mirrors(size: int) -> str:
 
 def aml_nesting(size: int) -> str:
     """Elements inside one another, each with an interface that is linked to its parent's."""
-    opened = "".join(
+    start_tags = "".join(
         f'<InternalElement Name="e{i}" ID="{_uuid(i)}"><ExternalInterface Name="i" '
         f'ID="{_uuid(size + i)}"/>'
         for i in range(size)
     )
-    return _CAEX + opened + "</InternalElement>" * size + "</InstanceHierarchy></CAEXFile>\n"
+    return _CAEX + start_tags + "</InternalElement>" * size + "</InstanceHierarchy></CAEXFile>\n"
 
 
 FAMILIES: dict[Family, tuple[str, int]] = {

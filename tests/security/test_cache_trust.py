@@ -1,4 +1,4 @@
-"""The cache: nobody but the user can put an entry into it, and a damaged entry is a miss."""
+"""The cache: only the user can write entries, and a damaged entry is a miss."""
 
 import os
 import random
@@ -28,13 +28,13 @@ KEY = "ab" * 32
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch) -> Path:
-    """The folder of the user's cache, which is not there yet."""
+    """The folder of the user's cache, which does not exist yet."""
     folder = tmp_path / "user" / "cache"
     monkeypatch.setenv(cache.VARIABLE, str(folder))
     return folder
 
 
-def modes(folder: Path) -> set[str]:
+def list_modes(folder: Path) -> set[str]:
     return {stat.filemode(path.lstat().st_mode) for path in (folder, *folder.rglob("*"))}
 
 
@@ -44,15 +44,15 @@ def test_the_folder_and_its_files_are_private(project, folder):
         project.run("check", "plant.ir")
     finally:
         os.umask(old_mask)
-    assert modes(folder) == {"drwx------", "-rw-------"}
+    assert list_modes(folder) == {"drwx------", "-rw-------"}
 
 
 def test_a_committed_cache_cannot_hide_findings(project, monkeypatch):
-    """The entries were made by a stranger who runs the same sysmlc on a clean model."""
+    """An attacker commits entries that the same version of sysmlc stored for a clean model."""
     monkeypatch.setenv(cache.VARIABLE, str(project.folder / ".sysmlc-cache"))
     project.write("plant.ir", FAULTY)
-    honest = project.run("check", "plant.ir")
-    assert honest.exit_code == 1
+    original = project.run("check", "plant.ir")
+    assert original.exit_code == 1
     shutil.rmtree(project.folder / ".sysmlc-cache", ignore_errors=True)
     monkeypatch.setattr(compilation._CompilationRun, "_list_diagnostics", lambda self: ())
     store = Cache(project.folder / ".sysmlc-cache")
@@ -68,23 +68,23 @@ def test_a_committed_cache_cannot_hide_findings(project, monkeypatch):
     assert "lies inside the project" in result.stderr
 
 
-def test_a_cache_does_not_hold_configurations(project, folder):
-    project.write("sysmlc.toml", 'output = "made"\n')
+def test_configurations_are_not_cached(project, folder):
+    project.write("sysmlc.toml", 'output = "gen"\n')
     project.run("build")
-    project.write("sysmlc.toml", 'output = "made"\nunknown = 1\n')
+    project.write("sysmlc.toml", 'output = "gen"\nunknown = 1\n')
     assert project.run("check", "plant.ir").exit_code == 2
 
 
-@pytest.mark.parametrize("chosen", [".cache", "./deep/../.cache", "{}/.cache"])
-def test_a_folder_in_the_project_root_is_refused(project, monkeypatch, chosen):
-    monkeypatch.setenv(cache.VARIABLE, chosen.format(project.folder))
+@pytest.mark.parametrize("location", [".cache", "./deep/../.cache", "{}/.cache"])
+def test_a_folder_in_the_project_root_is_refused(project, monkeypatch, location):
+    monkeypatch.setenv(cache.VARIABLE, location.format(project.folder))
     project.write("models/plant.ir")
     result = project.run("check", "models/plant.ir")
     assert (result.exit_code, result.stderr.count("no cache is used")) == (0, 1)
     assert not (project.folder / ".cache").exists()
 
 
-def test_a_folder_that_leads_into_the_project_root_is_refused(project, folder):
+def test_a_link_into_the_project_root_is_refused(project, folder):
     folder.parent.mkdir()
     (project.folder / "committed").mkdir()
     folder.symlink_to(project.folder / "committed")
@@ -101,7 +101,7 @@ def test_a_link_is_refused(project, folder):
 
 
 @pytest.mark.parametrize("mode", [0o720, 0o702, 0o777, 0o1777])
-def test_a_folder_that_others_can_write_to_is_refused(project, folder, mode):
+def test_a_folder_that_is_writable_by_other_users_is_refused(project, folder, mode):
     folder.mkdir(parents=True)
     folder.chmod(mode)
     result = project.run("check", "plant.ir")
@@ -109,10 +109,10 @@ def test_a_folder_that_others_can_write_to_is_refused(project, folder, mode):
     assert "is writable by other users" in result.stderr
 
 
-def test_a_folder_of_somebody_else_is_refused(project, folder, monkeypatch):
+def test_a_folder_of_another_user_is_refused(project, folder, monkeypatch):
     folder.mkdir(parents=True)
-    own = os.geteuid()
-    monkeypatch.setattr(os, "geteuid", lambda: own + 1)
+    user = os.geteuid()
+    monkeypatch.setattr(os, "geteuid", lambda: user + 1)
     result = project.run("check", "plant.ir")
     assert (result.exit_code, list(folder.iterdir())) == (0, [])
     assert "belongs to another user" in result.stderr
@@ -131,28 +131,28 @@ def entry_path(store: Cache, key: str = KEY) -> Path:
 
 
 def test_an_entry_under_another_key_is_a_miss(store):
-    other = "ab" + "cd" * 31
+    other_key = "ab" + "cd" * 31
     store.put(KEY, b"no findings")
-    shutil.copy(entry_path(store), entry_path(store, other))
+    shutil.copy(entry_path(store), entry_path(store, other_key))
     assert store.get(KEY) == b"no findings"
-    assert store.get(other) is None
+    assert store.get(other_key) is None
 
 
 def test_damaged_entries_are_misses(store):
-    """Bits that flip, entries that are cut, grown or replaced by noise."""
-    chance = random.Random(18)
-    content = bytes(chance.randrange(256) for _ in range(500))
+    """Bits are flipped, entries are cut, extended or replaced by random bytes."""
+    generator = random.Random(18)
+    content = bytes(generator.randrange(256) for _ in range(500))
     store.put(KEY, content)
-    whole = entry_path(store).read_bytes()
-    for number in range(200):
-        at = chance.randrange(len(whole))
-        flipped = bytes([whole[at] ^ (1 << chance.randrange(8))])
+    data = entry_path(store).read_bytes()
+    for misses in range(200):
+        index = generator.randrange(len(data))
+        flipped = bytes([data[index] ^ (1 << generator.randrange(8))])
         damaged = (
-            whole[:at] + flipped + whole[at + 1 :],
-            whole[:at],
-            whole + whole[at:],
-            chance.randbytes(at),
-        )[number % 4]
+            data[:index] + flipped + data[index + 1 :],
+            data[:index],
+            data + data[index:],
+            generator.randbytes(index),
+        )[misses % 4]
         entry_path(store).write_bytes(damaged)
         assert store.get(KEY) is None
 
@@ -172,7 +172,7 @@ OUTCOME = Outcome(
 )
 
 
-def test_an_outcome_is_stored_whole(store):
+def test_an_outcome_is_stored_completely(store):
     store_outcome(store, KEY, OUTCOME)
     assert load_outcome(store, KEY, Path("/unit")) == OUTCOME
 
@@ -180,7 +180,7 @@ def test_an_outcome_is_stored_whole(store):
 @pytest.mark.parametrize(
     "path", ["/etc/passwd", "../x", "a/../../x", "..\\x", "C:\\x", "C:x", "//host/x", ""]
 )
-def test_a_path_that_leads_out_is_a_miss(store, path):
+def test_an_entry_with_a_path_out_of_the_folder_is_a_miss(store, path):
     files = (OutputFile(path, "graph", "12"),)
     outcome = Outcome(Path("/unit"), (), (), files, {path: "{}"})
     store_outcome(store, KEY, outcome)
@@ -188,38 +188,38 @@ def test_a_path_that_leads_out_is_a_miss(store, path):
     assert load_outcome(store, KEY, Path("/unit")) is None
 
 
-def test_an_intact_entry_of_another_form_is_a_miss(store):
-    """What an entry holds is checked against its types, value by value."""
+def test_an_intact_entry_with_values_of_other_types_is_a_miss(store):
+    """The types of all values of an entry are checked."""
     store_outcome(store, KEY, OUTCOME)
     entry = msgspec.json.decode(store.get(KEY))
-    strangers = (None, 1, "x", True, [], {}, ["x"], [[]], {"x": 1}, -1.5, "SM000", [None] * 8)
-    number = 0
-    for change in _iter_changes(entry, strangers):
+    foreign_values = (None, 1, "x", True, [], {}, ["x"], [[]], {"x": 1}, -1.5, "SM000", [None] * 8)
+    misses = 0
+    for change in _iter_changes(entry, foreign_values):
         store.put(KEY, msgspec.json.encode(change))
         loaded = load_outcome(store, KEY, Path("/unit"))
         assert loaded is None or isinstance(loaded, Outcome)
-        number += loaded is None
-    assert number > 200
+        misses += loaded is None
+    assert misses > 200
     for text in (b"", b"{", b"[" * 100_000, b"\xff", b"null", b"[]"):
         store.put(KEY, text)
         assert load_outcome(store, KEY, Path("/unit")) is None
 
 
-def _iter_changes(value, strangers):
+def _iter_changes(value, foreign_values):
     """Yield copies of *value* with one part replaced."""
-    yield from strangers
+    yield from foreign_values
     if isinstance(value, list):
-        for at, part in enumerate(value):
-            for changed in _iter_changes(part, strangers):
-                yield [*value[:at], changed, *value[at + 1 :]]
+        for index, part in enumerate(value):
+            for changed in _iter_changes(part, foreign_values):
+                yield [*value[:index], changed, *value[index + 1 :]]
     if isinstance(value, dict):
         for key, part in value.items():
-            for changed in _iter_changes(part, strangers):
+            for changed in _iter_changes(part, foreign_values):
                 yield value | {key: changed}
 
 
-def test_nothing_unmarshals_or_unpickles_what_the_cache_holds():
-    """The parse tables are part of the package; they are the only marshalled data."""
+def test_cached_data_is_neither_unmarshalled_nor_unpickled():
+    """The only marshalled data are the parse tables, which are part of the package."""
     package = Path(cache.__file__).parents[1]
     users = {
         path.relative_to(package).as_posix()

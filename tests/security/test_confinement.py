@@ -1,4 +1,4 @@
-"""What a repository can make sysmlc read: files of the project root, and nothing else."""
+"""A repository can make sysmlc read files in the project root, and no other files."""
 
 import pytest
 
@@ -6,7 +6,7 @@ UML = """\
 <?xml version="1.0" encoding="UTF-8"?>
 <uml:Model xmi:version="20131001" xmlns:xmi="http://www.omg.org/spec/XMI/20131001"
     xmlns:uml="http://www.eclipse.org/uml2/5.0.0/UML" xmi:id="{id}" name="{id}">
-  <packagedElement xmi:type="uml:Class" xmi:id="{id}_class" name="Block_of_{id}">{inside}
+  <packagedElement xmi:type="uml:Class" xmi:id="{id}_class" name="Block_of_{id}">{content}
   </packagedElement>
 </uml:Model>
 """
@@ -50,9 +50,9 @@ def test_a_path_of_the_configuration_that_leads_out_is_refused(project, command,
     (project.folder / "linked").symlink_to("../outside")
     project.write("sysmlc.toml", text.replace("{outside}", str(project.outside)))
     before = project.snapshot()
-    done = project.run(command)
-    assert done.exit_code == 2
-    assert message.replace("{outside}", str(project.outside)) in done.stderr
+    result = project.run(command)
+    assert result.exit_code == 2
+    assert message.replace("{outside}", str(project.outside)) in result.stderr
     assert project.snapshot() == before
 
 
@@ -65,12 +65,12 @@ def test_a_path_of_the_configuration_inside_the_root_is_read(project, files):
     (project.folder / "linked").symlink_to("sub")
     files = files.replace("{project}", str(project.folder))
     project.write("sysmlc.toml", f'{UNIT.format(files=files)}output = "sub/../gen"\n')
-    done = project.run("build", "--emit", "graph")
-    assert (done.exit_code, (project.folder / "gen/graph.json").is_file()) == (0, True)
+    result = project.run("build", "--emit", "graph")
+    assert (result.exit_code, (project.folder / "gen/graph.json").is_file()) == (0, True)
 
 
 @pytest.mark.parametrize("name", ["../outside/secret.ir", "link.ir"])
-def test_a_path_on_the_command_line_may_go_anywhere(project, name):
+def test_a_path_on_the_command_line_may_lead_out_of_the_root(project, name):
     (project.folder / "link.ir").symlink_to("../outside/secret.ir")
     assert project.run("build", name, "-o", "../outside/gen").exit_code == 0
     assert (project.outside / "gen/manifest.json").is_file()
@@ -78,8 +78,8 @@ def test_a_path_on_the_command_line_may_go_anywhere(project, name):
 
 def write_uml(path, id, href=""):
     path.parent.mkdir(parents=True, exist_ok=True)
-    inside = GENERAL.format(href=href) if href else ""
-    path.write_text(UML.format(id=id, inside=inside), encoding="utf-8")
+    content = GENERAL.format(href=href) if href else ""
+    path.write_text(UML.format(id=id, content=content), encoding="utf-8")
 
 
 @pytest.mark.parametrize(
@@ -94,7 +94,7 @@ def write_uml(path, id, href=""):
     ],
 )
 def test_references_of_models_are_followed_inside_the_project_roots(project, href, is_read):
-    """The unit root of models in two projects holds both projects, and everything beside them."""
+    """The common folder of models in two projects contains more than the two projects."""
     write_uml(project.outside / "secret.uml", "secret")
     write_uml(project.folder / "lib/drives.uml", "drives")
     (project.folder / "models").mkdir()
@@ -104,9 +104,9 @@ def test_references_of_models_are_followed_inside_the_project_roots(project, hre
     write_uml(project.outside.parent / "second/other.uml", "other")
     (project.outside.parent / "second/.git").mkdir()
     project.write("sysmlc.toml", "")
-    done = project.run("show", "models/plant.uml", "../second/other.uml")
-    assert "Block_of_secret" not in done.stdout
-    assert ("Block_of_drives" in done.stdout) == is_read
+    result = project.run("show", "models/plant.uml", "../second/other.uml")
+    assert "Block_of_secret" not in result.stdout
+    assert ("Block_of_drives" in result.stdout) == is_read
 
 
 def test_a_reference_of_automationml_is_not_followed_out_of_the_root(project):
@@ -118,9 +118,9 @@ def test_a_reference_of_automationml_is_not_followed_out_of_the_root(project):
         '<InstanceHierarchy Name="Plant"/></CAEXFile>',
     )
     write_uml(project.outside.parent / "second/other.uml", "other")
-    done = project.run("show", "plant.aml", "../second/other.uml")
-    assert "Plant" in done.stdout
-    assert "Block_of_secret" not in done.stdout
+    result = project.run("show", "plant.aml", "../second/other.uml")
+    assert "Plant" in result.stdout
+    assert "Block_of_secret" not in result.stdout
 
 
 def test_an_overlay_that_is_a_link_out_of_the_root_is_not_read(project):
@@ -129,23 +129,23 @@ def test_an_overlay_that_is_a_link_out_of_the_root_is_not_read(project):
     second = project.outside.parent / "second/other.ir"
     second.parent.mkdir()
     second.write_text('Package other "Other"\n')
-    done = project.run("check", "plant.ir", str(second))
-    assert "SM180" in done.stderr
-    assert "password" not in done.stderr
+    result = project.run("check", "plant.ir", str(second))
+    assert "SM180" in result.stderr
+    assert "password" not in result.stderr
 
 
-def test_who_decides_is_not_read_from_a_link_out_of_the_root(project):
+def test_a_part_file_that_is_a_link_out_of_the_root_is_not_read(project):
     project.write("gate.ltl", "G (request -> F grant)\n")
-    without = project.run("synth", "gate.ltl", "--realizable").output
+    without_owners = project.run("synth", "gate.ltl", "--realizable").output
     (project.outside / "secret.part").write_text(".inputs request\n.outputs grant\n")
     (project.folder / "gate.part").symlink_to("../outside/secret.part")
-    assert project.run("synth", "gate.ltl", "--realizable").output == without
+    assert project.run("synth", "gate.ltl", "--realizable").output == without_owners
     (project.folder / "gate.part").unlink()
     project.write("gate.part", ".inputs request\n.outputs grant\n")
-    assert project.run("synth", "gate.ltl", "--realizable").output != without
+    assert project.run("synth", "gate.ltl", "--realizable").output != without_owners
 
 
-def test_format_of_a_folder_leaves_files_outside_alone(project):
+def test_format_of_a_folder_does_not_follow_links_out_of_it(project):
     (project.outside / "secret.sysml").write_text("package  P{}\n")
     (project.folder / "link.sysml").symlink_to("../outside/secret.sysml")
     project.write("plant.sysml", "package  P{}\n")
@@ -154,5 +154,5 @@ def test_format_of_a_folder_leaves_files_outside_alone(project):
     assert project.run("format", ".").exit_code == 0
     changed = {name for name, data in project.snapshot().items() if before[name] != data}
     assert changed == {"project/plant.sysml"}
-    assert project.run("format", "link.sysml").exit_code == 0  # named, so meant
+    assert project.run("format", "link.sysml").exit_code == 0  # a named link is followed
     assert (project.outside / "secret.sysml").read_text() == "package P {}\n"

@@ -1,4 +1,4 @@
-"""The cost of hostile models grows at most with the square of their size, and nothing crashes."""
+"""The cost of hostile models grows at most with the square of their size, without a crash."""
 
 import sys
 from functools import cache
@@ -10,10 +10,10 @@ import pytest
 
 from sysmlc.backends.plantuml import block_definition
 from sysmlc.driver import Request, compile_model, list_backend_names, load_backends
-from sysmlc.logic.machines import conflicts as competition
+from sysmlc.logic.machines import conflicts as conflicts
 
 MAX_GROWTH = 4.5
-"""Times the cost, for twice the size; 4 is quadratic."""
+"""Limit of the factor by which the cost grows when the size is doubled; 4 is quadratic."""
 
 
 @cache
@@ -32,7 +32,7 @@ def find_codes(compilation) -> set[str]:
 
 
 def count_calls(folder: Path, name: str, text: str) -> int:
-    """Compile a model to all outputs; the number of calls of Python and C functions it takes."""
+    """Compile a model with all back ends; return the number of calls of Python and C functions."""
     calls = 0
 
     def count(_frame, event, _argument):
@@ -52,7 +52,7 @@ def count_calls(folder: Path, name: str, text: str) -> int:
 @pytest.mark.parametrize("family", families.FAMILIES, ids=lambda family: family.__name__)
 def test_the_cost_of_a_family_grows_at_most_with_the_square(family, tmp_path):
     name, size = families.FAMILIES[family]
-    compile_text(tmp_path, name, family(size))  # fills what is read once in a process
+    compile_text(tmp_path, name, family(size))  # fills the caches of the process
     costs = [count_calls(tmp_path, name, family(size * factor)) for factor in (1, 2, 4)]
     growth = [round(after / before, 2) for before, after in pairwise(costs)]
     print(family.__name__, costs, growth)
@@ -60,11 +60,13 @@ def test_the_cost_of_a_family_grows_at_most_with_the_square(family, tmp_path):
 
 
 def test_guards_are_compared_up_to_a_bound(tmp_path, monkeypatch):
-    monkeypatch.setattr(competition, "MAX_VALUATIONS", 50_000)
-    few = compile_text(tmp_path, "few.sysml", families.guarded_transitions(4))
-    assert "SM485" not in find_codes(few)
-    many = compile_text(tmp_path, "many.sysml", families.guarded_transitions(8))
-    (diagnostic,) = [found for found in many.diagnostics if found.rule.code == "SM485"]
+    monkeypatch.setattr(conflicts, "MAX_VALUATIONS", 50_000)
+    few_guards = compile_text(tmp_path, "few.sysml", families.guarded_transitions(4))
+    assert "SM485" not in find_codes(few_guards)
+    many_guards = compile_text(tmp_path, "many.sysml", families.guarded_transitions(8))
+    (diagnostic,) = [
+        reported for reported in many_guards.diagnostics if reported.rule.code == "SM485"
+    ]
     assert diagnostic.message.startswith("the guards of 'm' have too many combinations of values")
     assert diagnostic.subject.name == "P::A::m"
 

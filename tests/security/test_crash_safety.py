@@ -1,7 +1,7 @@
-"""A build that is interrupted anywhere: the next one leaves what an uninterrupted one leaves.
+"""After a build that was interrupted anywhere, the next build leaves the outputs of a clean one.
 
-Each scenario starts from the outputs of one model, of which some become stale, some change, some
-are new and some stay. The call sites are not listed by hand: a first run counts the calls.
+Each scenario starts from the outputs of one model, of which some become obsolete, some change, some
+are new and some stay. A first run counts the system calls; then each of them fails once.
 """
 
 import errno
@@ -23,8 +23,8 @@ FOREIGN = {"out/own.txt": "by hand", "out/contracts/own.txt": "by hand", "notes.
 
 
 @pytest.fixture(autouse=True)
-def _no_waiting_for_the_disk(monkeypatch):
-    """The calls of ``fsync`` are counted and fail like others; no power failure is tested."""
+def _skip_fsync(monkeypatch):
+    """Let ``fsync`` return at once, because no test is about power failures."""
     monkeypatch.setattr(os, "fsync", _fsync)
 
 
@@ -35,10 +35,10 @@ def _fsync(_handle):
 def make_outcome(**texts: str) -> Outcome:
     """Return the outcome of a model that gives *texts*; ``__`` stands for ``/``, ``_`` for ``.``"""
     files = {name.replace("__", "/").replace("_", "."): text for name, text in texts.items()}
-    listed = tuple(
+    output_files = tuple(
         OutputFile(path, "test", compute_text_digest(text)) for path, text in files.items()
     )
-    return Outcome(Path.cwd(), (), (), listed, files)
+    return Outcome(Path.cwd(), (), (), output_files, files)
 
 
 FIRST = make_outcome(trace_json="1", contracts__a_md="1", diagrams__old__b_puml="1", same_txt="=")
@@ -52,8 +52,8 @@ def read_tree(folder: Path) -> dict[str, bytes | None]:
     return {name: None if path.is_dir() else path.read_bytes() for name, path in paths.items()}
 
 
-def start(folder: Path) -> Target:
-    """Make the state before the interrupted build in *folder*."""
+def prepare_outputs(folder: Path) -> Target:
+    """Write the outputs and foreign files that exist before the interrupted build."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir()
     target = Target(folder / "out", boundary=folder)
@@ -64,13 +64,13 @@ def start(folder: Path) -> Target:
 
 
 def build_cleanly(folder: Path, outcome: Outcome) -> dict[str, bytes | None]:
-    """Return what a build without an interruption leaves."""
-    assert not publish(outcome, start(folder)).is_refused
+    """Return the files after a build without an interruption."""
+    assert not publish(outcome, prepare_outputs(folder)).is_refused
     return read_tree(folder)
 
 
 class Faults:
-    """Counts system calls that change something, and fails the one with a given number."""
+    """Count the system calls that change files, and let the one with a given number fail."""
 
     def __init__(self, monkeypatch, failing: int, number: int) -> None:
         self.count = 0
@@ -79,7 +79,7 @@ class Faults:
             monkeypatch.setattr(os, name, self._wrap(getattr(os, name)))
 
     def _wrap(self, call):
-        def counted(*arguments, **options):
+        def count_call(*arguments, **options):
             self.count += 1
             if self.count == self.failing:
                 if call.__name__ == "close":
@@ -87,20 +87,20 @@ class Faults:
                 raise OSError(self.number, os.strerror(self.number))
             return call(*arguments, **options)
 
-        counted.__name__ = call.__name__
-        return counted
+        count_call.__name__ = call.__name__
+        return count_call
 
 
 @cache
 def count_calls(folder: Path) -> int:
     with pytest.MonkeyPatch.context() as patch:
-        target = start(folder)
+        target = prepare_outputs(folder)
         faults = Faults(patch, 0, 0)
         publish(SECOND, target)
         return faults.count
 
 
-def test_the_wrapped_calls_are_those_that_publishing_makes(tmp_path):
+def test_publishing_makes_the_calls_that_are_counted(tmp_path):
     assert count_calls(tmp_path / "project") > 30
 
 
@@ -110,25 +110,25 @@ def test_every_failing_call_is_reported_and_repaired(tmp_path, monkeypatch, numb
     folder = tmp_path / "project"
     clean = build_cleanly(folder, next_outcome)
     for failing in range(1, count_calls(folder) + 1):
-        target = start(folder)
+        target = prepare_outputs(folder)
         with monkeypatch.context() as patch:
             Faults(patch, failing, number)
             publication = publish(SECOND, target)
-        names = [diagnostic.rule.name for diagnostic in publication.diagnostics]
-        assert names in (["unwritable-output"], []), failing
-        assert names or read_tree(folder) == build_cleanly(tmp_path / "other", SECOND), failing
+        rule_names = [diagnostic.rule.name for diagnostic in publication.diagnostics]
+        assert rule_names in (["unwritable-output"], []), failing
+        assert rule_names or read_tree(folder) == build_cleanly(tmp_path / "other", SECOND), failing
         assert publish(next_outcome, target).diagnostics == (), failing
         assert read_tree(folder) == clean, failing
         assert compare(next_outcome, target) == ["contracts/own.txt"], failing
 
 
 def test_two_interruptions_in_a_row_are_repaired(tmp_path, monkeypatch):
-    """The second build writes other contents than the first, so two pending manifests meet."""
+    """The second build has other outputs than the first, so that two pending manifests exist."""
     folder = tmp_path / "project"
     clean, calls = build_cleanly(folder, FIRST), count_calls(folder)
     for first in range(1, calls + 1, 5):
         for second in range(1, calls + 1, 7):
-            target = start(folder)
+            target = prepare_outputs(folder)
             for outcome, failing in ((SECOND, first), (THIRD, second)):
                 with monkeypatch.context() as patch:
                     Faults(patch, failing, errno.ENOSPC)
@@ -149,17 +149,17 @@ def kill_at(target: Target, outcome: Outcome, seconds: float) -> None:
 
 
 def kill_repeatedly(folder: Path, times: int) -> None:
-    choice = random.Random(18)
+    generator = random.Random(18)
     outcomes = [FIRST, SECOND, THIRD]
     clean = [build_cleanly(folder, outcome) for outcome in outcomes]
-    begin = time.perf_counter()
-    publish(SECOND, start(folder))
-    duration = time.perf_counter() - begin
+    start = time.perf_counter()
+    publish(SECOND, prepare_outputs(folder))
+    duration = time.perf_counter() - start
     for number in range(times):
-        target = start(folder)
-        for _ in range(choice.randint(1, 2)):
-            kill_at(target, choice.choice(outcomes), choice.uniform(0, 1.2 * duration))
-        last = choice.randrange(len(outcomes))
+        target = prepare_outputs(folder)
+        for _ in range(generator.randint(1, 2)):
+            kill_at(target, generator.choice(outcomes), generator.uniform(0, 1.2 * duration))
+        last = generator.randrange(len(outcomes))
         assert publish(outcomes[last], target).diagnostics == (), number
         assert read_tree(folder) == clean[last], number
 
@@ -173,8 +173,8 @@ def test_builds_killed_at_200_random_moments_are_repaired(tmp_path):
     kill_repeatedly(tmp_path / "project", 200)
 
 
-def test_two_builds_at_once_leave_what_the_last_one_writes(tmp_path):
-    target = start(tmp_path / "project")
+def test_two_concurrent_builds_leave_the_outputs_of_one_of_them(tmp_path):
+    target = prepare_outputs(tmp_path / "project")
     children = []
     for outcome in (SECOND, THIRD) * 5:
         child = os.fork()
@@ -182,28 +182,28 @@ def test_two_builds_at_once_leave_what_the_last_one_writes(tmp_path):
             os._exit(int(publish(outcome, target).is_refused))
         children.append(child)
     assert {os.waitpid(child, 0)[1] for child in children} == {0}
-    after = read_tree(tmp_path / "project")
-    assert after in [build_cleanly(tmp_path / "other", outcome) for outcome in (SECOND, THIRD)]
+    tree = read_tree(tmp_path / "project")
+    assert tree in [build_cleanly(tmp_path / "other", outcome) for outcome in (SECOND, THIRD)]
 
 
-def test_temporary_files_of_others_stay(tmp_path):
-    target = start(tmp_path / "project")
+def test_only_temporary_files_of_sysmlc_are_removed(tmp_path):
+    target = prepare_outputs(tmp_path / "project")
     (target.folder / ".sysmlc-0123456789abcdef").write_text("of a killed build")
     (target.folder / ".sysmlc-notes").write_text("by hand")
     assert publish(SECOND, target).diagnostics == ()
     assert [path.name for path in target.folder.glob(".sysmlc*")] == [".sysmlc-notes"]
 
 
-def test_an_interrupted_build_is_visible_to_check(tmp_path, monkeypatch):
-    target = start(tmp_path / "project")
+def test_check_reports_an_interrupted_build(tmp_path, monkeypatch):
+    target = prepare_outputs(tmp_path / "project")
     monkeypatch.setattr(os, "replace", lambda *_: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         publish(SECOND, target)
     assert "trace.json" in compare(SECOND, target)
 
 
-def test_files_are_synced_one_by_one_where_no_thread_starts(tmp_path, monkeypatch):
-    """As under a limit on memory or on processes."""
+def test_files_are_synced_one_by_one_if_no_thread_can_start(tmp_path, monkeypatch):
+    """Threads cannot start under a limit on memory or processes."""
 
     def refuse(_):
         raise RuntimeError("can't start new thread")

@@ -1,4 +1,4 @@
-"""Configuration that would exhaust the TOML parser ends in a message with file and line."""
+"""A configuration that would exhaust the TOML parser is refused with file and line."""
 
 import subprocess
 import sys
@@ -34,11 +34,11 @@ def test_hostile_toml_is_a_located_message(tmp_path, monkeypatch, name, attack):
     (tmp_path / name).write_text(text)
     (tmp_path / "m.ir").write_text('Class a "A"\n')
     start = time.process_time()
-    ended = CliRunner().invoke(sysmlc, ["check", "m.ir"])
-    assert ended.exit_code == 2
-    assert ended.stderr.startswith(f"sysmlc: {tmp_path / name}:")
-    assert message in ended.stderr
-    assert len(ended.stderr) < 1_000
+    result = CliRunner().invoke(sysmlc, ["check", "m.ir"])
+    assert result.exit_code == 2
+    assert result.stderr.startswith(f"sysmlc: {tmp_path / name}:")
+    assert message in result.stderr
+    assert len(result.stderr) < 1_000
     assert time.process_time() - start < 5
 
 
@@ -56,20 +56,20 @@ def test_paths_that_no_file_system_holds_are_refused(tmp_path, monkeypatch, key,
     monkeypatch.chdir(tmp_path)
     (tmp_path / "m.ir").write_text('Class a "A"\n')
     (tmp_path / "sysmlc.toml").write_text(text.format(path))
-    ended = CliRunner().invoke(sysmlc, ["check", "m.ir"])
-    assert ended.exit_code == 2
-    assert f"'{key}': '{path[:100]}...' is longer than file systems allow" in ended.stderr
+    result = CliRunner().invoke(sysmlc, ["check", "m.ir"])
+    assert result.exit_code == 2
+    assert f"'{key}': '{path[:100]}...' is longer than file systems allow" in result.stderr
 
 
 @pytest.mark.parametrize("option", ["", "--config", "--overlay", "--schema"])
-def test_long_paths_on_the_command_line_are_no_fault_of_sysmlc(tmp_path, monkeypatch, option):
+def test_long_paths_on_the_command_line_are_one_message(tmp_path, monkeypatch, option):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "m.ir").write_text('Class a "A"\n')
     command = [sys.executable, "-m", "sysmlc", "check", "m.ir", *filter(None, [option]), "a" * 300]
-    ended = subprocess.run(command, capture_output=True, text=True)
-    assert ended.returncode == 2
-    assert "Please report" not in ended.stderr
-    assert "a" * 100 in ended.stderr
+    result = subprocess.run(command, capture_output=True, text=True)
+    assert result.returncode == 2
+    assert "Please report" not in result.stderr
+    assert "a" * 100 in result.stderr
 
 
 def test_ordinary_toml_is_within_the_limits():
@@ -87,7 +87,7 @@ def test_positions_are_those_of_the_parser():
 def test_a_long_value_is_cut_in_the_message(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "sysmlc.toml").write_text(f"output = [{', '.join(['12'] * 90_000)}]\n")
-    ended = CliRunner().invoke(sysmlc, ["check"])
-    assert ended.exit_code == 2
-    assert "is not of type 'string'" in ended.stderr
-    assert len(ended.stderr) < 500
+    result = CliRunner().invoke(sysmlc, ["check"])
+    assert result.exit_code == 2
+    assert "is not of type 'string'" in result.stderr
+    assert len(result.stderr) < 500

@@ -11,7 +11,7 @@ from click.testing import CliRunner
 from sysmlc.cli import group
 
 PLANT = 'Package p "Plant"\n  Class gate "Gate" role="block"\n'
-WRONG = {
+FAULTY_CONFIGURATIONS = {
     "sysmlc.toml": "no = such-key",
     "pyproject.toml": '[tool.sysmlc]\noutput = "../elsewhere"\n',
 }
@@ -36,32 +36,32 @@ def project(tmp_path, monkeypatch):
     return tmp_path
 
 
-def run(arguments):
+def run_sysmlc(arguments):
     return CliRunner().invoke(group.sysmlc, arguments, catch_exceptions=False)
 
 
-@pytest.mark.parametrize("configuration", WRONG)
+@pytest.mark.parametrize("configuration", FAULTY_CONFIGURATIONS)
 @pytest.mark.parametrize("command", COMMANDS)
 def test_isolated_commands_read_no_configuration(command, configuration):
-    expected = run(COMMANDS[command])
-    Path(configuration).write_text(WRONG[configuration])
-    assert configuration in run(COMMANDS[command]).stderr
-    done = run([*COMMANDS[command], "--isolated"])
-    assert (done.exit_code, done.stderr) == (expected.exit_code, expected.stderr)
+    expected = run_sysmlc(COMMANDS[command])
+    Path(configuration).write_text(FAULTY_CONFIGURATIONS[configuration])
+    assert configuration in run_sysmlc(COMMANDS[command]).stderr
+    result = run_sysmlc([*COMMANDS[command], "--isolated"])
+    assert (result.exit_code, result.stderr) == (expected.exit_code, expected.stderr)
 
 
 def test_isolated_and_a_configuration_exclude_each_other():
-    done = run(["check", "plant.ir", "--isolated", "--config", "sysmlc.toml"])
-    assert done.exit_code == 2
-    assert "--isolated and --config exclude each other" in done.stderr
+    result = run_sysmlc(["check", "plant.ir", "--isolated", "--config", "sysmlc.toml"])
+    assert result.exit_code == 2
+    assert "--isolated and --config exclude each other" in result.stderr
 
 
 @pytest.mark.parametrize("module", ["click.py", "json.py", "jinja2/__init__.py"])
 def test_python_m_imports_no_module_of_the_working_folder(module, project):
     Path(module).parent.mkdir(exist_ok=True)
     Path(module).write_text("open('pwned', 'w')\n")
-    done = run_module(project)
-    assert (done.returncode, Path("pwned").exists()) == (0, False), done.stderr
+    result = run_module(project)
+    assert (result.returncode, Path("pwned").exists()) == (0, False), result.stderr
 
 
 def test_a_plug_in_of_the_working_folder_is_not_loaded(project):
@@ -69,8 +69,8 @@ def test_a_plug_in_of_the_working_folder_is_not_loaded(project):
     Path("evil-1.dist-info/METADATA").write_text("Metadata-Version: 2.1\nName: evil\nVersion: 1\n")
     Path("evil-1.dist-info/entry_points.txt").write_text("[sysmlc.backends]\nevil = evil:BACKEND\n")
     Path("evil.py").write_text("open('pwned', 'w')\n")
-    done = run_module(project)
-    assert (done.returncode, Path("pwned").exists()) == (0, False), done.stderr
+    result = run_module(project)
+    assert (result.returncode, Path("pwned").exists()) == (0, False), result.stderr
 
 
 def run_module(project):

@@ -65,9 +65,9 @@ def list_commands(command: click.Command, path: tuple[str, ...] = ()):
 COMMANDS = dict(list_commands(group.sysmlc))
 
 
-@pytest.mark.parametrize("words", COMMANDS, ids=" ".join)
-def test_every_command_has_both_limits(words):
-    text = CliRunner().invoke(group.sysmlc, [*words, "--help"]).output
+@pytest.mark.parametrize("command", COMMANDS, ids=" ".join)
+def test_every_command_has_both_limits(command):
+    text = CliRunner().invoke(group.sysmlc, [*command, "--help"]).output
     assert "--time-limit S" in text
     assert "--memory-limit GIB" in text
 
@@ -100,7 +100,7 @@ def test_a_crash_is_reported():
     assert stderr.startswith("error[SM906 crash]: the command was ended by SIGSEGV\n")
 
 
-def test_exit_code_and_output_of_a_command_pass_through():
+def test_exit_code_and_output_of_a_command_are_preserved():
     process = run_as_command("print('done'); sys.exit(1)", "backends")
     assert process.communicate(timeout=PATIENCE) == ("done\n", "")
     assert process.returncode == 1
@@ -132,9 +132,9 @@ def test_a_signal_to_the_command_ends_the_work(number):
     process.send_signal(number)
     process.communicate(timeout=PATIENCE)
     assert process.returncode == (130 if number == signal.SIGINT else -number)
-    end = time.monotonic() + PATIENCE
+    deadline = time.monotonic() + PATIENCE
     while is_alive(worker):
-        assert time.monotonic() < end
+        assert time.monotonic() < deadline
         time.sleep(0.01)
 
 
@@ -159,17 +159,17 @@ main()
 
 
 def wait_for(process, condition):
-    end = time.monotonic() + PATIENCE
+    deadline = time.monotonic() + PATIENCE
     while not condition():
         assert process.poll() is None
-        assert time.monotonic() < end
+        assert time.monotonic() < deadline
         time.sleep(0.02)
 
 
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux enforces memory limits")
 @pytest.mark.usefixtures("default_signals")
-def test_watch_goes_on_after_a_limit_or_a_crash(project):
+def test_watch_continues_after_a_limit_or_a_crash(project):
     errors, lines = project / "errors.txt", project / "lines.txt"
     model = project / "plant.sysml"
     with errors.open("w") as stderr, lines.open("a") as stdout:
@@ -233,7 +233,7 @@ def test_a_limit_in_a_configuration_is_a_positive_number(project, value):
 def test_a_limit_leaves_standard_output_empty_and_writes_nothing(project):
     (project / "sysmlc.toml").write_text("time-limit = 0.001")
     command = [sys.executable, "-m", "sysmlc", "plant.sysml", "-o", "out", "--format", "json"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE)
-    assert (done.returncode, done.stdout) == (2, "")
-    assert "SM904" in done.stderr
+    result = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE)
+    assert (result.returncode, result.stdout) == (2, "")
+    assert "SM904" in result.stderr
     assert not (project / "out").exists()

@@ -1,4 +1,4 @@
-"""Every file that a repository or a user may give is read with a limit on its size."""
+"""Every file of a repository or a user is read with a limit on its size."""
 
 import ast
 import os
@@ -25,7 +25,7 @@ MODEL = """package P { part def Gate { attribute open : ScalarValues::Boolean; e
     entry; then a; state a; } } }"""
 
 
-def read_unlimited() -> set[str]:
+def list_unlimited_readers() -> set[str]:
     """Return the modules that call ``read_text`` or ``read_bytes`` of a path.
 
     Both read a file of any size. ``resources.read_text`` reads shipped files only.
@@ -41,7 +41,7 @@ def read_unlimited() -> set[str]:
 
 
 def test_only_shipped_files_and_outputs_are_read_without_limit():
-    assert read_unlimited() <= SHIPPED.keys() | OUTPUTS
+    assert list_unlimited_readers() <= SHIPPED.keys() | OUTPUTS
 
 
 @pytest.fixture
@@ -73,7 +73,7 @@ def test_a_huge_document_is_refused(project, name):
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no named pipes")
 @pytest.mark.parametrize("name", [name for name in DOCUMENTS if name != "sysmlc.toml"])
-def test_a_pipe_is_not_waited_for(project, name):
+def test_a_pipe_is_refused_without_waiting_for_it(project, name):
     os.mkfifo(project / name)
     result = CliRunner().invoke(group.sysmlc, [*DOCUMENTS[name]])
     assert result.exit_code == 2

@@ -1,4 +1,4 @@
-"""Names of a model are text in Markdown, spreadsheets and PlantUML, never markup or directives."""
+"""Names in models are text in Markdown, spreadsheets and PlantUML, never markup or directives."""
 
 import re
 
@@ -13,6 +13,7 @@ from sysmlc.backends.reqtable.table import Row as TableRow
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Kind
 from sysmlc.ir.text import parse_text
+from sysmlc.logic.contract import Contract
 from sysmlc.logic.formats import write
 from sysmlc.passes import pipeline
 from sysmlc.support import plantuml_text as plantuml
@@ -47,51 +48,51 @@ MODEL = machine(
         ("Gate 'in'", "Gate 'in'"),
     ],
 )
-def test_markdown_shows_text_as_it_is(text, escaped):
+def test_text_in_markdown_is_not_interpreted(text, escaped):
     assert escape_markdown(text) == escaped
 
 
-def test_code_spans_hold_no_backtick():
+def test_backticks_in_code_spans_are_escaped():
     assert escape_code("a`b|c\nd") == r"a\x60b|c d"
     assert escape_code("a|b", in_table=True) == r"a\|b"
 
 
-def emit(text):
+def emit_contracts(text):
     graph, output = parse_text(text), Output()
     pipeline.run(graph, Sink())
     BACKEND.emit(graph, output, Sink(), EmitOptions())
-    return {one.path.partition(".")[2][-7:]: one.text for one in output.artefacts()}
+    return {artefact.path.partition(".")[2][-7:]: artefact.text for artefact in output.artefacts()}
 
 
-def test_a_contract_page_has_only_our_markup():
+def test_names_add_no_markup_to_a_contract_page():
     quoted = '"' + HOSTILE.replace("\n", "\\n") + '"'
-    page = next(t for t in emit(MODEL.replace('"Gate"', quoted)).values() if t[0] == "#")
+    page = next(
+        text for text in emit_contracts(MODEL.replace('"Gate"', quoted)).values() if text[0] == "#"
+    )
     assert "## Injected" not in page.splitlines()
     assert not re.search(r"(?<!\\)<script|(?<!\\)\]\(|\u202e", page)
     assert r"# Contract of Plant::\<script>x\</script>[y\](javascript:z)\`\|" in page
 
 
 def test_an_ordinary_contract_page_has_no_escapes():
-    assert not any("\\" in text for text in emit(MODEL).values() if text[0] == "#")
+    assert not any("\\" in text for text in emit_contracts(MODEL).values() if text[0] == "#")
 
 
 @pytest.mark.parametrize("text", ["=cmd|' /C calc'!A0", "\n=1+1", " @x", "＝1", "-2+3"])
-def test_cells_of_spreadsheets_are_no_formulas(text):
+def test_cells_of_spreadsheets_are_not_formulas(text):
     row = TableRow(Element("r", Kind.CLASS), (Cell((text,)), Cell(("plain",))))
     lines = format_csv(Table("t", "", ("id", "name"), (row,))).partition("\r\n")[2]
     assert lines.lstrip('"').startswith("'")
     assert lines.endswith("plain\r\n")
 
 
-def test_comments_of_plantuml_end_with_their_line():
+def test_names_in_plantuml_comments_cannot_end_the_comment():
     comment = plantuml.format_comment("Gate\n@enduml\n!include /etc/passwd /' \u202e\\")
     assert comment == r"Gate @enduml !include /etc/passwd / ' \u202e\ ."
     assert plantuml.format_comment("Gate 'in'") == "Gate 'in'"
 
 
-def test_titles_of_tlsf_stay_in_their_quotes():
-    from sysmlc.logic.contract import Contract
-
+def test_names_in_tlsf_titles_cannot_end_the_quotes():
     contract = Contract('a"\n}\\b', "x", (), (), ())
     title = next(line for line in write(contract, "tlsf").splitlines() if "TITLE" in line)
     assert title.count('"') == 2

@@ -1,10 +1,12 @@
-"""Which files of an output folder a build replaces or removes, whatever a repository commits."""
+"""A build replaces and removes only its own outputs, whatever a repository contains."""
 
 import hashlib
 import json
 import os
 
 import pytest
+
+from sysmlc.cli import session, watch
 
 OUTPUTS = ["coverage.json", "graph.json", "manifest.json", "trace.json"]
 
@@ -13,38 +15,38 @@ def build(project, *arguments):
     return project.run("build", "plant.ir", "--emit", "graph", *arguments)
 
 
-def names(folder):
+def list_names(folder):
     return sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*"))
 
 
-def claim(project, path, folder="out", **extra):
-    """Commit a manifest that lists *path*, with the right digest if the file is there."""
+def commit_manifest(project, path, folder="out", **entries):
+    """Write a manifest that lists *path*, with the right digest if the file exists."""
     try:
         content = (project.folder / folder / path).read_bytes()
     except (OSError, ValueError):
         content = b""
     entry = {"path": path, "backend": "graph", "sha256": hashlib.sha256(content).hexdigest()}
-    manifest = {"format": "sysmlc-manifest/2", "files": [entry], "kept": [], **extra}
+    manifest = {"format": "sysmlc-manifest/2", "files": [entry], "kept": [], **entries}
     return project.write(f"{folder}/manifest.json", json.dumps(manifest))
 
 
 def test_a_foreign_file_is_not_overwritten(project):
     project.write("out/trace.json", "by hand")
     before = project.snapshot()
-    done = build(project)
-    assert done.exit_code == 2
-    assert "SM910 foreign-output-file" in done.stderr
-    assert "'out/trace.json' is not overwritten: sysmlc did not write it" in done.stderr
-    assert "build --force" in done.stderr
+    result = build(project)
+    assert result.exit_code == 2
+    assert "SM910 foreign-output-file" in result.stderr
+    assert "'out/trace.json' is not overwritten: sysmlc did not write it" in result.stderr
+    assert "build --force" in result.stderr
     assert project.snapshot() == before
 
 
-def test_foreign_files_with_other_names_and_equal_content_do_no_harm(project):
+def test_foreign_files_with_equal_content_or_other_names_are_accepted(project):
     build(project, "-o", "same")
     project.write("out/trace.json", (project.folder / "same/trace.json").read_text())
     project.write("out/own.json", "by hand")
     assert build(project).exit_code == 0
-    assert names(project.folder / "out") == sorted([*OUTPUTS, "own.json"])
+    assert list_names(project.folder / "out") == sorted([*OUTPUTS, "own.json"])
 
 
 def test_force_replaces_a_foreign_file(project):
@@ -67,26 +69,26 @@ def test_force_replaces_the_outputs_of_version_1(project):
     assert build(project, "--check").exit_code == 0
 
 
-def test_an_edited_output_is_not_overwritten_before_it_is_deleted(project):
+def test_an_edited_output_is_not_overwritten_until_it_is_deleted(project):
     build(project)
     project.write("out/graph.json", "by hand")
-    done = build(project)
-    assert done.exit_code == 2
-    assert "it was edited after sysmlc wrote it" in done.stderr
+    result = build(project)
+    assert result.exit_code == 2
+    assert "it was edited after sysmlc wrote it" in result.stderr
     assert (project.folder / "out/graph.json").read_text() == "by hand"
     (project.folder / "out/graph.json").unlink()
     assert build(project).exit_code == 0
-    assert names(project.folder / "out") == OUTPUTS
+    assert list_names(project.folder / "out") == OUTPUTS
 
 
 def test_an_edited_output_that_is_no_longer_generated_stays(project):
     project.run("build", "plant.ir", "--emit", "graph,ir")
     project.write("out/graph.json", "by hand")
-    done = project.run("build", "plant.ir", "--emit", "ir")
-    assert (done.exit_code, "SM913 edited-stale-output" in done.stderr) == (0, True)
+    result = project.run("build", "plant.ir", "--emit", "ir")
+    assert (result.exit_code, "SM913 edited-stale-output" in result.stderr) == (0, True)
     assert (project.folder / "out/graph.json").read_text() == "by hand"
-    done = project.run("build", "plant.ir", "--emit", "graph")
-    assert (done.exit_code, "sysmlc did not write it" in done.stderr) == (2, True)
+    result = project.run("build", "plant.ir", "--emit", "graph")
+    assert (result.exit_code, "sysmlc did not write it" in result.stderr) == (2, True)
 
 
 @pytest.mark.parametrize(
@@ -102,16 +104,16 @@ def test_an_edited_output_that_is_no_longer_generated_stays(project):
 )
 @pytest.mark.parametrize("name", ["manifest.json", "manifest.pending.json"])
 @pytest.mark.parametrize("options", [(), ("--force",)])
-def test_a_manifest_of_others_is_never_overwritten(project, name, text, options):
+def test_a_foreign_manifest_is_never_overwritten(project, name, text, options):
     project.write(f"out/{name}", text)
     before = project.snapshot()
-    done = build(project, *options)
-    assert done.exit_code == 2
-    assert f"'out/{name}' is not written: it is not a manifest of sysmlc" in done.stderr
+    result = build(project, *options)
+    assert result.exit_code == 2
+    assert f"'out/{name}' is not written: it is not a manifest of sysmlc" in result.stderr
     assert project.snapshot() == before
 
 
-def test_a_manifest_of_others_may_be_anything_but_a_file(project):
+def test_a_pipe_named_like_the_manifest_is_refused(project):
     (project.folder / "out").mkdir()
     os.mkfifo(project.folder / "out/manifest.json")
     assert "is not a manifest of sysmlc" in build(project).stderr
@@ -143,7 +145,7 @@ def test_a_manifest_that_lists_foreign_files_removes_nothing(project, path):
     project.write("out/own.txt", "by hand")
     (project.folder / "out/linked").symlink_to(project.outside)
     (project.folder / "out/link.ir").symlink_to("../plant.ir")
-    claim(project, path.replace("{outside}", str(project.outside)))
+    commit_manifest(project, path.replace("{outside}", str(project.outside)))
     before = project.snapshot()
     assert build(project).exit_code == 0
     after = project.snapshot()
@@ -168,20 +170,20 @@ def test_a_manifest_with_entries_of_wrong_types_removes_nothing(project, entry):
         assert (project.folder / "out/own.txt").read_text() == "by hand"
 
 
-def test_a_file_with_another_content_than_the_manifest_lists_is_not_removed(project):
+def test_a_file_whose_content_differs_from_the_manifest_is_not_removed(project):
     project.write("out/own.txt", "by hand")
-    claim(project, "own.txt")
+    commit_manifest(project, "own.txt")
     project.write("out/own.txt", "by hand, later")
     assert build(project).exit_code == 0
     assert (project.folder / "out/own.txt").exists()
 
 
-def test_a_file_as_the_manifest_lists_it_is_removed(project):
-    """The nearest legal neighbour: this is how an output looks that is no longer generated."""
+def test_an_obsolete_output_is_removed(project):
+    """The manifest lists the file with its digest, and the build does not write it any more."""
     project.write("out/own/graph.txt", "generated")
-    claim(project, "own/graph.txt")
+    commit_manifest(project, "own/graph.txt")
     assert build(project).exit_code == 0
-    assert names(project.folder / "out") == OUTPUTS
+    assert list_names(project.folder / "out") == OUTPUTS
 
 
 @pytest.mark.parametrize(
@@ -189,7 +191,7 @@ def test_a_file_as_the_manifest_lists_it_is_removed(project):
     ["plant.ir", "sysmlc.toml", "README.md", ".github/ci.yml", ".git/HEAD", "sysml/own.ir"],
 )
 @pytest.mark.parametrize("name", ["manifest.json", "manifest.pending.json"])
-def test_a_project_root_as_output_folder_keeps_its_files(project, path, name):
+def test_no_file_is_removed_if_the_project_root_is_the_output_folder(project, path, name):
     project.write(
         "sysmlc.toml",
         'output = "."\n[[model]]\nname = "p"\nfiles = ["*.ir", "sysml"]\noutput = "."\n',
@@ -197,7 +199,7 @@ def test_a_project_root_as_output_folder_keeps_its_files(project, path, name):
     for file in ("README.md", ".github/ci.yml"):
         project.write(file, "by hand\n")
     project.write("sysml/own.ir", 'Package own "Own"\n')
-    claim(project, path, ".").rename(project.folder / name)
+    commit_manifest(project, path, ".").rename(project.folder / name)
     before = project.snapshot()
     assert project.run("build", "--emit", "graph").exit_code == 0
     after = project.snapshot()
@@ -208,12 +210,12 @@ def test_a_project_root_as_output_folder_keeps_its_files(project, path, name):
 def test_an_input_is_never_an_output(project):
     """A file that is both would be compiled from its own output at the next build."""
     project.write("graph.ir")
-    claim(project, "graph.ir", ".")
+    commit_manifest(project, "graph.ir", ".")
     before = project.snapshot()
     for options in ((), ("--force",)):
-        done = project.run("build", "graph.ir", "--emit", "ir", "-o", ".", *options)
-        assert done.exit_code == 2
-        assert "'graph.ir' is not written: it is an input or a configuration" in done.stderr
+        result = project.run("build", "graph.ir", "--emit", "ir", "-o", ".", *options)
+        assert result.exit_code == 2
+        assert "'graph.ir' is not written: it is an input or a configuration" in result.stderr
         assert project.snapshot() == before
 
 
@@ -225,9 +227,9 @@ def test_a_linked_folder_in_the_output_folder_is_not_written_to(project, target,
     (project.folder / "out").mkdir()
     (project.folder / "out/diagrams").symlink_to(target)
     before = project.snapshot()
-    done = project.run("build", "plant.ir", "--emit", "plantuml", *options)
-    assert "'out/diagrams' is not written: it is a link" in done.stderr
-    assert (done.exit_code, project.snapshot() == before) == (2, True)
+    result = project.run("build", "plant.ir", "--emit", "plantuml", *options)
+    assert "'out/diagrams' is not written: it is a link" in result.stderr
+    assert (result.exit_code, project.snapshot() == before) == (2, True)
 
 
 @pytest.mark.parametrize("options", [(), ("--force",)])
@@ -235,10 +237,10 @@ def test_a_linked_file_in_the_output_folder_is_not_replaced(project, options):
     project.write("out/x", "")
     (project.folder / "out/graph.json").symlink_to("../plant.ir")
     before = project.snapshot()
-    done = build(project, *options)
-    assert "SM911 protected-output-file" in done.stderr
-    assert "'out/graph.json' is not written: it is a link" in done.stderr
-    assert (done.exit_code, project.snapshot() == before) == (2, True)
+    result = build(project, *options)
+    assert "SM911 protected-output-file" in result.stderr
+    assert "'out/graph.json' is not written: it is a link" in result.stderr
+    assert (result.exit_code, project.snapshot() == before) == (2, True)
 
 
 @pytest.mark.parametrize("configuration", ["", 'output = "out"\n', None])
@@ -247,9 +249,9 @@ def test_a_linked_output_folder_is_followed_inside_the_root_only(project, config
         project.write("sysmlc.toml", configuration)
     (project.folder / "out").symlink_to("../outside")
     before = project.snapshot()
-    done = build(project)
-    assert done.exit_code == 2
-    assert "out" in done.stderr
+    result = build(project)
+    assert result.exit_code == 2
+    assert "out" in result.stderr
     assert project.snapshot() == before
     assert build(project, "-o", "out").exit_code == 2  # the repository may contain the link
     assert project.snapshot() == before
@@ -258,7 +260,7 @@ def test_a_linked_output_folder_is_followed_inside_the_root_only(project, config
     (project.folder / "gen").mkdir()
     (project.folder / "out").symlink_to("gen")
     assert build(project).exit_code == 0
-    assert names(project.folder / "gen") == OUTPUTS
+    assert list_names(project.folder / "gen") == OUTPUTS
 
 
 def test_a_linked_folder_of_a_unit_does_not_lead_out_of_the_named_folder(project):
@@ -273,10 +275,13 @@ def test_a_linked_folder_of_a_unit_does_not_lead_out_of_the_named_folder(project
     (project.folder / "gen").mkdir()
     (project.folder / "gen/a").symlink_to("../../outside")
     before = project.snapshot(project.outside)
-    done = project.run("build", "-o", "gen", "--emit", "graph")
-    assert (done.exit_code, "'gen/a' is not written: it lies outside" in done.stderr) == (2, True)
+    result = project.run("build", "-o", "gen", "--emit", "graph")
+    assert (result.exit_code, "'gen/a' is not written: it lies outside" in result.stderr) == (
+        2,
+        True,
+    )
     assert project.snapshot(project.outside) == before
-    assert names(project.folder / "gen/b") == OUTPUTS
+    assert list_names(project.folder / "gen/b") == OUTPUTS
 
 
 def test_check_lists_unlisted_files_of_our_folders(project):
@@ -284,25 +289,23 @@ def test_check_lists_unlisted_files_of_our_folders(project):
     assert build(project, "--check").exit_code == 0
     project.write("out/contracts/Old.md", "left by an earlier version")
     project.write("out/notes.txt", "by hand")
-    done = build(project, "--check")
-    listed = [line for line in done.stderr.splitlines() if line.startswith("not up to date")]
-    assert (done.exit_code, listed) == (1, ["not up to date: out/contracts/Old.md"])
+    result = build(project, "--check")
+    listed = [line for line in result.stderr.splitlines() if line.startswith("not up to date")]
+    assert (result.exit_code, listed) == (1, ["not up to date: out/contracts/Old.md"])
 
 
 def test_check_writes_nothing(project):
     project.write("out/trace.json", "by hand")
     before = project.snapshot()
-    done = build(project, "--check")
-    assert done.exit_code == 1
-    assert "not up to date: out/trace.json\n" in done.stderr
+    result = build(project, "--check")
+    assert result.exit_code == 1
+    assert "not up to date: out/trace.json\n" in result.stderr
     assert project.snapshot() == before
-    claim(project, "../plant.ir").rename(project.folder / "out/manifest.pending.json")
+    commit_manifest(project, "../plant.ir").rename(project.folder / "out/manifest.pending.json")
     assert "not up to date: out/manifest.json\n" in build(project, "--check").stderr
 
 
 def test_watch_does_not_replace_foreign_files(project):
-    from sysmlc.cli import session, watch
-
     project.write("out/trace.json", "by hand")
     before = project.snapshot()
     settings = session.Settings(emit=("graph",))
@@ -310,7 +313,7 @@ def test_watch_does_not_replace_foreign_files(project):
     assert project.snapshot() == before
 
 
-def test_commands_with_a_result_folder_follow_no_link(project):
+def test_other_commands_do_not_write_through_a_link(project):
     project.write("gate.ltl", "G (request -> F grant)\n")
     project.write("gate.part", ".inputs request\n.outputs grant\n")
     assert project.run("synth", "gate.ltl", "-o", "gen").exit_code == 0
@@ -318,6 +321,6 @@ def test_commands_with_a_result_folder_follow_no_link(project):
     machine.unlink()
     machine.symlink_to("../plant.ir")
     before = project.snapshot()
-    done = project.run("synth", "gate.ltl", "-o", "gen")
-    assert (done.exit_code, "is a link or in the way; remove it" in done.stderr) == (2, True)
+    result = project.run("synth", "gate.ltl", "-o", "gen")
+    assert (result.exit_code, "is a link or in the way; remove it" in result.stderr) == (2, True)
     assert project.snapshot() == before

@@ -1,4 +1,4 @@
-"""Configuration is read from the project root, never from above it."""
+"""The configuration is read from the project root, never from a folder above it."""
 
 import pytest
 
@@ -22,7 +22,7 @@ def test_without_marker_the_folder_of_the_model_is_the_root(models):
 
 def test_configuration_and_repository_mark_the_root(models):
     project = models.parent
-    (project / ".git").write_text("gitdir: elsewhere\n")  # as in a worktree
+    (project / ".git").write_text("gitdir: elsewhere\n")  # like in a worktree
     assert find_project_root(models / "plant.ir") == project
     (models / "sysmlc.toml").touch()
     assert find_project_root(models / "plant.ir") == models

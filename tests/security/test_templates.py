@@ -1,4 +1,4 @@
-"""Templates of a repository: they run no code, reach no file and end in time."""
+"""Templates of a repository cannot run code, read files or exhaust time and memory."""
 
 import os
 from pathlib import Path
@@ -38,7 +38,7 @@ def project(tmp_path, monkeypatch):
     return folder
 
 
-def run(*arguments: str):
+def run_sysmlc(*arguments: str):
     return CliRunner().invoke(group.sysmlc, [*arguments], catch_exceptions=False)
 
 
@@ -48,7 +48,9 @@ def draw(text: str | None, folder: Path) -> tuple[list[str], list[str]]:
         (folder / "bdd.puml.j2").write_text(text)
     output, sink = Output(), Sink()
     PLANTUML.emit(parse_text(PLANT), output, sink, EmitOptions(folder))
-    texts = [one.text for one in output.artefacts() if one.path.endswith(".bdd.puml")]
+    texts = [
+        artefact.text for artefact in output.artefacts() if artefact.path.endswith(".bdd.puml")
+    ]
     return texts, [diagnostic.message for diagnostic in sink]
 
 
@@ -56,9 +58,9 @@ def draw(text: str | None, folder: Path) -> tuple[list[str], list[str]]:
 def test_templates_of_a_repository_run_no_shell(project, configuration):
     Path(configuration).write_text(CONFIGURATIONS[configuration])
     Path("t/plantuml/bdd.puml.j2").write_text(SHELL)
-    done = run("build", "plant.ir", "--emit", "plantuml")
-    assert done.exit_code == 1
-    assert "plantuml/bdd.puml.j2:1: access to attribute '__init__'" in done.stderr
+    result = run_sysmlc("build", "plant.ir", "--emit", "plantuml")
+    assert result.exit_code == 1
+    assert "plantuml/bdd.puml.j2:1: access to attribute '__init__'" in result.stderr
     assert not Path("pwned").exists()
 
 
@@ -66,13 +68,13 @@ def test_templates_of_a_repository_run_no_shell(project, configuration):
 def test_check_uses_the_shipped_templates_only(project, configuration):
     Path(configuration).write_text(CONFIGURATIONS[configuration])
     Path("t/plantuml/bdd.puml.j2").write_text("{{ 1 / 0 }}")
-    assert "SM700" in run("build", "plant.ir").stderr
-    done = run("check", "plant.ir")
-    assert (done.exit_code, "SM700" in done.stderr) == (0, False)
-    assert run("check", "plant.ir", "--templates", "t").exit_code == 2
+    assert "SM700" in run_sysmlc("build", "plant.ir").stderr
+    result = run_sysmlc("check", "plant.ir")
+    assert (result.exit_code, "SM700" in result.stderr) == (0, False)
+    assert run_sysmlc("check", "plant.ir", "--templates", "t").exit_code == 2
 
 
-ESCAPES = [
+SANDBOX_ESCAPES = [
     "{{ ''.__class__.__mro__[1].__subclasses__() }}",
     "{{ ''['__class__'] }}",
     "{{ ''|attr('__class__') }}",
@@ -99,8 +101,8 @@ ESCAPES = [
 ]
 
 
-@pytest.mark.parametrize("text", ESCAPES)
-def test_known_escapes_from_the_sandbox_are_faults(tmp_path, text):
+@pytest.mark.parametrize("text", SANDBOX_ESCAPES)
+def test_known_escapes_from_the_sandbox_are_refused(tmp_path, text):
     texts, messages = draw(text, tmp_path)
     assert texts == []
     assert len(messages) == 1
@@ -108,7 +110,7 @@ def test_known_escapes_from_the_sandbox_are_faults(tmp_path, text):
 
 
 @pytest.mark.parametrize("name", ["../secret.j2", "/etc/passwd", "sub/../../secret.j2"])
-def test_a_template_includes_nothing_from_outside_its_folder(tmp_path, name):
+def test_a_template_cannot_include_files_outside_of_its_folder(tmp_path, name):
     (tmp_path / "secret.j2").write_text("secret")
     folder = tmp_path / "t"
     folder.mkdir()
@@ -117,7 +119,7 @@ def test_a_template_includes_nothing_from_outside_its_folder(tmp_path, name):
     assert f"bdd.puml.j2:1: there is no template '{name}'" in messages[0]
 
 
-BOMBS = {
+EXHAUSTING_TEMPLATES = {
     "{% for i in range(99999) %}{% for j in range(99999) %}{% endfor %}{% endfor %}": "takes more",
     "{% for i in range(9**9) %}{% endfor %}": "Range too big",
     "{{ (9**9) ** (9**9) }}": "takes more",
@@ -135,28 +137,30 @@ BOMBS = {
 }
 
 
-@pytest.mark.parametrize("text", quick_first(BOMBS, 6))
-def test_bombs_end_in_a_diagnostic(tmp_path, text, monkeypatch):
+@pytest.mark.parametrize("text", quick_first(EXHAUSTING_TEMPLATES, 6))
+def test_a_template_that_exceeds_a_limit_is_a_diagnostic(tmp_path, text, monkeypatch):
     monkeypatch.setattr(process, "MAX_SECONDS", 1)
     texts, messages = draw(text, tmp_path)
     assert (texts, len(messages)) == ([], 1)
-    assert BOMBS[text] in messages[0]
+    assert EXHAUSTING_TEMPLATES[text] in messages[0]
 
 
-def test_one_back_end_waits_once_for_the_time_limit(tmp_path, monkeypatch):
+def test_a_back_end_waits_for_the_time_limit_only_once(tmp_path, monkeypatch):
     monkeypatch.setattr(process, "MAX_SECONDS", 1)
-    started = []
+    processes = []
     popen = process.Popen
-    monkeypatch.setattr(process, "Popen", lambda *a, **k: started.append(a) or popen(*a, **k))
+    monkeypatch.setattr(process, "Popen", lambda *a, **k: processes.append(a) or popen(*a, **k))
     for name in ("bdd", "ibd", "act", "stm"):
         (tmp_path / f"{name}.puml.j2").write_text("{{ (9**9) ** (9**9) }}")
     parts = '    Property gate.p "p" subkind="part"\n      -> typed-by gate\n'
     output, sink = Output(), Sink()
     PLANTUML.emit(parse_text(PLANT + parts), output, sink, EmitOptions(tmp_path))
-    assert len(started) == 1
-    assert {d.message.partition("used: ")[2] for d in sink if d.rule.code == "SM700"} == {
-        "bdd.puml.j2: takes more than 1 s"
-    }
+    assert len(processes) == 1
+    assert {
+        diagnostic.message.partition("used: ")[2]
+        for diagnostic in sink
+        if diagnostic.rule.code == "SM700"
+    } == {"bdd.puml.j2: takes more than 1 s"}
 
 
 def test_a_link_out_of_the_folder_is_refused(tmp_path):
@@ -179,7 +183,7 @@ def test_a_linked_folder_of_a_back_end_is_refused(tmp_path):
     assert "is a link out of the templates folder" in messages[0]
 
 
-def test_a_fifo_is_refused_and_not_waited_for(tmp_path):
+def test_a_pipe_is_refused_without_waiting_for_it(tmp_path):
     os.mkfifo(tmp_path / "bdd.puml.j2")
     texts, messages = draw(None, tmp_path)
     assert (texts, len(messages)) == ([], 1)
@@ -199,25 +203,25 @@ def test_a_template_that_is_not_text_is_refused(tmp_path):
     assert "bdd.puml.j2: is not UTF-8: invalid byte at offset 10" in messages[0]
 
 
-@pytest.mark.parametrize("where", ["..", "../other", "link"])
-def test_a_configuration_names_no_folder_outside_the_project(project, where):
-    other = project.parent / "other"
-    other.mkdir()
-    Path("link").symlink_to(other)
-    Path("sysmlc.toml").write_text(f'templates = "{where}"\n')
-    done = run("build", "plant.ir")
-    assert done.exit_code == 2
-    assert f"'templates': '{where}' leads out of the project root" in done.stderr
+@pytest.mark.parametrize("location", ["..", "../outside", "link"])
+def test_a_configuration_cannot_name_a_folder_outside_of_the_project(project, location):
+    outside = project.parent / "outside"
+    outside.mkdir()
+    Path("link").symlink_to(outside)
+    Path("sysmlc.toml").write_text(f'templates = "{location}"\n')
+    result = run_sysmlc("build", "plant.ir")
+    assert result.exit_code == 2
+    assert f"'templates': '{location}' leads out of the project root" in result.stderr
     Path("sysmlc.toml").unlink()
-    assert run("build", "plant.ir", "--templates", str(other)).exit_code == 0
+    assert run_sysmlc("build", "plant.ir", "--templates", str(outside)).exit_code == 0
 
 
 def test_modules_in_the_working_folder_are_not_imported(project):
-    """``python -m`` would import ``jinja2.py`` of the repository in the rendering process."""
+    """With ``python -m`` the rendering process would import ``jinja2.py`` of the repository."""
     Path("jinja2.py").write_text("open('pwned', 'w')\n")
     Path("json.py").write_text("open('pwned', 'w')\n")
     Path("t/plantuml/bdd.puml.j2").write_text("drawn")
-    assert run("build", "plant.ir", "--templates", "t").exit_code == 0
+    assert run_sysmlc("build", "plant.ir", "--templates", "t").exit_code == 0
     assert Path("out/diagrams/Plant.bdd.puml").read_text() == "drawn"
     assert not Path("pwned").exists()
 
@@ -235,5 +239,5 @@ def test_other_back_ends_render_in_the_sandbox_too(tmp_path, backend, name):
     )
     pipeline.run(graph, Sink())
     backend.emit(graph, output, sink, EmitOptions(tmp_path))
-    (fault,) = [diagnostic.message for diagnostic in sink if diagnostic.is_error]
-    assert f"{name}:1: access to attribute '__init__'" in fault
+    (message,) = [diagnostic.message for diagnostic in sink if diagnostic.is_error]
+    assert f"{name}:1: access to attribute '__init__'" in message

@@ -19,7 +19,7 @@ pytestmark = pytest.mark.skipif(
 
 
 @pytest.fixture
-def run(tmp_path):
+def run_sysmlc(tmp_path):
     """Run ``sysmlc`` with arguments as bytes in a folder with files of undecodable names."""
     (tmp_path / ".git").mkdir()
     for name, data in {
@@ -37,9 +37,9 @@ def run(tmp_path):
 
     def invoke(*args):
         command = [os.fsencode(sys.executable), b"-m", b"sysmlc", *args]
-        ended = subprocess.run(command, cwd=tmp_path, capture_output=True)
-        text = ended.stdout.decode() + ended.stderr.decode()  # raises if it is not UTF-8
-        assert ended.returncode in (0, 1, 2)
+        result = subprocess.run(command, cwd=tmp_path, capture_output=True)
+        text = result.stdout.decode() + result.stderr.decode()  # raises if it is not UTF-8
+        assert result.returncode in (0, 1, 2)
         assert "Traceback" not in text
         assert "fault of sysmlc" not in text
         return text
@@ -48,11 +48,13 @@ def run(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "form", quick_first([b"text", b"sarif", b"concise", b"github", b"json"], 2)
+    "format_name", quick_first([b"text", b"sarif", b"concise", b"github", b"json"], 2)
 )
-def test_every_format_names_the_file(run, form):
-    report = run(b"check", b"models", b"--format", form)
-    assert ("pl%5Cxffnt" if form == b"sarif" else r"pl\xffnt.sysml") in report.replace(r"\\", "\\")
+def test_every_format_names_the_file(run_sysmlc, format_name):
+    report = run_sysmlc(b"check", b"models", b"--format", format_name)
+    assert ("pl%5Cxffnt" if format_name == b"sarif" else r"pl\xffnt.sysml") in report.replace(
+        r"\\", "\\"
+    )
 
 
 @pytest.mark.parametrize(
@@ -75,23 +77,23 @@ def test_every_format_names_the_file(run, form):
     ],
     ids=lambda args: os.fsdecode(args[0]) if len(args) == 1 else None,
 )
-def test_commands_answer(run, args):
-    run(*args)
+def test_commands_do_not_fail(run_sysmlc, args):
+    run_sysmlc(*args)
 
 
 @pytest.mark.parametrize(
-    "twin", quick_first([b"models/pl\\xffnt.sysml", b"models/e\xcc\x81.sysml"])
+    "second_name", quick_first([b"models/pl\\xffnt.sysml", b"models/e\xcc\x81.sysml"])
 )
-def test_a_file_is_not_hidden_by_another_of_the_same_shown_name(run, tmp_path, twin):
+def test_two_files_that_are_displayed_alike_are_reported(run_sysmlc, tmp_path, second_name):
     (tmp_path / "models" / "é.sysml").write_text("package É;")
-    assert "SM159" not in run(b"check", b"models")
-    (tmp_path / os.fsdecode(twin)).write_bytes(V2)
-    assert "error[SM159 same-file-name]: a second file is called" in run(b"check", b"models")
+    assert "SM159" not in run_sysmlc(b"check", b"models")
+    (tmp_path / os.fsdecode(second_name)).write_bytes(V2)
+    assert "error[SM159 same-file-name]: a second file is called" in run_sysmlc(b"check", b"models")
 
 
-def test_outputs_are_utf_8_and_hold_the_escaped_name(run, tmp_path):
-    emitted = b"+graph,+ir,+sysml,+sysmlx,+uml,+ecore"
-    run(b"build", b"models", b"-o", b"out" + NAME, b"--emit", emitted)
+def test_outputs_are_utf_8_and_contain_the_escaped_name(run_sysmlc, tmp_path):
+    backends = b"+graph,+ir,+sysml,+sysmlx,+uml,+ecore"
+    run_sysmlc(b"build", b"models", b"-o", b"out" + NAME, b"--emit", backends)
     output = tmp_path / os.fsdecode(b"out" + NAME)
     texts = {path.name: path.read_text("utf-8") for path in output.rglob("*") if path.is_file()}
     assert [file["path"] for file in json.loads(texts["manifest.json"])["inputs"]] == [
