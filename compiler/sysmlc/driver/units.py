@@ -7,7 +7,7 @@ the libraries that it uses, so that a library may belong to several units.
 """
 
 import os
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -19,6 +19,7 @@ from sysmlc.driver.compilation import OpenedUnit, Request, load_drawings, open_u
 from sysmlc.driver.inputs import Recognised, find_unit_root
 from sysmlc.driver.reading import ReadFile, Reading
 from sysmlc.frontends.base import FileNames, UnitFrontend
+from sysmlc.ir.algorithms import find_reachable
 from sysmlc.support.output import assign_file_names
 
 
@@ -174,23 +175,13 @@ def _connect(bundles: Sequence[Bundle]) -> list[list[Bundle]]:
     visited: set[Bundle] = set()
     for bundle in bundles:
         if bundle not in visited:
-            component = _reach([bundle], neighbours.__getitem__)
+            component = find_reachable([bundle], neighbours.__getitem__)
             visited |= component
             components.append(component)
-    return [list(_reach(component, lambda bundle: bundle.references)) for component in components]
-
-
-def _reach(
-    start: Iterable[Bundle], neighbours_of: Callable[[Bundle], AbstractSet[Bundle]]
-) -> AbstractSet[Bundle]:
-    """Return *start* and all bundles that can be reached from it."""
-    reached = set(start)
-    waiting = list(reached)
-    while waiting:
-        found = neighbours_of(waiting.pop()) - reached
-        reached |= found
-        waiting += found
-    return reached
+    return [
+        list(find_reachable(component, lambda bundle: bundle.references))
+        for component in components
+    ]
 
 
 def _own_files(unit: Sequence[Bundle]) -> list[ReadFile]:

@@ -1,13 +1,29 @@
-"""Algorithms on directed graphs of ids: strongly connected components and topological order.
+"""Algorithms on directed graphs: reachability, strongly connected components, topological order.
 
-networkx offers both, but its import takes longer than compiling most models.
+networkx offers all of them, but its import takes longer than compiling most models.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from graphlib import TopologicalSorter
 from heapq import heappop, heappush
+from typing import TypeVar
 
 Successors = Mapping[str, Iterable[str]]
+_Node = TypeVar("_Node", bound=Hashable)
+
+
+def find_reachable(
+    starts: Iterable[_Node], successors_of: Callable[[_Node], Iterable[_Node]]
+) -> set[_Node]:
+    """Return *starts* and all nodes that are reachable from them."""
+    reached = set(starts)
+    worklist = list(reached)
+    while worklist:
+        for successor in successors_of(worklist.pop()):
+            if successor not in reached:
+                reached.add(successor)
+                worklist.append(successor)
+    return reached
 
 
 def strongly_connected_components(successors: Successors) -> Iterator[list[str]]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 
+from sysmlc.ir import algorithms
 from sysmlc.ir.algorithms import sort_topologically, strongly_connected_components
 from sysmlc.recipe.model import FlowGraph
 
@@ -14,14 +15,7 @@ def find_reachable(starts: Iterable[str], edges: Iterable[tuple[str, str]]) -> s
     successors: dict[str, list[str]] = {}
     for source, target in edges:
         successors.setdefault(source, []).append(target)
-    reached = set(starts)
-    worklist = list(reached)
-    while worklist:
-        for target in successors.get(worklist.pop(), ()):
-            if target not in reached:
-                reached.add(target)
-                worklist.append(target)
-    return reached
+    return algorithms.find_reachable(starts, lambda node: successors.get(node, ()))
 
 
 def find_entries(graph: FlowGraph, component: Iterable[str]) -> list[str]:

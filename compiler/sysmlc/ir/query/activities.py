@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 
+from sysmlc.ir.algorithms import find_reachable
 from sysmlc.ir.element import Element
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
@@ -61,10 +62,12 @@ def _are_forks_joined(
     successors: _Successors, end: str, forks: Iterable[str], joins: set[str]
 ) -> bool:
     predecessors = _reverse(successors)
-    before_end = _reachable(predecessors, [end])
-    before_exit = _reachable(predecessors, [_EXIT])
+    before_end = find_reachable([end], predecessors.__getitem__)
+    before_exit = find_reachable([_EXIT], predecessors.__getitem__)
     # From these steps a path leads into an endless cycle.
-    endless = _reachable(predecessors, [step for step in successors if step not in before_exit])
+    endless = find_reachable(
+        [step for step in successors if step not in before_exit], predecessors.__getitem__
+    )
     post_dominators = _immediate_post_dominators(successors, predecessors)
     return all(
         fork not in endless and not joins.isdisjoint(_post_dominators(post_dominators, fork))
@@ -79,16 +82,6 @@ def _reverse(successors: _Successors) -> dict[str, list[str]]:
         for successor in following or [_EXIT]:
             predecessors[successor].append(step)
     return predecessors
-
-
-def _reachable(edges: _Successors, starts: Iterable[str]) -> set[str]:
-    worklist = list(starts)
-    visited = set(worklist)
-    while worklist:
-        new = [step for step in edges[worklist.pop()] if step not in visited]
-        visited.update(new)
-        worklist.extend(new)
-    return visited
 
 
 def _post_dominators(immediate: Mapping[str, str], step: str) -> set[str]:

@@ -1,11 +1,12 @@
 """Checks of a token graph: starts, reachability, guards, and at most one token on a flow."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from msgspec.structs import replace
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph, Kind
+from sysmlc.ir.algorithms import find_reachable
 from sysmlc.logic import domains, evaluate
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.token_graph import (
@@ -122,7 +123,8 @@ class _Checker:
 
         Of unreachable nodes that follow each other, only the first is reported.
         """
-        reachable = self._find_reachable(e.target for e in self.tokens.edges if self._is_start(e))
+        starts = (edge.target for edge in self.tokens.edges if self._is_start(edge))
+        reachable = find_reachable(starts, self._find_successors)
         unreachable = [n for n in self.tokens.nodes if n.id not in reachable and self._is_drawn(n)]
         covered: set[str] = set()
         # Nodes without an unreachable source come first, because they cover their successors.
@@ -130,7 +132,7 @@ class _Checker:
             if node.id not in covered:
                 subject = self.graph.subject(self.graph[node.origin])
                 self.sink.report(rules.UNREACHABLE, subject, node=node.label)
-                covered |= self._find_reachable([node.id])
+                covered |= find_reachable([node.id], self._find_successors)
         return reachable
 
     def _is_start(self, edge: TokenEdge) -> bool:
@@ -142,21 +144,15 @@ class _Checker:
     def _has_unreachable_source(self, node: TokenNode, reachable: set[str]) -> bool:
         return any(edge.source not in reachable for edge in self.tokens.incoming(node))
 
-    def _find_reachable(self, first: Iterable[str]) -> set[str]:
-        reachable: set[str] = set()
-        worklist = list(first)
-        while worklist:
-            id = worklist.pop()
-            if id in reachable:
-                continue
-            reachable.add(id)
-            node = self.tokens.node(id)
-            worklist += [edge.target for edge in self.tokens.outgoing(node)]
-            worklist += self._find_listeners(id)
-            if node.kind is NodeKind.STRUCTURED:
-                edges, _ = self.tokens.inside(id)
-                worklist += [edge.target for edge in edges if edge.marked]
-        return reachable
+    def _find_successors(self, id: str) -> list[str]:
+        """Return the nodes that a token at the node, or the start of the node, leads to."""
+        node = self.tokens.node(id)
+        successors = [edge.target for edge in self.tokens.outgoing(node)]
+        successors += self._find_listeners(id)
+        if node.kind is NodeKind.STRUCTURED:
+            edges, _ = self.tokens.inside(id)
+            successors += [edge.target for edge in edges if edge.marked]
+        return successors
 
     def _find_listeners(self, id: str) -> list[str]:
         """Return the nodes that listen when a token is at the node, in its interruptible region."""
