@@ -15,7 +15,7 @@ from lxml import etree
 from dialects.magicdraw import LISTS, LISTS_OF, translate_href
 from dialects.papyrus import SYSML as PAPYRUS_SYSML
 from dialects.papyrus import UML as PAPYRUS_UML
-from dialects.papyrus import XMI, Element, id_of
+from dialects.papyrus import XMI, Element, id_of, is_custom_namespace, type_of
 
 UML = "http://www.omg.org/spec/UML/20161101"
 PROFILES = "http://www.sparxsystems.com/profiles"
@@ -85,10 +85,14 @@ class _Writer:
         self.source = source
         self.ids = _map_ids(source)
         self.notes = {id_of(note.getparent()): note for note in source.iter() if _is_note(note)}
-        custom = {prefix: uri for prefix, uri in source.nsmap.items() if _is_custom(uri)}
+        namespaces = {
+            prefix: uri
+            for prefix, uri in source.nsmap.items()
+            if is_custom_namespace(uri) and not uri.startswith(PLANT)
+        }
         if PLANT in source.nsmap.values():
-            custom["Plant"] = f"{PROFILES}/Plant/1.0"
-        self.root = etree.Element(f"{{{XMI}}}XMI", nsmap={**_PREFIXES, **custom})
+            namespaces["Plant"] = f"{PROFILES}/Plant/1.0"
+        self.root = etree.Element(f"{{{XMI}}}XMI", nsmap={**_PREFIXES, **namespaces})
         exporter = {"exporter": "Enterprise Architect", "exporterVersion": "6.5"}
         etree.SubElement(self.root, f"{{{XMI}}}Documentation", exporter)
         model = source.find(f"{{{PAPYRUS_UML}}}Model")
@@ -111,32 +115,32 @@ class _Writer:
         if "href" in source.attrib:
             href = _translate_href(str(source.get("href")))
             copy = etree.SubElement(owner, tag, {"href": href})
-            if _type_of(source):
-                copy.set(_TYPE, _type_of(source))
+            if type_of(source):
+                copy.set(_TYPE, type_of(source))
         else:
             self._copy_content(source, etree.SubElement(owner, tag))
 
     def _copy_content(self, source: Element, copy: Element) -> None:
         if _TYPE in source.attrib:
-            copy.set(_TYPE, _WRITTEN_AS.get(_type_of(source), _type_of(source)))
-        for name, value in {**_DEFAULTS.get(_type_of(source), {}), **source.attrib}.items():
+            copy.set(_TYPE, _WRITTEN_AS.get(type_of(source), type_of(source)))
+        for name, value in {**_DEFAULTS.get(type_of(source), {}), **source.attrib}.items():
             if name != _TYPE and name not in _NOT_SAVED:
                 self._write_feature(copy, str(name), str(value))
         if source.text and source.text.strip():
             copy.text = source.text
         for child in source:
             self._copy(child, copy)
-        if _type_of(source) in ("uml:Property", "uml:Port"):
-            _write_bounds(source, copy, is_short=_type_of(source) == "uml:Port")
+        if type_of(source) in ("uml:Property", "uml:Port"):
+            _write_bounds(source, copy, is_short=type_of(source) == "uml:Port")
 
     def _write_feature(self, copy: Element, name: str, value: str) -> None:
         ids = value.split()
         if name == _ID:
             copy.set(name, self.ids[value])
-        elif name in _AS_CHILDREN or name in LISTS_OF.get(_type_of(copy), ()):
+        elif name in _AS_CHILDREN or name in LISTS_OF.get(type_of(copy), ()):
             for id_ in ids:
                 etree.SubElement(copy, name, {_IDREF: self.ids.get(id_, id_)})
-        elif name == "value" and _type_of(copy) == "uml:LiteralUnlimitedNatural":
+        elif name == "value" and type_of(copy) == "uml:LiteralUnlimitedNatural":
             copy.set(name, value.replace("*", "-1"))
         elif name not in _TEXTS and ids and all(id_ in self.ids for id_ in ids):
             copy.set(name, " ".join(self.ids[id_] for id_ in ids))
@@ -171,29 +175,29 @@ class _Writer:
         etree.SubElement(extension, "primitivetypes")
         for element in filter(id_of, model.iter()):
             is_element = element.tag in ("packagedElement", "ownedBehavior", "node", "subvertex")
-            if element is model or is_element or _type_of(element) == "uml:Port":
-                kind = "connector" if _type_of(element) in _CONNECTORS else "element"
+            if element is model or is_element or type_of(element) == "uml:Port":
+                kind = "connector" if type_of(element) in _CONNECTORS else "element"
                 self._describe(element, connectors if kind == "connector" else elements, kind)
-            elif _type_of(element) in _CONNECTORS:
+            elif type_of(element) in _CONNECTORS:
                 self._describe(element, connectors, "connector")
         self._write_diagram(extension, model)
 
     def _describe(self, element: Element, holder: Element, kind: str) -> None:
         description = etree.SubElement(holder, kind, {_IDREF: self.ids[id_of(element)]})
-        description.set(_TYPE, _type_of(element) or "uml:Model")
+        description.set(_TYPE, type_of(element) or "uml:Model")
         note = self.notes.get(id_of(element))
         text = "" if note is None else note.findtext("body", note.get("body", ""))
         if kind == "element":
             etree.SubElement(
-                description, "properties", documentation=text, sType=_type_of(element)[4:]
+                description, "properties", documentation=text, sType=type_of(element)[4:]
             )
         else:
             etree.SubElement(description, "documentation", value=text)
         etree.SubElement(description, "project", author="sysmlc", version="1.0")
         self._repeat_stereotypes(element, description)
         for child in element:
-            if id_of(child) and _type_of(child) in _FEATURES:
-                plural, singular = _FEATURES[_type_of(child)]
+            if id_of(child) and type_of(child) in _FEATURES:
+                plural, singular = _FEATURES[type_of(child)]
                 box = description.find(plural)
                 box = etree.SubElement(description, plural) if box is None else box
                 self._describe(child, box, singular)
@@ -247,7 +251,7 @@ def _map_ids(source: Element) -> dict[str, str]:
     for element in source.iter():
         id_ = id_of(element)
         if id_:
-            kind = "EAPK" if _type_of(element) in ("", "uml:Package", "uml:Model") else "EAID"
+            kind = "EAPK" if type_of(element) in ("", "uml:Package", "uml:Model") else "EAID"
             ids[id_] = f"{kind}_{_make_guid(id_)}"
     for link in source.iter():
         ends = [str(end) for end in link.get("memberEnd", "").split()]
@@ -292,7 +296,7 @@ def _iter_bases(application: Element) -> Iterator[str]:
 def _is_note(element: Element) -> bool:
     """Whether a comment becomes a note in the extension: the only one of its owner, about it."""
     owner = element.getparent()
-    if _type_of(element) != "uml:Comment" or owner is None or not _is_described(owner):
+    if type_of(element) != "uml:Comment" or owner is None or not _is_described(owner):
         return False
     alone = len(owner.findall("ownedComment")) == 1
     return alone and element.get("annotatedElement") == id_of(owner)
@@ -301,7 +305,7 @@ def _is_note(element: Element) -> bool:
 def _is_described(element: Element) -> bool:
     is_element = element.tag in ("packagedElement", "ownedBehavior", "node", "subvertex")
     described_types = {"uml:Port", "uml:Property", "uml:Operation", *_CONNECTORS}
-    return is_element or _type_of(element) in described_types
+    return is_element or type_of(element) in described_types
 
 
 def _translate_href(href: str) -> str:
@@ -309,18 +313,3 @@ def _translate_href(href: str) -> str:
     if "SysML.profile.uml#" in href:
         return f"{SYSML}#{href.rpartition('_')[2]}"
     return translate_href(href)[0]
-
-
-def _is_custom(uri: str) -> bool:
-    standard_namespaces = (
-        PAPYRUS_SYSML,
-        PAPYRUS_UML,
-        XMI,
-        "http://www.w3.org",
-        "http://www.eclipse.org/emf",
-    )
-    return not uri.startswith((*standard_namespaces, PLANT))
-
-
-def _type_of(element: Element) -> str:
-    return element.get(_TYPE, "")

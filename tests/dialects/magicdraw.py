@@ -15,7 +15,7 @@ from lxml import etree
 
 from dialects.papyrus import SYSML as PAPYRUS_SYSML
 from dialects.papyrus import UML as PAPYRUS_UML
-from dialects.papyrus import XMI, Element, id_of
+from dialects.papyrus import XMI, Element, id_of, is_custom_namespace, type_of
 
 UML = "http://www.omg.org/spec/UML/20131001"
 SYSML = "http://www.omg.org/spec/SysML/20150709/SysML"
@@ -124,7 +124,7 @@ class _Writer:
 
     def __init__(self, source: Element) -> None:
         self.ids = {id_of(element): _make_id(id_of(element)) for element in _iter_with_id(source)}
-        custom = {prefix: uri for prefix, uri in source.nsmap.items() if _is_custom(uri)}
+        custom = {prefix: uri for prefix, uri in source.nsmap.items() if is_custom_namespace(uri)}
         self.root = etree.Element(
             f"{{{XMI}}}XMI",
             nsmap={**_PREFIXES, **custom},
@@ -156,7 +156,7 @@ class _Writer:
             return
         if "href" in source.attrib:
             _write_outside_reference(source, etree.SubElement(owner, tag))
-        elif tag in ("lowerValue", "upperValue") and _type_of(owner) in _BOUNDED_IN_EXTENSION:
+        elif tag in ("lowerValue", "upperValue") and type_of(owner) in _BOUNDED_IN_EXTENSION:
             box = etree.SubElement(_add_extension(owner), "modelExtension")
             self._copy_content(source, etree.SubElement(box, tag))
         else:
@@ -177,7 +177,7 @@ class _Writer:
         ids = value.split()
         if name == f"{{{XMI}}}id":
             copy.set(name, self.ids[value])
-        elif name in LISTS or name in LISTS_OF.get(_type_of(copy), ()):
+        elif name in LISTS or name in LISTS_OF.get(type_of(copy), ()):
             for id_ in ids:
                 etree.SubElement(copy, name, {f"{{{XMI}}}idref": self.ids.get(id_, id_)})
         elif name not in ("name", "body") and ids and all(id_ in self.ids for id_ in ids):
@@ -218,11 +218,11 @@ class _Writer:
 
     def apply_customisation(self, source: Element) -> None:
         """Apply PartProperty and ValueProperty to typed properties, as MagicDraw does."""
-        types = {id_of(element): _type_of(element) for element in _iter_with_id(source)}
+        types = {id_of(element): type_of(element) for element in _iter_with_id(source)}
         for attribute in source.iter("ownedAttribute"):
             kind = types.get(str(attribute.get("type")), "")
             is_part = kind == "uml:Class" and attribute.get("aggregation") == "composite"
-            if _type_of(attribute) == "uml:Property" and (is_part or kind == "uml:Enumeration"):
+            if type_of(attribute) == "uml:Property" and (is_part or kind == "uml:Enumeration"):
                 name = "PartProperty" if is_part else "ValueProperty"
                 application = etree.SubElement(self.root, f"{{{CUSTOMISATION}}}{name}")
                 application.set(f"{{{XMI}}}id", _make_id(id_of(attribute) + name))
@@ -256,17 +256,6 @@ def _make_id(id_: str) -> str:
     return f"_19_0_4_25dc056a_{stamp}_{rest % 1_000_000:06}_{rest // 1_000_000 % 100_000:05}"
 
 
-def _is_custom(uri: str) -> bool:
-    standard_namespaces = (
-        PAPYRUS_SYSML,
-        PAPYRUS_UML,
-        XMI,
-        "http://www.w3.org",
-        "http://www.eclipse.org/emf",
-    )
-    return not uri.startswith(standard_namespaces)
-
-
 def _is_repeated_sysml(source: Element) -> bool:
     """Whether another package of SysML is already applied: MagicDraw applies SysML once."""
     profile = source.find("appliedProfile")
@@ -278,10 +267,6 @@ def _is_repeated_sysml(source: Element) -> bool:
     )
 
 
-def _type_of(element: Element) -> str:
-    return element.get(f"{{{XMI}}}type", "")
-
-
 def _add_extension(owner: Element) -> Element:
     return etree.SubElement(owner, f"{{{XMI}}}Extension", extender=EXTENDER)
 
@@ -289,7 +274,7 @@ def _add_extension(owner: Element) -> Element:
 def _copy_text(source: Element, copy: Element) -> None:
     if source.text and source.text.strip():
         copy.text = source.text
-    if _type_of(source) == "uml:Comment":
+    if type_of(source) == "uml:Comment":
         body = copy.find("body")
         if body is not None:
             copy.set("body", body.text or "")
@@ -300,7 +285,7 @@ def _write_outside_reference(source: Element, reference: Element) -> None:
     """Write a reference to another file, with the readable path that MagicDraw adds."""
     href, path = translate_href(str(source.get("href")))
     reference.set("href", href)
-    detail = {"referentPath": path, "referentType": _type_of(source).removeprefix("uml:")}
+    detail = {"referentPath": path, "referentType": type_of(source).removeprefix("uml:")}
     etree.SubElement(_add_extension(reference), "referenceExtension", detail)
 
 

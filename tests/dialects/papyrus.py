@@ -184,6 +184,16 @@ def id_of(element: Element) -> str:
     return element.get(f"{{{XMI}}}id", "")
 
 
+def type_of(element: Element) -> str:
+    """Return the ``xmi:type`` of an element, or the empty string."""
+    return element.get(f"{{{XMI}}}type", "")
+
+
+def is_custom_namespace(uri: str) -> bool:
+    """Whether a namespace belongs to a custom profile, not to UML, SysML, XMI or XML."""
+    return not uri.startswith((SYSML, UML, XMI, "http://www.w3.org", "http://www.eclipse.org/emf"))
+
+
 def metaclass_of(element: Element) -> str:
     return element.get(f"{{{XMI}}}type", "uml:Model").removeprefix("uml:")
 

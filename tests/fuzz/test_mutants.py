@@ -8,6 +8,8 @@ from dataclasses import replace
 
 import pytest
 
+from fuzz import hunt
+from fuzz.fork_server import Limits
 from fuzz.hunt import Hunter
 from fuzz.mutants import list_models, make_mutant, make_unchanged
 from long_runs import quick_first
@@ -105,14 +107,11 @@ def test_no_temporary_file_remains(hunter, tmp_path):
 @pytest.mark.long
 def test_a_crash_and_an_exceeded_limit_are_reported(hunter, monkeypatch):
     """The hunter reports a command that needs too much memory or is killed."""
-    from fuzz import hunt
-    from fuzz.fork_server import Limits
-
     monkeypatch.setattr(hunt, "MEMORY", 1)
     mutant = make_mutant(3, list_models(None, 0))
     assert [failure.mutant for failure in hunter.check(mutant)] == [mutant]
     monkeypatch.undo()
-    monkeypatch.setattr(hunter, "bounds", Limits(seconds=5, memory=1 << 20))
+    monkeypatch.setattr(hunter, "limits", Limits(seconds=5, memory=1 << 20))
     # A small file would fit into memory that the process has freed.
     file = ("m.uml", b"<!--" + b"." * (64 << 20) + b"--><m/>")
     large = replace(mutant, name="m.uml", files=(file,))

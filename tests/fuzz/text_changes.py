@@ -219,8 +219,10 @@ def _misdirect_names(parts: Pieces, random: Random) -> Pieces:
 def _rename_all(parts: Pieces, random: Random) -> Pieces:
     """Replace all uses of one name by another name, which may be in use or odd."""
     old = choose_name(parts, random)
-    odd_names = ("none", "''", "'a b'", "'::'", "start", "done", "self", "that", "'", "é")
-    odd_names += ("Parts", "SI")
+    odd_names = (
+        *("none", "''", "'a b'", "'::'", "start", "done"),
+        *("self", "that", "'", "é", "Parts", "SI"),
+    )
     new = choose_name(parts, random) if random.random() < 0.6 else random.choice(odd_names)
     return [new if part == old else part for part in parts]
 
