@@ -1,7 +1,7 @@
 """Activity diagrams: exceptions, expansion regions, and what tools write by themselves."""
 
 import pytest
-from drawing import emitted, texts
+from diagrams import emitted, texts
 
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.driver.reading import read_unit

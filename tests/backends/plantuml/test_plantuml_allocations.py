@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from drawing import emitted
+from diagrams import emitted
 
 from sysmlc.ir.text import parse_text
 

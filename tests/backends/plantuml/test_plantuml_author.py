@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from drawing import model
+from diagrams import model
 
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.plantuml import BACKEND

@@ -1,7 +1,7 @@
 """The back end as a whole: file names, splitting, templates of users, what it reports."""
 
 import pytest
-from drawing import emitted, texts
+from diagrams import emitted, texts
 
 from sysmlc.backends.plantuml import partitioning
 from sysmlc.backends.plantuml.backend import BAD_TEMPLATE

@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from drawing import emitted
+from diagrams import emitted
 
 from long_runs import quick_first
 from sysmlc.backends.plantuml.partitioning import MAX_BOXES

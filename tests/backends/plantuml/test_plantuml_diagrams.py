@@ -1,7 +1,7 @@
 """Each kind of diagram: golden texts, nothing of the model left out, and real PlantUML."""
 
 import pytest
-from drawing import emitted, model, texts
+from diagrams import emitted, model, texts
 
 from sysmlc.ir import Graph, Kind
 from sysmlc.ir.text import parse_text

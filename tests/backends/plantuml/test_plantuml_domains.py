@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from drawing import emitted
+from diagrams import emitted
 
 from sysmlc.backends.plantuml.connections import Connection, Path, style_arrow
 from sysmlc.backends.plantuml.layout import find_port_sides

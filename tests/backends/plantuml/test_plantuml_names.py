@@ -6,7 +6,7 @@ import re
 import textwrap
 
 import pytest
-from drawing import texts
+from diagrams import texts
 from hypothesis import Phase, example, given, settings
 from hypothesis import strategies as st
 

@@ -2,7 +2,7 @@
 
 import re
 
-from drawing import emitted, texts
+from diagrams import emitted, texts
 
 from sysmlc.ir.text import parse_text
 
