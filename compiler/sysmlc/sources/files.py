@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from sysmlc.sources import package
+from sysmlc.sources import amlx_package
 from sysmlc.sources.archive import is_archive, list_entry_names, read_entries
 from sysmlc.sources.encoding import convert_to_utf8
 from sysmlc.sources.source import DEFAULT_LIMITS, Fault, Limits, Source, SourceError
@@ -128,9 +128,9 @@ def load(
     if not is_archive(source.data):
         return [convert_to_utf8(source)]
     entry_names = list_entry_names(source)
-    if package.is_package(name, entry_names):
-        relationships = read_entries(source, package.holds_relationships, limits)
-        package.check_package(name, entry_names, relationships)
+    if amlx_package.is_package(name, entry_names):
+        relationships = read_entries(source, amlx_package.holds_relationships, limits)
+        amlx_package.check_package(name, entry_names, relationships)
     sources = read_entries(source, wanted, limits) or read_entries(source, _is_plain_entry, limits)
     if all(_is_auxiliary_entry(source.name.partition("!")[2]) for source in sources):
         raise SourceError("the archive holds no model", name)
