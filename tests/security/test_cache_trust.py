@@ -47,7 +47,7 @@ def test_the_folder_and_its_files_are_private(project, folder):
     assert list_modes(folder) == {"drwx------", "-rw-------"}
 
 
-def test_a_committed_cache_cannot_hide_findings(project, monkeypatch):
+def test_a_committed_cache_cannot_hide_diagnostics(project, monkeypatch):
     """An attacker commits entries that the same version of sysmlc stored for a clean model."""
     monkeypatch.setenv(cache.VARIABLE, str(project.folder / ".sysmlc-cache"))
     project.write("plant.ir", FAULTY)

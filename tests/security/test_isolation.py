@@ -6,11 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 
-from sysmlc.cli import group
-
-PLANT = 'Package p "Plant"\n  Class gate "Gate" role="block"\n'
 FAULTY_CONFIGURATIONS = {
     "sysmlc.toml": "no = such-key",
     "pyproject.toml": '[tool.sysmlc]\noutput = "../elsewhere"\n',
@@ -28,30 +24,18 @@ COMMANDS = {
 }
 
 
-@pytest.fixture(autouse=True)
-def project(tmp_path, monkeypatch):
-    """A working folder with a model."""
-    (tmp_path / "plant.ir").write_text(PLANT)
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
-def run_sysmlc(arguments):
-    return CliRunner().invoke(group.sysmlc, arguments, catch_exceptions=False)
-
-
 @pytest.mark.parametrize("configuration", FAULTY_CONFIGURATIONS)
 @pytest.mark.parametrize("command", COMMANDS)
-def test_isolated_commands_read_no_configuration(command, configuration):
-    expected = run_sysmlc(COMMANDS[command])
-    Path(configuration).write_text(FAULTY_CONFIGURATIONS[configuration])
-    assert configuration in run_sysmlc(COMMANDS[command]).stderr
-    result = run_sysmlc([*COMMANDS[command], "--isolated"])
+def test_isolated_commands_read_no_configuration(project, command, configuration):
+    expected = project.run(*COMMANDS[command])
+    project.write(configuration, FAULTY_CONFIGURATIONS[configuration])
+    assert configuration in project.run(*COMMANDS[command]).stderr
+    result = project.run(*COMMANDS[command], "--isolated")
     assert (result.exit_code, result.stderr) == (expected.exit_code, expected.stderr)
 
 
-def test_isolated_and_a_configuration_exclude_each_other():
-    result = run_sysmlc(["check", "plant.ir", "--isolated", "--config", "sysmlc.toml"])
+def test_isolated_and_a_configuration_exclude_each_other(project):
+    result = project.run("check", "plant.ir", "--isolated", "--config", "sysmlc.toml")
     assert result.exit_code == 2
     assert "--isolated and --config exclude each other" in result.stderr
 
@@ -76,4 +60,6 @@ def test_a_plug_in_of_the_working_folder_is_not_loaded(project):
 def run_module(project):
     environment = {**os.environ, "SYSMLC_CACHE": "off"}
     command = [sys.executable, "-m", "sysmlc", "build", "plant.ir", "-o", "out"]
-    return subprocess.run(command, cwd=project, env=environment, capture_output=True, text=True)
+    return subprocess.run(
+        command, cwd=project.folder, env=environment, capture_output=True, text=True
+    )

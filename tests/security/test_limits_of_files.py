@@ -5,10 +5,8 @@ import os
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 
 import sysmlc
-from sysmlc.cli import group
 from sysmlc.sources.source import DOCUMENT_LIMITS
 
 ROOT = Path(sysmlc.__file__).parent
@@ -44,14 +42,6 @@ def test_only_shipped_files_and_outputs_are_read_without_limit():
     assert list_unlimited_readers() <= SHIPPED.keys() | OUTPUTS
 
 
-@pytest.fixture
-def project(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / ".git").mkdir()
-    (tmp_path / "plant.sysml").write_text(MODEL)
-    return tmp_path
-
-
 DOCUMENTS = {
     "sysmlc.toml": ("check", "plant.sysml"),
     "plant.overlay.yaml": ("check", "plant.sysml"),
@@ -64,9 +54,10 @@ DOCUMENTS = {
 
 @pytest.mark.parametrize("name", DOCUMENTS)
 def test_a_huge_document_is_refused(project, name):
-    with (project / name).open("wb") as file:
+    project.write("plant.sysml", MODEL)
+    with (project.folder / name).open("wb") as file:
         file.truncate(DOCUMENT_LIMITS.file_size + 1)
-    result = CliRunner().invoke(group.sysmlc, [*DOCUMENTS[name]])
+    result = project.run(*DOCUMENTS[name])
     assert result.exit_code == 2
     assert f"larger than {DOCUMENT_LIMITS.file_size} bytes" in result.output
 
@@ -74,7 +65,8 @@ def test_a_huge_document_is_refused(project, name):
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no named pipes")
 @pytest.mark.parametrize("name", [name for name in DOCUMENTS if name != "sysmlc.toml"])
 def test_a_pipe_is_refused_without_waiting_for_it(project, name):
-    os.mkfifo(project / name)
-    result = CliRunner().invoke(group.sysmlc, [*DOCUMENTS[name]])
+    project.write("plant.sysml", MODEL)
+    os.mkfifo(project.folder / name)
+    result = project.run(*DOCUMENTS[name])
     assert result.exit_code == 2
     assert "is not a regular file" in result.output
