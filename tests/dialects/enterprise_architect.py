@@ -29,6 +29,8 @@ _PREFIXES = {"xmi": XMI, "uml": UML, "thecustomprofile": CUSTOM, "SysML1.4": SYS
 _NOT_SAVED = frozenset({"partition", "base_NamedElement", "base_DirectedRelationship"})
 _TEXTS = frozenset({"name", "body", "symbol"})
 _AS_CHILDREN = (LISTS - {"covered"}) | {"type", "incoming", "outgoing"}
+_ELEMENT_TAGS = ("packagedElement", "ownedBehavior", "node", "subvertex")
+"""Features whose elements the extension describes among its elements."""
 _CONNECTORS = frozenset(
     {"uml:Association", "uml:Connector", "uml:Dependency", "uml:Abstraction", "uml:Realization"}
     | {"uml:InformationFlow", "uml:ControlFlow", "uml:ObjectFlow", "uml:Transition"}
@@ -174,8 +176,8 @@ class _Writer:
         connectors = etree.SubElement(extension, "connectors")
         etree.SubElement(extension, "primitivetypes")
         for element in filter(id_of, model.iter()):
-            is_element = element.tag in ("packagedElement", "ownedBehavior", "node", "subvertex")
-            if element is model or is_element or type_of(element) == "uml:Port":
+            is_element = element.tag in _ELEMENT_TAGS or type_of(element) == "uml:Port"
+            if element is model or is_element:
                 kind = "connector" if type_of(element) in _CONNECTORS else "element"
                 self._describe(element, connectors if kind == "connector" else elements, kind)
             elif type_of(element) in _CONNECTORS:
@@ -298,14 +300,13 @@ def _is_note(element: Element) -> bool:
     owner = element.getparent()
     if type_of(element) != "uml:Comment" or owner is None or not _is_described(owner):
         return False
-    alone = len(owner.findall("ownedComment")) == 1
-    return alone and element.get("annotatedElement") == id_of(owner)
+    is_only_comment = len(owner.findall("ownedComment")) == 1
+    return is_only_comment and element.get("annotatedElement") == id_of(owner)
 
 
 def _is_described(element: Element) -> bool:
-    is_element = element.tag in ("packagedElement", "ownedBehavior", "node", "subvertex")
     described_types = {"uml:Port", "uml:Property", "uml:Operation", *_CONNECTORS}
-    return is_element or type_of(element) in described_types
+    return element.tag in _ELEMENT_TAGS or type_of(element) in described_types
 
 
 def _translate_href(href: str) -> str:
