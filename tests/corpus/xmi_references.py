@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from lxml import etree
-from reading_corpus import local_name
+from reading_corpus import local_name, parse_data
 
 _XSI = "{http://www.w3.org/2001/XMLSchema-instance}type"
-_TOOL_DATA = ("Extension", "eAnnotations", "Documentation")
+_TOOL_TAGS = ("Extension", "eAnnotations", "Documentation")
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,8 +37,8 @@ def list_reference_features(ecore: Path) -> frozenset[str]:
 
 
 def iter_references(data: bytes, features: frozenset[str]) -> Iterator[Reference]:
-    """Yield the local references of a document; a dangling one has an empty ``target_type``."""
-    root = etree.fromstring(data, etree.XMLParser(huge_tree=True, resolve_entities=False))
+    """Yield the local references of a document; the ``target_type`` of dangling ones is empty."""
+    root = parse_data(data)
     elements = map_elements(root)
     for element in iter_content(root):
         target = _xmi_attribute(element, "}idref")
@@ -102,7 +102,7 @@ def iter_content(root: etree._Element) -> Iterable[etree._Element]:
     """Yield the elements of the model, without the data of tools."""
     tool_data: set[etree._Element] = set()
     for element in _iter_elements(root):
-        if element.getparent() in tool_data or local_name(element) in _TOOL_DATA:
+        if element.getparent() in tool_data or local_name(element) in _TOOL_TAGS:
             tool_data.add(element)
         else:
             yield element
