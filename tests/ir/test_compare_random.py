@@ -75,8 +75,9 @@ def test_exactly_the_change_is_reported_with_old_ids_and_with_new_ids(kind, mode
 def test_every_kind_of_change_is_made_at_least_once():
     for kind in KINDS:
         for form in READERS:
-            made = (Mutation(read(*s), Random(s[1])).apply(kind) for s in SEEDS if s[0] == form)
-            assert any(made), (kind, form)
+            seeds = [seed for reader, seed in SEEDS if reader == form]
+            mutations = (Mutation(read(form, seed), Random(seed)).apply(kind) for seed in seeds)
+            assert any(mutations), (kind, form)
 
 
 def list_changes(changes):

@@ -12,7 +12,7 @@ SUBKINDS = {"s": "initial", "f": "fork", "j": "join", "d": "decision", "m": "mer
 
 
 def draw_activity(flows):
-    """Return an activity of flows ``a b``; SUBKINDS has the kind of a node by its first letter."""
+    """Return an activity of flows ``a b``; SUBKINDS maps first letters to control nodes."""
     names = dict.fromkeys(name for flow in flows for name in flow.split())
     lines = ['Activity a "a"']
     for name in names:

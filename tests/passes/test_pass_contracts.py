@@ -28,7 +28,7 @@ WITH_GRAPHS = [rule for rule in RULES if rule.read_page().language == "ir"]
 
 
 @pytest.mark.parametrize("rule", WITH_GRAPHS, ids=lambda rule: rule.name)
-def test_rule_reports_its_wrong_model_and_not_its_right_one(rule):
+def test_rule_reports_its_wrong_example_and_not_its_right_one(rule):
     assert rule.code in list_codes(derive_contracts(rule.read_page().wrong)[2])
     assert rule.code not in list_codes(derive_contracts(rule.read_page().right)[2])
 

@@ -45,7 +45,7 @@ def derive(text):
     return contracts, sink
 
 
-def test_rule_reports_its_wrong_model_and_not_its_right_one():
+def test_rule_reports_its_wrong_example_and_not_its_right_one():
     page = catalogue()["SM522"].read_page()
     assert "SM522" in list_codes(derive(page.wrong)[1])
     assert "SM522" not in list_codes(derive(page.right)[1])
