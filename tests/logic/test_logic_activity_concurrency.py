@@ -5,7 +5,7 @@ import random
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
-from random_activities import build_tokens, draw_activity, play, rich_blocks
+from random_block_activities import build_tokens, draw_activity, play, rich_blocks
 
 from long_runs import examples
 from sysmlc.logic import evaluate

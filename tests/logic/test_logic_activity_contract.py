@@ -1,7 +1,7 @@
 """Contracts of small activities, as texts, and their meaning according to Spot."""
 
 import pytest
-from random_activities import build_tokens, draw_activity
+from random_block_activities import build_tokens, draw_activity
 from spot_formulas import conjoin, print_for_spot
 
 from activity_sketch import sketch

@@ -2,7 +2,7 @@
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from random_activities import blocks, build_tokens, draw_activity, list_successors, play_trace
+from random_block_activities import blocks, build_tokens, draw_activity, list_successors, play_trace
 
 from long_runs import examples
 from sysmlc.logic import evaluate

@@ -4,7 +4,7 @@ import random
 
 from hypothesis import given, note, settings
 from hypothesis import strategies as st
-from random_activities import Canvas, blocks, build_tokens, draw_activity, play, play_trace
+from random_block_activities import Canvas, blocks, build_tokens, draw_activity, play, play_trace
 
 from long_runs import examples
 from sysmlc.diagnostics import Sink

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 from hypothesis import given, note, settings
 from hypothesis import strategies as st
-from random_activities import (
+from random_block_activities import (
     Valuation,
     draw_activity,
     list_successors,
