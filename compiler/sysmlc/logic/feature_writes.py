@@ -15,6 +15,7 @@ from sysmlc.logic.expressions.expression import (
     Assignment,
     Expression,
     ExpressionError,
+    last_name,
     name_of,
     print_expression,
 )
@@ -77,15 +78,10 @@ def _iter_mentioned_names(graph: Graph, action: Element) -> Iterator[str]:
     if isinstance(body, str) and ":=" in body:
         if "'" in body:
             # A quoted name may contain blanks and ":=", so the body must be parsed.
-            yield from (_last_name(name) for name in _iter_written_names(graph, action))
+            yield from (last_name(name) for name in _iter_written_names(graph, action))
         else:
             yield from _ASSIGNED_NAME.findall(body)
-    yield from (_last_name(name) for name in _iter_bound_names(graph, action))
-
-
-def _last_name(path: str) -> str:
-    """Return the last name of a path: ``load`` of ``arm.load``."""
-    return path.rpartition("::")[2].rpartition(".")[2]
+    yield from (last_name(name) for name in _iter_bound_names(graph, action))
 
 
 def _iter_bound_names(graph: Graph, action: Element) -> Iterator[str]:
@@ -222,12 +218,12 @@ class WriterIndex:
             self._candidates_by_name = _index_candidates(self._graph)
         return self._candidates_by_name.get(name, [])
 
-    def _iter_written_features(self, writer: Element, last_name: str) -> Iterator[Element | None]:
-        """Yield the features that the action writes, of those whose path ends with *last_name*."""
+    def _iter_written_features(self, writer: Element, name: str) -> Iterator[Element | None]:
+        """Yield the features that the action writes, of those whose path ends with *name*."""
         if writer.subkind == "write":
             yield from self._graph.targets(writer, Edge.CALLS)
         for path in _iter_written_names(self._graph, writer):
-            if _last_name(path) == last_name:
+            if last_name(path) == name:
                 yield self.resolve_target(writer, path)
 
     def _list_redefining(self, feature: Element) -> Iterable[Element]:

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 
 from sysmlc.diagnostics import Severity, rule
 from sysmlc.ir.algorithms import sort_topologically
-from sysmlc.logic.expressions.expression import Expression
+from sysmlc.logic.expressions.expression import Expression, last_name
 from sysmlc.recipe.expression import (
     UndecidedError,
     is_condition,
@@ -165,7 +165,7 @@ def _iter_undeclared(graph: FlowGraph) -> Iterator[tuple[str, str]]:
     for element, _, expression in _iter_uses(graph):
         for name in iter_variables(expression):
             base = name.split(".")[0]
-            last = name.replace("::", ".").rpartition(".")[2]
+            last = last_name(name)
             if not {name, base, last} & declared:
                 yield element, f"'{name}' is not declared"
     for node in graph.nodes:

@@ -21,6 +21,7 @@ from sysmlc.logic.expressions.expression import (
     Literal,
     Name,
     Unary,
+    last_name,
 )
 from sysmlc.recipe.model import EnumType, Scalar, ValueType
 
@@ -267,12 +268,8 @@ def resolve_literals(expression: Expression, types: Mapping[str, ValueType | Non
         for literal in type_.literals
     }
     name = variable_name(expression)
-    if name is not None and name not in types and _local_name(name) in literals:
-        return Literal(_local_name(name))
+    if name is not None and name not in types and last_name(name) in literals:
+        return Literal(last_name(name))
     if isinstance(expression, Unary | Binary):
         return map_operands(expression, lambda operand: resolve_literals(operand, types))
     return expression
-
-
-def _local_name(name: str) -> str:
-    return name.replace("::", ".").rpartition(".")[2]

@@ -19,6 +19,7 @@ from sysmlc.logic.expressions.expression import (
     Name,
     Unary,
     dotted_name,
+    last_name,
     name_of,
     print_expression,
 )
@@ -174,7 +175,7 @@ def _elaborate_name(
 ) -> GuardedValue:
     name = name_of(expression) or print_expression(expression)
     symbol = scope(name)
-    last = name.replace(".", "::").rpartition("::")[2]
+    last = last_name(name)
     if isinstance(expected, EnumerationDomain) and last in expected.literals and not expected.texts:
         # A property hides a literal of the same name.
         is_property = symbol is not None and not isinstance(symbol.formula, Const)

@@ -199,6 +199,11 @@ def name_of(expression: Expression) -> str | None:
     return rest if head in ("self", "this") else name
 
 
+def last_name(path: str) -> str:
+    """Return the last name of a path: ``load`` of ``arm.load``, ``open`` of ``Door::open``."""
+    return path.replace(".", "::").rpartition("::")[2]
+
+
 def _print(expression: Expression, context_precedence: int) -> str:
     text, precedence = _print_with_precedence(expression)
     return f"({text})" if precedence < context_precedence else text

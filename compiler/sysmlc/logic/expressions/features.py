@@ -19,6 +19,7 @@ from sysmlc.logic.expressions.expression import (
     Name,
     Unary,
     dotted_name,
+    last_name,
     name_of,
 )
 from sysmlc.logic.expressions.expression import Literal as LiteralExpression
@@ -191,7 +192,7 @@ def _parse_value(graph: Graph, text: str, type_: Element | None, domain: Domain)
 def _find_identifier(graph: Graph, text: str, enumeration: Element) -> Literal | None:
     """Return the identifier of a literal that is given by id, name or qualified name."""
     literal = graph.get(text)
-    name = text.replace(".", "::").rpartition("::")[2] if literal is None else literal.name
+    name = last_name(text) if literal is None else literal.name
     return literals_of(graph, enumeration).get(name)
 
 

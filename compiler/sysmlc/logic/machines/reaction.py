@@ -17,6 +17,7 @@ from sysmlc.logic.expressions.expression import (
     Member,
     Name,
     Unary,
+    last_name,
     name_of,
 )
 from sysmlc.logic.expressions.expression import Literal as LiteralExpression
@@ -70,7 +71,7 @@ def _evaluate_name(machine: Machine, name: Name | Member, store: Mapping[str, Li
         case Const(value):
             return value
         case _:
-            return text.replace(".", "::").rpartition("::")[2]
+            return last_name(text)
 
 
 def _divide(left: int, right: int) -> int:
