@@ -3,16 +3,13 @@
 import pytest
 import spot
 
+from emitting import refine_and_emit
 from machine_samples import arrow, machine
-from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.contract_formats import NOT_EXPRESSIBLE
 from sysmlc.diagnostics import Sink
 from sysmlc.driver.registry import load_backends
-from sysmlc.ir.text import parse_text
 from sysmlc.logic import formats
 from sysmlc.logic.contract import Contract
-from sysmlc.passes import pipeline
-from sysmlc.support.output import Output
 
 GATE = machine(arrow("a", "b", "start", "level < 9", "level := level + 1; send opened"))
 ENDINGS = {
@@ -26,17 +23,14 @@ ENDINGS = {
 
 
 def emit(text, name):
-    graph, sink, output = parse_text(text), Sink(), Output()
-    pipeline.run(graph, sink, verify_each=True)
     (backend,) = load_backends([name])
-    backend.emit(graph, output, sink, EmitOptions())
-    return graph, {artefact.path: artefact for artefact in output.artefacts()}, sink
+    return refine_and_emit(backend, text)
 
 
 @pytest.mark.parametrize("name", ENDINGS)
 def test_the_files_for_each_tool_are_read_without_diagnostics(name):
-    graph, files, sink = emit(GATE, name)
-    assert not any(diagnostic.rule is NOT_EXPRESSIBLE for diagnostic in sink)
+    graph, files, diagnostics = emit(GATE, name)
+    assert not any(diagnostic.rule is NOT_EXPRESSIBLE for diagnostic in diagnostics)
     assert list(files) == [f"contracts/Plant.Gate{ending}" for ending in ENDINGS[name]]
     for path, file in files.items():
         if path.endswith((".spot.part", ".spot.ltl")):
@@ -59,8 +53,8 @@ def test_spot_gets_a_formula_and_the_owners_of_its_variables():
 
 @pytest.mark.parametrize(("name", "count"), [("gr1c", 1), ("slugs", 2), ("tlsf", 0), ("spot", 0)])
 def test_an_inexpressible_constraint_is_reported(name, count):
-    _graph, files, sink = emit(NOT_EXPRESSIBLE.read_page().wrong, name)
-    reported = [diagnostic for diagnostic in sink if diagnostic.rule is NOT_EXPRESSIBLE]
+    _, files, diagnostics = emit(NOT_EXPRESSIBLE.read_page().wrong, name)
+    reported = [diagnostic for diagnostic in diagnostics if diagnostic.rule is NOT_EXPRESSIBLE]
     assert [diagnostic.subject.name for diagnostic in reported] == ["Lamp::Lit"] * count
     assert len(files) == (len(ENDINGS[name]) if not count else 0)
     assert all("F G state=On" in diagnostic.message for diagnostic in reported)
@@ -68,4 +62,4 @@ def test_an_inexpressible_constraint_is_reported(name, count):
 
 def test_the_same_model_gives_the_same_bytes():
     first, second = (emit(GATE, "tlsf")[1] for _ in range(2))
-    assert {p: f.text for p, f in first.items()} == {p: f.text for p, f in second.items()}
+    assert first == second

@@ -1,7 +1,7 @@
-"""Activity diagrams: exceptions, expansion regions, and what tools write by themselves."""
+"""Activity diagrams: exception handlers, expansion regions, guards, weights and values."""
 
 import pytest
-from diagrams import emitted, texts
+from diagrams import draw, emit
 
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.driver.reading import read_unit
@@ -34,37 +34,41 @@ Activity a "run"
 """
 
 
-def lines(text: str = MODEL) -> list[str]:
-    return texts(parse_text(text))["run.act.puml"].splitlines()
+def draw_lines(text: str = MODEL) -> list[str]:
+    """Return the lines of the diagram of the activity 'run'."""
+    return draw(parse_text(text))["run.act.puml"].splitlines()
 
 
-def between(start: str, end: str) -> str:
-    (found,) = (
-        line for line in lines() if line.startswith(f"{start}_1 -") and f"> {end}_1" in line
+def find_arrow(source: str, target: str) -> str:
+    """Return the line of the only arrow between two nodes."""
+    (arrow,) = (
+        line
+        for line in draw_lines()
+        if line.startswith(f"{source}_1 -") and f"> {target}_1" in line
     )
-    return found
+    return arrow
 
 
-def test_a_handler_is_joined_to_the_node_that_it_protects():
-    assert between("try", "repair") == "try_1 -[bold]-> repair_1 : ⚡ Fault"
+def test_a_handler_is_connected_to_the_protected_node():
+    assert find_arrow("try", "repair") == "try_1 -[bold]-> repair_1 : ⚡ Fault"
 
 
-def test_a_handler_whose_body_is_not_drawn_has_no_line():
-    assert not any("⚡" in line for line in lines(MODEL.replace('["h"]', '["nobody"]')))
+def test_a_handler_whose_body_is_not_drawn_has_no_arrow():
+    assert not any("⚡" in line for line in draw_lines(MODEL.replace('["h"]', '["nobody"]')))
 
 
 def test_the_literal_true_is_shown_after_a_decision_only():
-    assert "[true]" not in between("try", "decision")
-    assert "[true]" in between("decision", "each")
+    assert "[true]" not in find_arrow("try", "decision")
+    assert "[true]" in find_arrow("decision", "each")
 
 
-def test_a_weight_that_nobody_set_is_not_shown():
-    assert "weight" not in between("try", "decision")
-    assert "weight = 2}" in between("decision", "each")
+def test_the_default_weight_is_not_shown():
+    assert "weight" not in find_arrow("try", "decision")
+    assert "weight = 2}" in find_arrow("decision", "each")
 
 
-def test_an_expansion_region_says_how_it_takes_the_elements():
-    text = "\n".join(lines())
+def test_an_expansion_region_has_its_mode():
+    text = "\n".join(draw_lines())
     assert "«iterative»" in text
     assert "«expansionNode»" in text
 
@@ -72,31 +76,31 @@ def test_an_expansion_region_says_how_it_takes_the_elements():
 @pytest.mark.long
 @pytest.mark.corpus
 @pytest.mark.plantuml
-def test_activities_of_a_large_library_render(corpus, plantuml):
-    """Every fortieth of them: they are much alike, and drawing takes its time."""
+def test_activities_of_a_large_library_are_rendered(corpus, plantuml):
+    """Only every fortieth is rendered: they are much alike, and rendering is slow."""
     path, graph, sink = corpus / "xmi" / "papyrus" / "Alf.library.uml", Graph(), Sink()
     unit = read_unit([path], path.parent, [FRONTEND], sink)
     FRONTEND.read(unit.sources(), graph, sink, Coverage())
     pipeline.run(graph, sink, until="behaviours")
-    files, _ = emitted(graph)
-    drawn = {file.path: file.text for file in files if ".act." in file.path}
-    some = dict(list(drawn.items())[::40])
-    assert len(some) > 9
-    assert len(plantuml.render(some)) == len(some)
+    files, _ = emit(graph)
+    diagrams = {file.path: file.text for file in files if ".act." in file.path}
+    every_fortieth = dict(list(diagrams.items())[::40])
+    assert len(every_fortieth) > 9
+    assert len(plantuml.render(every_fortieth)) == len(every_fortieth)
 
 
-def test_a_region_without_a_name_says_what_it_is_repeated_for():
+def test_an_expansion_region_without_a_name_has_its_variable_and_collection():
     graph = parse_text("""\
 Activity a "Count"
   Structured r subkind="expansion" mode="iterative" collection="belt.pallets"
     Property p "p" subkind="variable"
     Action look "look" subkind="opaque"
 """)
-    (written,) = texts(graph).values()
-    assert "for each p of belt.pallets" in written
+    (diagram,) = draw(graph).values()
+    assert "for each p of belt.pallets" in diagram
 
 
 def test_the_value_of_a_pin_has_its_unit():
     text = 'Activity a "run"\n  Action x "x" subkind="opaque"\n    Pin p "time" value=1 {}\n'
-    assert any("time = 1 s" in line for line in lines(text.format('value_unit="s"')))
-    assert any(line.endswith("time = 1") for line in lines(text.format("")))
+    assert any("time = 1 s" in line for line in draw_lines(text.format('value_unit="s"')))
+    assert any(line.endswith("time = 1") for line in draw_lines(text.format("")))

@@ -1,7 +1,7 @@
-"""The back end as a whole: file names, splitting, templates of users, what it reports."""
+"""The back end as a whole: file names, splitting, templates of users, and diagnostics."""
 
 import pytest
-from diagrams import emitted, texts
+from diagrams import draw, emit
 
 from sysmlc.backends.plantuml import partitioning
 from sysmlc.backends.plantuml.backend import BAD_TEMPLATE
@@ -13,26 +13,29 @@ from sysmlc.ir.text import parse_text
 BLOCK = 'Package p "Plant"\n  Class b "Gate" role="block"\n'
 
 
-def test_a_package_of_95_blocks_is_split_and_loses_none():
+def test_a_package_of_95_blocks_is_split_without_losses():
     blocks = "".join(f'  Class b{n} "Block{n}" role="block"\n' for n in range(95))
-    made = texts(parse_text(f'Package p "Plant"\n{blocks}'))
+    texts = draw(parse_text(f'Package p "Plant"\n{blocks}'))
     names = [f"Plant.{n}-of-3.bdd.puml" for n in (1, 2, 3)]
-    assert sorted(made) == names
-    assert all(text.count('\nclass "') <= partitioning.MAX_BOXES for text in made.values())
-    assert all(f"part {n} of 3 of Plant" in made[name] for n, name in enumerate(names, 1))
-    assert all(any(f"**Block{n}**" in text for text in made.values()) for n in range(95))
+    assert sorted(texts) == names
+    assert all(text.count('\nclass "') <= partitioning.MAX_BOXES for text in texts.values())
+    assert all(f"part {n} of 3 of Plant" in texts[name] for n, name in enumerate(names, 1))
+    assert all(any(f"**Block{n}**" in text for text in texts.values()) for n in range(95))
 
 
-def test_connected_blocks_stay_together():
-    near = {"a": ["c"], "b": ["d"], "c": ["a"], "d": ["b"]}
-    assert partitioning.partition(["a", "b", "c", "d"], near, limit=2) == [["a", "c"], ["b", "d"]]
+def test_connected_blocks_are_in_one_part():
+    neighbours = {"a": ["c"], "b": ["d"], "c": ["a"], "d": ["b"]}
+    assert partitioning.partition(["a", "b", "c", "d"], neighbours, limit=2) == [
+        ["a", "c"],
+        ["b", "d"],
+    ]
 
 
-def test_an_item_with_too_many_neighbours_is_a_part_of_its_own():
+def test_a_block_with_too_many_neighbours_is_a_part_of_its_own():
     assert partitioning.partition(["a", "b"], {"a": ["x", "y", "z"]}, limit=3) == [["a"], ["b"]]
 
 
-def test_a_cut_graph_shows_every_node_and_every_line():
+def test_the_parts_of_a_split_view_have_every_node_and_every_line():
     nodes = tuple(Node(f"n{n}", f"n{n}", "action", shows=(f"n{n}",)) for n in range(100))
     lines = tuple(Line(f"n{n}", "-->", f"n{n + 1}") for n in range(99))
     parts = split_view(GraphView(nodes, lines), limit=40)
@@ -43,7 +46,7 @@ def test_a_cut_graph_shows_every_node_and_every_line():
     }
 
 
-def test_a_large_node_is_closed_and_opened_in_its_own_part():
+def test_the_children_of_a_large_node_are_in_a_part_of_their_own():
     inner = tuple(Node(f"i{n}", f"i{n}", "state") for n in range(30))
     nodes = (Node("big", "big", "state", children=inner), Node("out", "out", "state"))
     view = GraphView(nodes, (Line("big", "-->", "out"), Line("i3", "-->", "i4")))
@@ -55,46 +58,48 @@ def test_a_large_node_is_closed_and_opened_in_its_own_part():
 
 def test_equal_names_get_numbers_in_file_names():
     twice = '  Activity a{0} "run"\n    Action x{0} "go" subkind="opaque"\n'
-    made = texts(parse_text('Package p "P"\n' + twice.format(1) + twice.format(2)))
-    assert sorted(made) == ["P.run-2.act.puml", "P.run.act.puml"]
+    texts = draw(parse_text('Package p "P"\n' + twice.format(1) + twice.format(2)))
+    assert sorted(texts) == ["P.run-2.act.puml", "P.run.act.puml"]
 
 
-def test_a_template_of_the_user_replaces_ours_by_name(tmp_path):
+def test_a_template_of_the_user_replaces_the_shipped_one_of_the_same_name(tmp_path):
     (tmp_path / "plantuml").mkdir()
     (tmp_path / "plantuml" / "_style.j2").write_text("skinparam monochrome true\n")
-    files, sink = emitted(parse_text(BLOCK), tmp_path)
+    files, diagnostics = emit(parse_text(BLOCK), tmp_path)
     assert "skinparam monochrome true\nmainframe" in files[0].text
-    assert list(sink) == []
+    assert diagnostics == []
 
 
 @pytest.mark.parametrize("text", ["{{ view.boxs }}", "{% for %}", "{% include 'none.j2' %}"])
-def test_a_wrong_template_is_reported(tmp_path, text):
+def test_a_faulty_template_is_reported(tmp_path, text):
     (tmp_path / "bdd.puml.j2").write_text(text)
-    files, sink = emitted(parse_text(BLOCK), tmp_path)
+    files, diagnostics = emit(parse_text(BLOCK), tmp_path)
     assert files == []
-    assert [found.rule for found in sink] == [BAD_TEMPLATE]
+    assert [diagnostic.rule for diagnostic in diagnostics] == [BAD_TEMPLATE]
 
 
-def test_what_no_diagram_shows_is_reported():
-    _, sink = emitted(parse_text('Package p "Plant"\n  Unit u "second"\n'))
-    assert [found.message for found in sink] == ["1 Unit of 'Plant' in no diagram: second"]
+def test_an_element_in_no_diagram_is_reported():
+    _, diagnostics = emit(parse_text('Package p "Plant"\n  Unit u "second"\n'))
+    assert [diagnostic.message for diagnostic in diagnostics] == [
+        "1 Unit of 'Plant' in no diagram: second"
+    ]
 
 
-def test_what_a_diagram_shows_is_not_reported():
-    files, sink = emitted(parse_text('Package p "Plant"\n  Class b "Line" role="block"\n'))
+def test_an_element_in_a_diagram_is_not_reported():
+    files, diagnostics = emit(parse_text('Package p "Plant"\n  Class b "Line" role="block"\n'))
     assert len(files) == 1
-    assert list(sink) == []
+    assert diagnostics == []
 
 
 def test_a_connector_without_second_end_is_reported():
     text = BLOCK + '    Connector c "loose"\n'
-    _, sink = emitted(parse_text(text))
-    assert [found.message for found in sink] == [
+    _, diagnostics = emit(parse_text(text))
+    assert [diagnostic.message for diagnostic in diagnostics] == [
         "1 Connector of 'Plant::Gate' in no diagram: loose"
     ]
 
 
-def test_partitions_are_written_on_their_nodes():
+def test_the_name_of_a_partition_is_on_its_nodes():
     text = """
 Activity a "run"
   Partition left "Left"
@@ -105,10 +110,10 @@ Activity a "run"
   Action y "stop" subkind="opaque"
     -> in-partition right
 """
-    made = texts(parse_text(text))["run.act.puml"]
-    assert '(Left)</size>\\n<size:10>«opaque»</size>\\ngo" as go_1 <<action>> <<lane1>>' in made
-    assert 'stop" as stop_1 <<action>> <<lane2>>' in made
-    assert 'state "Spare" as spare_1 <<lane>>' in made
+    diagram = draw(parse_text(text))["run.act.puml"]
+    assert '(Left)</size>\\n<size:10>«opaque»</size>\\ngo" as go_1 <<action>> <<lane1>>' in diagram
+    assert 'stop" as stop_1 <<action>> <<lane2>>' in diagram
+    assert 'state "Spare" as spare_1 <<lane>>' in diagram
 
 
 TEMPLATE = """
@@ -141,21 +146,21 @@ Package p "Plant"
 """
 
 
-def test_templates_and_what_is_made_of_them():
-    files, sink = emitted(parse_text(TEMPLATE))
-    (made,) = [file for file in files if file.path == "diagrams/Plant.bdd.puml"]
-    assert 'class "**Stack<U+003C>T, size<U+003E>**" as stack_1' in made.text
-    assert "pallets_1 ..> stack_1 : <size:10>«bind» T → Pallet, size → 3</size>" in made.text
-    assert 'class "T"' not in made.text
-    assert list(sink) == []
+def test_a_template_has_its_parameters_and_a_binding_its_substitutions():
+    files, diagnostics = emit(parse_text(TEMPLATE))
+    (diagram,) = [file.text for file in files if file.path == "diagrams/Plant.bdd.puml"]
+    assert 'class "**Stack<U+003C>T, size<U+003E>**" as stack_1' in diagram
+    assert "pallets_1 ..> stack_1 : <size:10>«bind» T → Pallet, size → 3</size>" in diagram
+    assert 'class "T"' not in diagram
+    assert diagnostics == []
 
 
-def test_a_collaboration_use_says_who_plays_which_role():
-    (made,) = texts(parse_text(TEMPLATE)).values()
-    assert ".. collaborations ..\n{field} feeding : Feeding (feeder = gate)" in made
+def test_a_collaboration_use_has_its_role_bindings():
+    (diagram,) = draw(parse_text(TEMPLATE)).values()
+    assert ".. collaborations ..\n{field} feeding : Feeding (feeder = gate)" in diagram
 
 
-def test_an_actor_of_use_cases_is_in_their_diagram_only():
+def test_an_actor_is_drawn_with_use_cases_unless_another_diagram_needs_it():
     model = parse_text("""
 Package p "Plant"
   Actor a "Operator"
@@ -166,14 +171,14 @@ Package p "Plant"
     -> client b
     -> supplier k
 """)
-    made = texts(model)
-    assert "Operator" in made["Plant.uc.puml"]
-    assert "Operator" not in made["Plant.bdd.puml"]
-    assert "Owner" in made["Plant.bdd.puml"]
+    texts = draw(model)
+    assert "Operator" in texts["Plant.uc.puml"]
+    assert "Operator" not in texts["Plant.bdd.puml"]
+    assert "Owner" in texts["Plant.bdd.puml"]
 
 
-def test_submachines_their_points_and_protocols():
-    made = texts(
+def test_a_submachine_has_its_name_its_entry_points_and_protocol_conditions():
+    diagram = draw(
         parse_text("""
 StateMachine inner "Inner"
   Pseudostate go "go in" subkind="entry-point"
@@ -190,22 +195,23 @@ StateMachine outer "Outer"
       Constraint t.p body="done" subkind="postcondition"
 """)
     )["Outer.stm.puml"]
-    assert 'state "Nested : Inner" as nested_1 <<state>> {' in made
-    assert 'state "at" as at_1 <<entryPoint>>' in made
-    assert "initial_1 --> at_1 : [ready] / [done]" in made
+    assert 'state "Nested : Inner" as nested_1 <<state>> {' in diagram
+    assert 'state "at" as at_1 <<entryPoint>>' in diagram
+    assert "initial_1 --> at_1 : [ready] / [done]" in diagram
 
 
 def test_a_message_that_another_overtakes_is_reported():
-    _, sink = emitted(parse_text(OVERTAKEN.read_page().wrong))
-    assert [found.message for found in sink] == [
+    _, diagnostics = emit(parse_text(OVERTAKEN.read_page().wrong))
+    assert [diagnostic.message for diagnostic in diagnostics] == [
         "message 'slow' of 'Feed' is drawn where it is sent, though 'quick' comes first on "
         "lifeline 'belt'"
     ]
-    _, sink = emitted(parse_text(OVERTAKEN.read_page().right))
-    assert list(sink) == []
+    _, diagnostics = emit(parse_text(OVERTAKEN.read_page().right))
+    assert diagnostics == []
 
 
-def _with_services(count: int) -> str:
+def write_services(count: int) -> str:
+    """Return a package with a robot, and one with activities that depend on the robot."""
     text = 'Package m "Machines"\n  Class robot "Robot" role="block"\nPackage s "Services"\n'
     for number in range(count):
         text += f'  Activity a{number} "Do {number}"\n    Action n{number} "n"\n'
@@ -214,9 +220,9 @@ def _with_services(count: int) -> str:
     return text
 
 
-def test_few_foreign_clients_are_boxes_and_many_are_rows():
-    few = texts(parse_text(_with_services(3)))["Machines.bdd.puml"]
-    many = texts(parse_text(_with_services(4)))["Machines.bdd.puml"]
+def test_three_clients_of_another_package_are_boxes_and_four_are_rows():
+    few = draw(parse_text(write_services(3)))["Machines.bdd.puml"]
+    many = draw(parse_text(write_services(4)))["Machines.bdd.puml"]
     assert few.count("..>") == 3
     assert "depended on by" not in few
     assert many.count("..>") == 0
@@ -224,14 +230,14 @@ def test_few_foreign_clients_are_boxes_and_many_are_rows():
 
 
 def test_dependencies_in_rows_are_in_the_trace():
-    files, sink = emitted(parse_text(_with_services(5)))
-    bdd = next(one for one in files if one.path.endswith("Machines.bdd.puml"))
+    files, diagnostics = emit(parse_text(write_services(5)))
+    bdd = next(file for file in files if file.path.endswith("Machines.bdd.puml"))
     assert {f"d{number}" for number in range(5)} <= set(bdd.trace)
-    assert list(sink) == []
+    assert diagnostics == []
 
 
-def test_a_bar_that_ends_in_one_operand_stands_in_the_other():
-    made = texts(
+def test_an_execution_that_ends_in_one_operand_is_active_in_the_other():
+    diagram = draw(
         parse_text("""
 Interaction sd "Serve"
   Lifeline a "a"
@@ -273,7 +279,7 @@ Interaction sd "Serve"
 """)
     )["Serve.sd.puml"]
     assert (
-        made[made.index("a_1 ->") :]
+        diagram[diagram.index("a_1 ->") :]
         == """\
 a_1 -> b_1 : ask
 activate b_1
@@ -290,8 +296,8 @@ deactivate b_1
     )
 
 
-def test_the_name_of_an_operand_stands_for_a_guard_that_is_not_there():
-    made = texts(
+def test_an_operand_without_a_guard_has_its_name():
+    diagram = draw(
         parse_text("""
 Interaction sd "Serve"
   Lifeline a "a"
@@ -301,13 +307,13 @@ Interaction sd "Serve"
     Operand f3 "late" guard="[t > 5]"
 """)
     )["Serve.sd.puml"]
-    assert "\nalt in time\nelse\nelse t <U+003E> 5\nend\n" in made
+    assert "\nalt in time\nelse\nelse t <U+003E> 5\nend\n" in diagram
 
 
-def test_states_are_drawn_however_deep_they_are_in_one_another():
+def test_states_are_drawn_at_any_depth():
     rows = ['StateMachine m "Gate"']
     for level in range(400):
         rows.append(f"{'  ' * (2 * level + 1)}Region r{level}")
         rows.append(f'{"  " * (2 * level + 2)}State s{level} "S{level}"')
-    (drawn,) = texts(parse_text("\n".join(rows) + "\n")).values()
-    assert 'state "S399" as s399_1 <<state>>' in drawn
+    (diagram,) = draw(parse_text("\n".join(rows) + "\n")).values()
+    assert 'state "S399" as s399_1 <<state>>' in diagram

@@ -1,7 +1,7 @@
-"""Each kind of diagram: golden texts, nothing of the model left out, and real PlantUML."""
+"""Each kind of diagram has its golden text, the whole model, and is rendered by PlantUML."""
 
 import pytest
-from diagrams import emitted, model, texts
+from diagrams import draw, emit, load_model
 
 from sysmlc.ir import Graph, Kind
 from sysmlc.ir.text import parse_text
@@ -11,55 +11,57 @@ UNNAMED_IN_PICTURES = (Kind.APPLICATION, Kind.COMMENT)
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_the_text_of_a_small_model(kind, golden):
-    golden.check(f"plantuml/{kind}", texts(model(kind)))
+def test_the_diagrams_of_a_small_model_have_their_golden_texts(kind, golden):
+    golden.check(f"plantuml/{kind}", draw(load_model(kind)))
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_name_of_the_model_is_in_some_diagram(kind):
-    graph = model(kind)
-    written = "\n".join(texts(graph).values())
-    named = [item for item in graph if _is_drawn(item) and not item.attrs.get("body")]
-    missing = [item for item in named if _escaped(item.name) not in written]
+    graph = load_model(kind)
+    text = "\n".join(draw(graph).values())
+    named = [element for element in graph if is_drawn(element) and not element.attrs.get("body")]
+    missing = [element for element in named if escape(element.name) not in text]
     assert missing == []
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_element_is_in_some_trace(kind):
-    graph = model(kind)
-    files, sink = emitted(graph)
+    graph = load_model(kind)
+    files, diagnostics = emit(graph)
     traced = {id for file in files for id in file.trace}
-    untraced = [item for item in graph if item.id not in traced and _is_drawn(item)]
+    untraced = [element for element in graph if element.id not in traced and is_drawn(element)]
     assert untraced == []
-    assert list(sink) == []
+    assert diagnostics == []
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_bodies_guards_and_values_are_in_the_text(kind):
-    graph = model(kind)
-    written = "\n".join(texts(graph).values())
-    for item in graph:
+    graph = load_model(kind)
+    text = "\n".join(draw(graph).values())
+    for element in graph:
         for key in ("guard", "body", "default", "multiplicity", "req_id", "join_spec", "when"):
-            for part in str(item.attrs.get(key, "")).split():
-                assert _escaped(part) in written, (item, key)
+            for part in str(element.attrs.get(key, "")).split():
+                assert escape(part) in text, (element, key)
 
 
 @pytest.mark.plantuml
 def test_real_plantuml_renders_every_diagram(plantuml):
-    made = {f"{kind}/{path}": text for kind in KINDS for path, text in texts(model(kind)).items()}
-    assert set(plantuml.render(made)) == set(made)
+    files = {
+        f"{kind}/{path}": text for kind in KINDS for path, text in draw(load_model(kind)).items()
+    }
+    assert set(plantuml.render(files)) == set(files)
 
 
-def test_two_runs_give_the_same_bytes():
-    assert [texts(model(kind)) for kind in KINDS] == [texts(model(kind)) for kind in KINDS]
+def test_two_runs_give_the_same_texts():
+    assert [draw(load_model(kind)) for kind in KINDS] == [draw(load_model(kind)) for kind in KINDS]
 
 
-def _is_drawn(item) -> bool:
-    return item.kind not in UNNAMED_IN_PICTURES
+def is_drawn(element) -> bool:
+    return element.kind not in UNNAMED_IN_PICTURES
 
 
-def _escaped(text: str) -> str:
-    """As the back end writes it; spelled out here, so that a fault there does not hide itself."""
+def escape(text: str) -> str:
+    """Escape markup independently of the back end, so that a fault there is found."""
     table = {'"': "22", "<": "3C", ">": "3E", "&": "26", "{": "7B"}
     return "".join(f"<U+00{table[char]}>" if char in table else char for char in text)
 
@@ -82,17 +84,17 @@ Package line "Line"
 """
 
 
-def test_a_redefined_feature_without_a_name_is_told_by_its_type_or_what_it_redefines():
-    (text,) = (text for path, text in texts(parse_text(REDEFINED)).items() if "bdd" in path)
+def test_a_redefined_feature_without_a_name_is_shown_by_its_type_or_the_feature_it_redefines():
+    (text,) = (text for path, text in draw(parse_text(REDEFINED)).items() if "bdd" in path)
     assert "a <U+007B>redefines : Pump}" in text
     assert "b <U+007B>redefines spare}" in text
 
 
-def test_a_view_with_nothing_in_it_is_not_written():
-    assert texts(Graph()) == {}
+def test_an_empty_view_is_not_written():
+    assert draw(Graph()) == {}
 
 
-def test_what_is_inside_a_port_is_an_end_of_a_connector():
+def test_a_feature_within_a_port_may_be_the_end_of_a_connector():
     graph = parse_text("""\
 Class port "FuelPort" role="interface block"
   Property port.flow "fuelFlow" role="flow property" direction="out"
@@ -111,5 +113,5 @@ Class tank "Tank" role="block"
     ConnectorEnd b.2
       -> role tank.level
 """)
-    written = texts(graph)["Tank.ibd.puml"]
-    assert "out.fuelFlow</back>" in written
+    text = draw(graph)["Tank.ibd.puml"]
+    assert "out.fuelFlow</back>" in text

@@ -1,9 +1,9 @@
-"""Physical things and information are told apart; ports stand where their lines run on."""
+"""Physical items and information have lines of their own; ports are on the side of their lines."""
 
 import re
 
 import pytest
-from diagrams import emitted
+from diagrams import draw, emit
 
 from sysmlc.backends.plantuml.connections import Connection, Path, style_arrow
 from sysmlc.backends.plantuml.layout import find_port_sides
@@ -61,28 +61,33 @@ Package cell "Cell"
 PHYSICAL, INFORMATION = 'domain="physical"', 'domain="information"'
 
 
-def drawn(pallet=PHYSICAL, tag=INFORMATION, source="stop.tag", target="belt.tag"):
-    """The internal block diagram of the line."""
+def draw_line(pallet=PHYSICAL, tag=INFORMATION, source="stop.tag", target="belt.tag"):
+    """Return the internal block diagram of the line."""
     graph = parse_text(CELL.format(pallet=pallet, tag=tag, source=source, target=target))
     pipeline.run(graph, Sink(), until="flows")
-    files, _ = emitted(graph)
-    (text,) = (one.text for one in files if one.path.endswith("Line.ibd.puml"))
+    return find_line_diagram(graph)
+
+
+def find_line_diagram(graph):
+    (text,) = (text for path, text in draw(graph).items() if path.endswith("Line.ibd.puml"))
     return text
 
 
-def arrows(text):
-    return {m[2]: m[1] for m in re.finditer(r"^\w+ (\S+) \w+ : (l\d)\\n", text, re.MULTILINE)}
+def list_arrows(text):
+    """Return the arrow of each connector by the label of the connector."""
+    matches = re.finditer(r"^\w+ (\S+) \w+ : (l\d)\\n", text, re.MULTILINE)
+    return {match[2]: match[1] for match in matches}
 
 
 def test_each_domain_has_its_line_and_its_colour():
-    text = drawn()
-    assert arrows(text) == {"l1": "-[$physical_line]->", "l2": "-[$information_line]->"}
+    text = draw_line()
+    assert list_arrows(text) == {"l1": "-[$physical_line]->", "l2": "-[$information_line]->"}
     assert r"l1\n<color:$physical>Pallet</color>" in text
     assert r"l2\n<color:$information>Tag</color>" in text
 
 
-def test_colours_are_told_apart_by_the_colour_blind_and_lines_without_colour():
-    text = drawn()
+def test_colours_differ_for_the_colour_blind_and_line_styles_without_colour():
+    text = draw_line()
     assert '!$physical = "#0072B2"' in text
     assert '!$information = "#D55E00"' in text
     assert '!$information_line = $information + ",dashed,thickness=2"' in text
@@ -98,25 +103,28 @@ def test_colours_are_told_apart_by_the_colour_blind_and_lines_without_colour():
         ("", INFORMATION, ["information"]),
     ],
 )
-def test_the_legend_lists_what_there_is(pallet, tag, listed):
-    legend = drawn(pallet, tag).partition("legend bottom right\n")[2].partition("endlegend")[0]
+def test_the_legend_lists_the_domains_in_the_diagram(pallet, tag, listed):
+    legend = draw_line(pallet, tag).partition("legend bottom right\n")[2].partition("endlegend")[0]
     assert re.findall(r"<color:\$(\w+)>", legend) == listed
 
 
 def test_without_domains_nothing_is_added():
-    text = drawn("", "")
+    text = draw_line("", "")
     assert "legend bottom" not in text
     assert "$" not in text
-    assert arrows(text) == {"l1": "-->", "l2": "-->"}
+    assert list_arrows(text) == {"l1": "-->", "l2": "-->"}
 
 
-def test_a_flow_back_has_its_head_at_the_first_end():
-    assert arrows(drawn(source="belt.tag", target="stop.tag"))["l2"] == "<-[$information_line]-"
+def test_a_flow_to_the_first_end_has_its_arrow_head_there():
+    assert (
+        list_arrows(draw_line(source="belt.tag", target="stop.tag"))["l2"]
+        == "<-[$information_line]-"
+    )
 
 
-def test_a_flow_both_ways_has_two_heads_and_is_told_once():
-    text = drawn(source="stop.tag belt.tag", target="belt.tag stop.tag")
-    assert arrows(text)["l2"] == "<-[$information_line]->"
+def test_a_flow_in_both_directions_has_two_arrow_heads_and_one_label():
+    text = draw_line(source="stop.tag belt.tag", target="belt.tag stop.tag")
+    assert list_arrows(text)["l2"] == "<-[$information_line]->"
     assert text.count(">Tag<") == 1
 
 
@@ -127,9 +135,8 @@ def test_two_domains_over_one_connector_keep_their_colours_and_the_line_has_none
         )
     )
     pipeline.run(graph, Sink(), until="flows")
-    files, _ = emitted(graph)
-    (text,) = (one.text for one in files if one.path.endswith("Line.ibd.puml"))
-    assert arrows(text)["l1"] == "-->"
+    text = find_line_diagram(graph)
+    assert list_arrows(text)["l1"] == "-->"
     assert r"l1\n<color:$physical>Pallet</color>\n<color:$information>Tag</color>" in text
 
 
@@ -172,20 +179,21 @@ Package hall "Hall" subkind="instance-hierarchy"
 
 
 def test_links_between_the_instances_of_a_hierarchy_are_drawn_in_its_diagram():
-    files, sink = emitted(parse_text(HALL))
-    (text,) = (one.text for one in files if one.path == "diagrams/Hall.ibd.puml")
+    files, diagnostics = emit(parse_text(HALL))
+    (text,) = (file.text for file in files if file.path == "diagrams/Hall.ibd.puml")
     assert 'rectangle "**p1 : Press**" as p1_1 <<part>> {\nportout ' in text
     assert r'rectangle "**r1 : Rack**\n<size:10>size = 4</size>" as r1_1 <<part>> {' in text
     assert "out_1 -- in_1 : across\n" in text
-    assert [found.message for found in sink if "Connector" in found.message] == []
+    assert not any("Connector" in diagnostic.message for diagnostic in diagnostics)
 
 
 # -- sides -------------------------------------------------------------------------------------
 
 
 def link(first, second, arrow="--"):
-    ends = [Path(tuple(e.split(".")[:-1]), (), e.split(".")[-1]) for e in (first, second)]
-    return Connection(*ends, arrow)
+    """Return a connection between two ports, each with the path to it."""
+    paths = [end.split(".") for end in (first, second)]
+    return Connection(*(Path(tuple(path[:-1]), (), path[-1]) for path in paths), arrow)
 
 
 @pytest.mark.parametrize(
@@ -202,15 +210,15 @@ def link(first, second, arrow="--"):
         ([link("a.p", "a.q")], {"a.p"}),
     ],
 )
-def test_ports_stand_on_the_side_to_which_their_lines_run(links, right):
-    found = {".".join(key) for key, form in find_port_sides(links).items() if form == "portout"}
-    assert found == right
+def test_ports_are_on_the_side_to_which_their_lines_lead(links, right):
+    sides = find_port_sides(links)
+    assert {".".join(path) for path, side in sides.items() if side == "portout"} == right
 
 
-def test_ports_of_nested_parts_stay_where_the_layout_can_cope():
+def test_ports_of_nested_parts_are_not_moved():
     assert find_port_sides([link("a.b.p", "c.q")]) == {}
 
 
 @pytest.mark.plantuml
-def test_plantuml_draws_it(plantuml):
-    assert len(plantuml.render({"line": drawn()})) == 1
+def test_plantuml_renders_the_diagram(plantuml):
+    assert len(plantuml.render({"line": draw_line()})) == 1

@@ -1,4 +1,4 @@
-"""Any name can be drawn: real PlantUML shows it as it is written in the model."""
+"""PlantUML shows any name as the model has it, because the back end escapes its markup."""
 
 import html
 import json
@@ -6,7 +6,7 @@ import re
 import textwrap
 
 import pytest
-from diagrams import texts
+from diagrams import draw
 from hypothesis import Phase, example, given, settings
 from hypothesis import strategies as st
 
@@ -128,31 +128,30 @@ markup = st.text(st.sampled_from("*/_-~\"[]{}<>|&#%$!'@^:;.,=+\\ abn0"), max_siz
 @settings(max_examples=2, deadline=None, derandomize=True, phases=[Phase.explicit, Phase.generate])
 @given(st.lists(anything | markup, min_size=1, max_size=8))
 @example(list(NASTY))
-def test_any_name_renders_and_reads_as_written(plantuml, names):
+def test_plantuml_shows_any_name_as_it_is_written(plantuml, names):
     files = {}
     for number, name in enumerate(names):
-        quoted = json.dumps(name)
-        made = texts(parse_text(MODEL.replace("{name}", quoted)))
-        files |= {f"{number} {path[-8:]}": text for path, text in made.items()}
+        texts = draw(parse_text(MODEL.replace("{name}", json.dumps(name))))
+        files |= {f"{number} {path[-8:]}": text for path, text in texts.items()}
     pictures = plantuml.render(files)
     for number, name in enumerate(names):
-        mine = [path for path in pictures if path.startswith(f"{number} ")]
-        assert len(mine) == 7
-        for path in mine:
-            assert _letters(name) in _letters(_shown(pictures[path])), (path, name)
+        paths = [path for path in pictures if path.startswith(f"{number} ")]
+        assert len(paths) == 7
+        for path in paths:
+            assert remove_blanks(name) in remove_blanks(read_svg_text(pictures[path])), (path, name)
 
 
-def _shown(svg: bytes) -> str:
+def read_svg_text(svg: bytes) -> str:
     return html.unescape("".join(re.findall(r"<text[^>]*>([^<]*)</text>", svg.decode("utf-8"))))
 
 
-def _letters(text: str) -> str:
-    """The text without spaces and without what XML cannot hold."""
+def remove_blanks(text: str) -> str:
+    """Return the text without spaces and without characters that XML does not allow."""
     return "".join(char for char in text if char.isprintable() and char not in " \ufffd")
 
 
 @pytest.mark.parametrize(
-    ("written", "made"),
+    ("text", "escaped"),
     [
         ("Bay gate [north]", "Bay gate [north]"),
         ('say "stop"', "say <U+0022>stop<U+0022>"),
@@ -164,8 +163,8 @@ def _letters(text: str) -> str:
         ("bell\a", "bell\ufffd"),
     ],
 )
-def test_only_what_plantuml_would_read_as_markup_is_escaped(written, made):
-    assert escape_line(written) == made
+def test_only_markup_of_plantuml_is_escaped(text, escaped):
+    assert escape_line(text) == escaped
 
 
 WORDS = st.lists(st.text("ab-_/ \t\n\xa0é", max_size=7), max_size=12).map(" ".join)
@@ -176,18 +175,19 @@ WORDS = st.lists(st.text("ab-_/ \t\n\xa0é", max_size=7), max_size=12).map(" ".j
 @example("  two blanks first", 6)
 @example("a b", 3)
 @example("words-that are as long as a line", 10)
-def test_lines_are_filled_as_textwrap_fills_them(text, width):
+def test_lines_are_wrapped_like_textwrap_does(text, width):
     for row in text.splitlines():
-        told = wrap_lines(row, width)
-        full = textwrap.wrap(row, width, break_long_words=False, break_on_hyphens=False)
+        lines = wrap_lines(row, width)
+        expected = textwrap.wrap(row, width, break_long_words=False, break_on_hyphens=False)
         if all(len(word) <= width for word in re.split(r"[ \t]", row)):
-            assert told == tuple(escape_line(one) for one in full if one.strip())
+            assert lines == tuple(escape_line(line) for line in expected if line.strip())
 
 
 @given(st.text("ab*/_-['\"\\t<>~%$& {}«»éλ#@|=+()1\u200b\ue000\xa0😀", max_size=8))
 def test_each_character_of_a_line_is_shown_or_escaped(text):
     line = " ".join(text.split())
-    shown = re.sub(r"<U\+([0-9A-F]{4,6})>", lambda found: chr(int(found[1], 16)), escape_line(text))
+    escape = r"<U\+([0-9A-F]{4,6})>"
+    shown = re.sub(escape, lambda match: chr(int(match[1], 16)), escape_line(text))
     assert shown.replace("\\\u200bt", "\\t") == line
     assert not set('"\\~%$&{') & set(re.sub(r"<U\+[0-9A-F]+>", "", escape_line(text)))
     for pair in ("**", "//", "__", "--", "[[", "/'", "'/", "''"):

@@ -1,8 +1,8 @@
-"""Parametric diagrams, and what internal block diagrams leave to them."""
+"""Parametric diagrams, and their division of connectors with internal block diagrams."""
 
 import re
 
-from diagrams import emitted, texts
+from diagrams import draw_without_style, emit
 
 from sysmlc.ir.text import parse_text
 
@@ -20,108 +20,109 @@ PARTS = (
 )
 
 
-def block(connectors: str, more: str = "") -> str:
+def write_model(connectors: str, properties: str = "") -> str:
+    """Return a model with a block of a part, a constraint usage, connectors and properties."""
     return (
         LAW
         + PARTS
         + 'Class crane "Crane" role="block"\n'
         + '  Property crane.hook "hook" role="part" aggregation="composite"\n    -> typed-by hook\n'
-        + more
+        + properties
         + '  Property crane.law "e1" role="constraint property" aggregation="composite"\n'
         + "    -> typed-by law\n"
         + connectors
     )
 
 
-def connector(id: str, *ends: str, owner: str = "  ") -> str:
-    """A binding connector; an end is its path and its role, separated by blanks."""
-    lines = [f'{owner}Connector {id} "" role="binding connector"']
-    lines += [f"{owner}  -> end " + " ".join(f"{id}.{n}" for n, _ in enumerate(ends))]
+def write_connector(id: str, *ends: str) -> str:
+    """Return a binding connector; an end is its path and its role, separated by blanks."""
+    lines = [f'  Connector {id} "" role="binding connector"']
+    lines += ["    -> end " + " ".join(f"{id}.{n}" for n, _ in enumerate(ends))]
     for number, end in enumerate(ends):
         *path, role = end.split()
-        lines += [f"{owner}  ConnectorEnd {id}.{number}", f"{owner}    -> role {role}"]
-        lines += [f"{owner}    -> path {' '.join(path)}"] if path else []
+        lines += [f"    ConnectorEnd {id}.{number}", f"      -> role {role}"]
+        lines += [f"      -> path {' '.join(path)}"] if path else []
     return "\n".join(lines) + "\n"
 
 
-def drawn(text: str) -> dict[str, str]:
-    """Diagrams without their style, by file."""
-    return {name: one.partition("</style>")[2] for name, one in texts(parse_text(text)).items()}
+def draw_text(text: str) -> dict[str, str]:
+    """Return the diagrams of a model in IR text."""
+    return draw_without_style(parse_text(text))
 
 
-def lines(text: str) -> list[str]:
+def list_lines(text: str) -> list[str]:
     return re.findall(r"^\w+ -- \w+$", text, re.MULTILINE)
 
 
-def test_a_usage_shows_its_parameters_and_its_condition():
-    par = drawn(block(""))["Crane.par.puml"]
+def test_a_constraint_usage_has_its_parameters_and_its_condition():
+    par = draw_text(write_model(""))["Crane.par.puml"]
     assert 'rectangle "<size:10>«constraint»</size>\\ne1 : Law\\n<U+007B>f = m * a}"' in par
     assert re.findall(r'^port "<back:#FFFFFF>(\w)</back>"', par, re.MULTILINE) == ["f", "m"]
 
 
-def test_a_feature_of_a_part_stands_with_its_path_and_unit():
-    bound = connector("k", "crane.hook hook.mass", "crane.law law.m")
-    par = drawn(block(bound))["Crane.par.puml"]
+def test_a_feature_of_a_part_has_its_path_and_its_unit():
+    binding = write_connector("k", "crane.hook hook.mass", "crane.law law.m")
+    par = draw_text(write_model(binding))["Crane.par.puml"]
     assert 'rectangle "hook.mass : Mass\\n<U+007B>unit = kg}" as mass_1 <<value>>' in par
-    assert lines(par) == ["mass_1 -- m_1"]
+    assert list_lines(par) == ["mass_1 -- m_1"]
 
 
-def test_bindings_are_not_drawn_a_second_time_in_the_internal_block_diagram():
-    bound = connector("k", "crane.hook hook.mass", "crane.law law.m")
-    assert list(drawn(block(bound))) == ["Crane.par.puml", "model.bdd.puml"]
+def test_bindings_of_a_parametric_diagram_are_not_in_the_internal_block_diagram():
+    binding = write_connector("k", "crane.hook hook.mass", "crane.law law.m")
+    assert list(draw_text(write_model(binding))) == ["Crane.par.puml", "model.bdd.puml"]
 
 
 def test_a_binding_between_values_stays_in_the_internal_block_diagram():
     value = '  Property crane.w "w" role="value"\n'
-    bound = connector("k", "crane.hook hook.mass", "crane.w")
-    shown = drawn(block(bound, value))
-    assert "<U+003D>" in shown["Crane.ibd.puml"]
-    assert lines(shown["Crane.par.puml"]) == []
+    binding = write_connector("k", "crane.hook hook.mass", "crane.w")
+    diagrams = draw_text(write_model(binding, value))
+    assert "<U+003D>" in diagrams["Crane.ibd.puml"]
+    assert list_lines(diagrams["Crane.par.puml"]) == []
 
 
-def test_a_connector_of_another_owner_stands_where_its_ends_are():
-    stray = 'Class other "Other" role="block"\n' + connector("k", "law.m", "hook.mass")
-    shown = drawn(block("") + stray)
-    assert lines(shown["Crane.par.puml"]) == ["mass_1 -- m_1"]
-    assert "Other.par.puml" not in shown
+def test_a_connector_of_another_owner_is_drawn_with_its_ends():
+    other = 'Class other "Other" role="block"\n' + write_connector("k", "law.m", "hook.mass")
+    diagrams = draw_text(write_model("") + other)
+    assert list_lines(diagrams["Crane.par.puml"]) == ["mass_1 -- m_1"]
+    assert "Other.par.puml" not in diagrams
 
 
-def test_a_connector_that_could_mean_two_parts_stays_with_its_owner():
+def test_a_connector_that_fits_two_parts_is_drawn_with_its_owner():
     second = '  Property crane.hook2 "hook2" role="part"\n    -> typed-by hook\n'
-    stray = 'Class other "Other" role="block"\n' + connector("k", "law.m", "hook.mass")
-    shown = drawn(block("", second) + stray)
-    assert lines(shown["Crane.par.puml"]) == []
-    assert lines(shown["Other.par.puml"]) == ["mass_1 -- m_1"]
+    other = 'Class other "Other" role="block"\n' + write_connector("k", "law.m", "hook.mass")
+    diagrams = draw_text(write_model("", second) + other)
+    assert list_lines(diagrams["Crane.par.puml"]) == []
+    assert list_lines(diagrams["Other.par.puml"]) == ["mass_1 -- m_1"]
 
 
-def test_circles_of_parts_end_the_search():
+def test_cyclic_parts_terminate_the_search_for_ends():
     loop = (
         'Class node "Node" role="block"\n  Property node.next "next" role="part"\n'
         "    -> typed-by node\n"
     )
     first = '  Property crane.n "n" role="part"\n    -> typed-by node\n'
-    stray = 'Class other "Other" role="block"\n' + connector("k", "law.m", "hook.gone")
-    text = loop + block("", first) + stray + 'Property hook.gone "gone"\n'
-    assert lines(drawn(text)["Crane.par.puml"]) == []
+    other = 'Class other "Other" role="block"\n' + write_connector("k", "law.m", "hook.gone")
+    text = loop + write_model("", first) + other + 'Property hook.gone "gone"\n'
+    assert list_lines(draw_text(text)["Crane.par.puml"]) == []
 
 
-def test_nothing_of_a_parametric_model_is_reported_as_not_drawn():
-    bound = connector("k", "crane.hook hook.mass", "crane.law law.m")
-    _, sink = emitted(parse_text(block(bound)))
-    assert [found.message for found in sink] == []
+def test_a_parametric_model_has_no_diagnostics():
+    binding = write_connector("k", "crane.hook hook.mass", "crane.law law.m")
+    _, diagnostics = emit(parse_text(write_model(binding)))
+    assert diagnostics == []
 
 
-def test_more_usages_than_fit_are_split_and_keep_their_bindings():
+def test_a_large_diagram_is_split_with_its_bindings():
     text = LAW + 'Class crane "Crane" role="block"\n'
     for number in range(60):
         text += f'  Property u{number} "u{number}" role="constraint property"\n'
         text += "    -> typed-by law\n"
     for number in range(1, 60):
-        text += connector(f"k{number}", f"u{number - 1} law.f", f"u{number} law.m")
-    shown = [one for name, one in drawn(text).items() if name.endswith(".par.puml")]
-    assert len(shown) == 2
-    assert all(f"u{number} : " in "".join(shown) for number in range(60))
-    assert sum(len(re.findall(r"^\w+ -- \w+$", one, re.MULTILINE)) for one in shown) >= 59
+        text += write_connector(f"k{number}", f"u{number - 1} law.f", f"u{number} law.m")
+    parts = [part for path, part in draw_text(text).items() if path.endswith(".par.puml")]
+    assert len(parts) == 2
+    assert all(f"u{number} : " in "".join(parts) for number in range(60))
+    assert sum(len(list_lines(part)) for part in parts) >= 59
 
 
 # -- internal block diagrams -------------------------------------------------------------------
@@ -134,16 +135,16 @@ def test_a_connector_with_three_ends_joins_the_first_with_the_others():
             f'  Property {p} "{p}" role="part" aggregation="composite"\n    -> typed-by b\n'
             for p in ("one", "two", "three")
         )
-        + connector("k", "one", "two", "three").replace("binding connector", "")
+        + write_connector("k", "one", "two", "three").replace("binding connector", "")
         + 'Class b "B" role="block"\n'
     )
-    files, sink = emitted(parse_text(text))
-    ibd = next(one.text for one in files if one.path.endswith("A.ibd.puml"))
-    assert lines(ibd) == ["one_1 -- two_1", "one_1 -- three_1"]
-    assert list(sink) == []
+    files, diagnostics = emit(parse_text(text))
+    ibd = next(file.text for file in files if file.path.endswith("A.ibd.puml"))
+    assert list_lines(ibd) == ["one_1 -- two_1", "one_1 -- three_1"]
+    assert diagnostics == []
 
 
-def test_a_port_nested_in_a_conjugated_port_points_the_other_way():
+def test_a_port_nested_in_a_conjugated_port_has_the_opposite_direction():
     nested = (
         'Class inner "Inner" role="interface block"\n'
         'Class outer "Outer" role="interface block"\n'
@@ -153,30 +154,32 @@ def test_a_port_nested_in_a_conjugated_port_points_the_other_way():
         'Class line "Line" role="block"\n'
         '  Property g "g" role="part" aggregation="composite"\n    -> typed-by gate\n'
         '  Property h "h" role="part" aggregation="composite"\n    -> typed-by gate\n'
-        + connector("k", "g door deep", "h door deep").replace(' role="binding connector"', "")
+        + write_connector("k", "g door deep", "h door deep").replace(
+            ' role="binding connector"', ""
+        )
     )
-    ibd = drawn(nested)["Line.ibd.puml"]
+    ibd = draw_text(nested)["Line.ibd.puml"]
     assert ibd.count('portout "<back:#FFFFFF>door.deep</back>"') == 2
 
 
 def test_constraint_parameters_of_magicdraw_are_ports():
-    bound = connector("k", "crane.hook hook.mass", "crane.law law.m")
-    text = block(bound).replace("Property law.", "Port law.")
-    shown = drawn(text)
-    assert lines(shown["Crane.par.puml"]) == ["mass_1 -- m_1"]
-    assert ".. parameters ..\n{field} f\n{field} m\n" in shown["model.bdd.puml"]
+    binding = write_connector("k", "crane.hook hook.mass", "crane.law law.m")
+    text = write_model(binding).replace("Property law.", "Port law.")
+    diagrams = draw_text(text)
+    assert list_lines(diagrams["Crane.par.puml"]) == ["mass_1 -- m_1"]
+    assert ".. parameters ..\n{field} f\n{field} m\n" in diagrams["model.bdd.puml"]
 
 
-def test_a_usage_without_constraint_block_is_a_row_and_no_diagram():
-    shown = drawn(block("").replace("    -> typed-by law\n", ""))
-    assert list(shown) == ["model.bdd.puml"]
-    assert ".. constraints ..\n{field} e1" in shown["model.bdd.puml"]
+def test_a_usage_without_a_constraint_block_is_a_row_and_has_no_diagram():
+    diagrams = draw_text(write_model("").replace("    -> typed-by law\n", ""))
+    assert list(diagrams) == ["model.bdd.puml"]
+    assert ".. constraints ..\n{field} e1" in diagrams["model.bdd.puml"]
 
 
-def test_a_type_of_one_property_shows_what_it_specialises():
+def test_a_property_specific_type_has_the_name_of_its_general():
     text = (
         'Class gate "Gate" role="block"\n'
         'Class own "" role="block" property_specific=true\n  -> specializes gate\n'
         'Class line "Line" role="block"\n  Property g "g" role="value"\n    -> typed-by own\n'
     )
-    assert "g : [Gate]" in drawn(text)["model.bdd.puml"]
+    assert "g : [Gate]" in draw_text(text)["model.bdd.puml"]

@@ -1,4 +1,4 @@
-"""``platform.json``: a recipe in XMI, a plant in AutomationML and an overlay are one unit."""
+"""``platform.json`` for a recipe in XMI, a plant in AutomationML and an overlay."""
 
 import json
 import shutil
@@ -38,7 +38,7 @@ PLANT = """\
 
 
 @pytest.fixture
-def unit(tmp_path):
+def folder(tmp_path):
     shutil.copy(ROOT / "examples" / "four-tasks" / "four-tasks.uml", tmp_path / "recipe.uml")
     (tmp_path / "plant.aml").write_text(PLANT)
     (tmp_path / "plant.overlay.yaml").write_text(OVERLAY)
@@ -50,13 +50,14 @@ def compile_inputs(*inputs):
     return compile_model(Request(inputs=inputs, backends=backends))
 
 
-def platform(*inputs):
+def read_platform(*inputs):
+    """Return the content of the only output."""
     (artefact,) = compile_inputs(*inputs).artefacts
     assert artefact.path == "platform.json"
     return json.loads(artefact.text)
 
 
-def list_findings(compilation):
+def list_messages(compilation):
     return [
         f"{diagnostic.rule.code} {diagnostic.message}"
         for diagnostic in compilation.diagnostics
@@ -64,12 +65,12 @@ def list_findings(compilation):
     ]
 
 
-def test_the_file_has_a_schema(unit):
-    jsonschema.validate(platform(unit), SCHEMA)
+def test_the_file_follows_its_schema(folder):
+    jsonschema.validate(read_platform(folder), SCHEMA)
 
 
-def test_the_overlay_of_the_documentation_does_what_the_documentation_says(unit):
-    (left_arm, right_arm) = platform(unit / "recipe.uml", unit / "plant.aml")["elements"]
+def test_the_overlay_in_the_documentation_binds_machines_and_services(folder):
+    (left_arm, right_arm) = read_platform(folder / "recipe.uml", folder / "plant.aml")["elements"]
     assert (left_arm["id"], left_arm["qualified_name"], left_arm["type"]) == (
         "k1",
         "ICE::Cell::KukaLeft",
@@ -83,7 +84,7 @@ def test_the_overlay_of_the_documentation_does_what_the_documentation_says(unit)
             "said_at": {"file": "plant.overlay.yaml", "line": 11, "column": 5},
         }
     ]
-    offered = [
+    services = [
         (
             service["service"].rpartition(":")[2],
             service["operation"]["qualified_name"],
@@ -91,23 +92,29 @@ def test_the_overlay_of_the_documentation_does_what_the_documentation_says(unit)
         )
         for service in right_arm["services"]
     ]
-    assert offered == [
+    assert services == [
         ("Mount", "Roles::Manipulation::Mount", "name"),
         ("PickPin", "Lib::Kuka::takePin", "overlay"),
         ("Turn", "Roles::Manipulation::Turn", "name"),
     ]
 
 
-def test_machines_and_services_of_the_recipe_are_listed_bound_or_not(unit):
-    document = platform(unit)
-    assert {m["machine"].rpartition(":")[2]: m["element"] for m in document["machines"]} == {
+def test_bound_and_unbound_machines_and_services_are_listed(folder):
+    document = read_platform(folder)
+    assert {
+        machine["machine"].rpartition(":")[2]: machine["element"]
+        for machine in document["machines"]
+    } == {
         "Arm1": "k1",
         "Arm2": "k2",
         "Cart": None,
         "Mill1": None,
         "Mill2": None,
     }
-    assert {s["service"].rpartition(":")[2]: s["elements"] for s in document["services"]} == {
+    assert {
+        service["service"].rpartition(":")[2]: service["elements"]
+        for service in document["services"]
+    } == {
         "Mount": ["k1", "k2"],
         "PickPin": ["k1", "k2"],
         "ReadTorque": [],
@@ -118,70 +125,69 @@ def test_machines_and_services_of_the_recipe_are_listed_bound_or_not(unit):
     }
 
 
-def test_unused_elements_of_the_plant_are_listed(unit):
-    unused = [(element["id"], element["contents"]) for element in platform(unit)["unused"]]
+def test_unused_elements_of_the_plant_are_listed(folder):
+    unused = [(element["id"], element["contents"]) for element in read_platform(folder)["unused"]]
     assert unused == [("m1", 0), ("o1", 1)]
 
 
-def test_what_is_not_bound_is_told_with_a_suggestion(unit):
-    assert list_findings(compile_inputs(unit)) == [
+def test_unbound_machines_are_reported(folder):
+    assert list_messages(compile_inputs(folder)) == [
         f"SM624 machine 'FourTasks::Plant::{name}' is bound to no element of the plant"
         for name in ("Mill1", "Mill2", "Cart")
     ]
 
 
-def test_an_allocation_in_xmi_may_lead_to_the_plant(unit):
-    recipe = unit / "recipe.uml"
+def test_an_allocation_in_xmi_binds_a_machine(folder):
+    recipe = folder / "recipe.uml"
     text = recipe.read_text()
     mill = text.partition('name="Mill1"')[0].rpartition('xmi:id="')[2].partition('"')[0]
     allocation = (
         f'<packagedElement xmi:type="uml:Abstraction" xmi:id="_a" client="{mill}">'
         '<supplier xmi:type="uml:Class" href="plant.aml#m1"/></packagedElement>'
     )
-    applied = (
+    stereotype = (
         '<a:Allocate xmlns:a="http://www.eclipse.org/papyrus/sysml/1.6/SysML/Allocations"'
         ' xmi:id="_b" base_Abstraction="_a"/>'
     )
-    text = text.replace("</uml:Model>", f"{allocation}</uml:Model>{applied}")
+    text = text.replace("</uml:Model>", f"{allocation}</uml:Model>{stereotype}")
     recipe.write_text(text)
-    machines = {element["id"]: element["machines"] for element in platform(unit)["elements"]}
+    machines = {element["id"]: element["machines"] for element in read_platform(folder)["elements"]}
     assert [(machine["machine"], machine["bound_by"]) for machine in machines["m1"]] == [
         ("FourTasks::Plant::Mill1", "allocation")
     ]
 
 
-def test_an_id_on_the_machine_binds_it(unit):
-    recipe = unit / "recipe.uml"
+def test_an_id_on_the_machine_binds_it(folder):
+    recipe = folder / "recipe.uml"
     text = recipe.read_text()
     assert text.count('endpoint="opc.tcp://mill2:4840"') == 1
     end = 'endpoint="opc.tcp://mill2:4840"'
     recipe.write_text(text.replace(end, f'{end} amlId="m1"'))
-    document = platform(unit)
-    assert [
-        m["bound_by"] for e in document["elements"] if e["id"] == "m1" for m in e["machines"]
-    ] == ["id"]
+    document = read_platform(folder)
+    machines = {element["id"]: element["machines"] for element in document["elements"]}
+    assert [machine["bound_by"] for machine in machines["m1"]] == ["id"]
     recipe.write_text(text.replace(end, f'{end} amlId="gone"'))
     assert (
         "SM628 machine 'FourTasks::Plant::Mill2' has the amlId 'gone', "
         "which no element of the plant has"
-    ) in list_findings(compile_inputs(unit))
+    ) in list_messages(compile_inputs(folder))
 
 
-@pytest.mark.parametrize("alone", ["recipe.uml", "plant.aml"])
-def test_without_the_other_half_there_is_no_file_and_no_finding(unit, alone):
-    (unit / "plant.overlay.yaml").unlink()
-    compilation = compile_inputs(unit / alone)
+@pytest.mark.parametrize("name", ["recipe.uml", "plant.aml"])
+def test_without_a_recipe_or_without_a_plant_there_is_no_file_and_no_diagnostic(folder, name):
+    (folder / "plant.overlay.yaml").unlink()
+    compilation = compile_inputs(folder / name)
     assert compilation.artefacts == ()
-    assert list_findings(compilation) == []
+    assert list_messages(compilation) == []
 
 
-def test_the_order_of_the_inputs_does_not_matter(unit):
-    artefacts = compile_inputs(unit / "recipe.uml", unit / "plant.aml").artefacts
-    assert compile_inputs(unit / "plant.aml", unit / "recipe.uml").artefacts == artefacts
+def test_the_order_of_the_inputs_does_not_matter(folder):
+    artefacts = compile_inputs(folder / "recipe.uml", folder / "plant.aml").artefacts
+    assert compile_inputs(folder / "plant.aml", folder / "recipe.uml").artefacts == artefacts
 
 
-def test_the_file_is_traced_to_recipe_and_plant(unit):
-    compilation = compile_inputs(unit)
+def test_the_file_is_traced_to_recipe_and_plant(folder):
+    compilation = compile_inputs(folder)
     (artefact,) = compilation.artefacts
     files = {compilation.graph[id].source for id in artefact.trace}
     assert files == {"recipe.uml", "plant.aml", "plant.overlay.yaml"}

@@ -1,11 +1,15 @@
-"""The recipe file: valid against its schema, stable, complete; what is wrong the schema rejects."""
+"""The recipe file is valid and traced to the model, and the schema rejects faulty files."""
 
 import copy
 import json
+import re
+from random import Random
 
 import pytest
 from jsonschema import Draft202012Validator
+from recipe_files import SCHEMA, compile_recipe, find_example, list_faults, list_recipes
 
+import emitting
 import recipe_samples as samples
 from sysmlc.backends.base import EmitOptions, InputFile
 from sysmlc.backends.recipe import BACKEND
@@ -13,93 +17,82 @@ from sysmlc.diagnostics import Sink
 from sysmlc.driver import load_full_catalogue
 from sysmlc.ir import parse_text
 from sysmlc.passes.recipe import Recipe
-from sysmlc.support import resources
-from sysmlc.support.output import Output
 
-SCHEMA = json.loads(resources.read_text("metamodels", "sysmlc-recipe.schema.json"))
 INPUTS = (InputFile("b.uml", "0" * 64, "xmi"), InputFile("a.uml", "1" * 64, "xmi"))
 LOOP = ("s m", "m l", "l d", "d m ok", "d g else", "g a", "a b", "b e")
 
 
-def emit(text: str) -> tuple[dict[str, dict], list[str]]:
-    """Files that the back end makes of a model in IR text, and the codes it reports."""
-    graph, sink, output = parse_text(text), Sink(), Output()
+def emit(text: str):
+    """Return the artefacts of a model in IR text by path, and the codes of the diagnostics."""
+    graph = parse_text(text)
     Recipe().run(graph, Sink())
-    BACKEND.emit(graph, output, sink, EmitOptions(inputs=INPUTS))
-    files = {artefact.path: json.loads(artefact.text) for artefact in output.artefacts()}
-    return files, [diagnostic.rule.code for diagnostic in sink]
+    artefacts, diagnostics = emitting.emit(BACKEND, graph, EmitOptions(inputs=INPUTS))
+    return artefacts, [diagnostic.rule.code for diagnostic in diagnostics]
 
 
-def recipe_file(text: str) -> dict:
-    """The only file."""
-    ((_, content),) = emit(text)[0].items()
-    return content
+def write_recipe(text: str) -> dict:
+    """Return the content of the only recipe file."""
+    (artefact,) = emit(text)[0].values()
+    return json.loads(artefact.text)
 
 
-def complaints(content: object) -> list[str]:
-    """What the schema says against a file."""
-    return [error.message for error in Draft202012Validator(SCHEMA).iter_errors(content)]
-
-
-def test_the_schema_is_a_schema():
+def test_the_schema_is_valid_json_schema():
     Draft202012Validator.check_schema(SCHEMA)
 
 
-RIGHT = [samples.task(), samples.task(steps=LOOP), samples.recipe()]
-RIGHT += [
+VALID = [samples.task(), samples.task(steps=LOOP), samples.recipe()]
+VALID += [
     rule.read_page().right
     for rule in load_full_catalogue().values()
     if "SM601" <= rule.code <= "SM622"
 ]
 
 
-@pytest.mark.parametrize("text", dict.fromkeys(RIGHT), ids=lambda text: str(len(text)))
-def test_a_right_model_gives_a_valid_file(text):
-    assert complaints(recipe_file(text)) == []
+@pytest.mark.parametrize("text", dict.fromkeys(VALID), ids=lambda text: str(len(text)))
+def test_a_valid_recipe_gives_a_valid_file(text):
+    assert list_faults(write_recipe(text)) == []
 
 
 def test_the_file_has_the_name_of_the_recipe_and_its_sources_in_order():
-    files, _ = emit(samples.task())
-    assert list(files) == ["recipes/Plant.Build.json"]
-    sources = files["recipes/Plant.Build.json"]["source"]
+    artefacts, _ = emit(samples.task())
+    assert list(artefacts) == ["recipes/Plant.Build.json"]
+    sources = write_recipe(samples.task())["source"]
     assert [source["file"] for source in sources] == ["a.uml", "b.uml"]
 
 
-def test_a_recipe_without_tasks_is_told_and_not_written():
+def test_a_recipe_without_tasks_is_reported_and_not_written():
     rule = load_full_catalogue()["SM621"]
     assert emit(rule.read_page().wrong) == ({}, ["SM621"])
     assert emit(rule.read_page().right)[1] == []
 
 
-def test_an_opc_ua_call_that_nobody_can_make_is_left_out():
+def test_an_opc_ua_call_with_an_invalid_node_id_is_omitted():
     text = samples.task().replace('tag.object="ns=2;s=Robot"', 'tag.object="Robot"')
-    providers = {s["id"]: s.get("providers") for s in recipe_file(text)["services"]}
+    content = write_recipe(text)
+    providers = {service["id"]: service.get("providers") for service in content["services"]}
     assert "opcua" not in providers["Plant::Grip"][0]
-    assert complaints(recipe_file(text)) == []
+    assert list_faults(content) == []
 
 
 def test_every_part_names_its_element():
-    content = recipe_file(samples.task())
+    content = write_recipe(samples.task())
     parts = [*content["machines"], *content["services"], *content["functions"], *content["recipes"]]
     parts += [node for graph in content["serviceGraphs"] for node in graph["nodes"]]
     assert all(part["trace"]["element"] for part in parts)
 
 
-def test_the_trace_of_the_file_names_machines_nodes_and_edges():
-    graph, output = parse_text(samples.task()), Output()
-    Recipe().run(graph, Sink())
-    BACKEND.emit(graph, output, Sink(), EmitOptions(inputs=INPUTS))
-    (artefact,) = output.artefacts()
+def test_the_trace_of_the_file_contains_machines_nodes_and_edges():
+    (artefact,) = emit(samples.task())[0].values()
     assert {"r", "r.a", "robot", "plate", "grip", "close", "mount", "g", "d-a-3"} <= {
         *artefact.trace
     }
 
 
-# -- mutations: each must be rejected ----------------------------------------------------------
+# -- faulty files -----------------------------------------------------------------------------
 
 
-def at(content: object, *path: object):
-    """Something inside a file."""
+def find_entry(content: object, *path: object):
+    """Return the entry on a path of keys and indices."""
     for step in path:
         content = content[step]
     return content
@@ -111,55 +104,94 @@ MUTATIONS = {
     "two recipes": lambda c: c["recipes"].append(c["recipes"][0]),
     "another format": lambda c: c.update(format="sysmlc-recipe/2"),
     "short hash": lambda c: c["source"][0].update(sha256="abc"),
-    "task without equipment": lambda c: at(c, *TASK).pop("equipment"),
-    "empty equipment": lambda c: at(c, *TASK).update(equipment=[]),
-    "mode without machines": lambda c: at(c, *TASK, "equipment", 0).update(machines=[]),
-    "fraction of a millisecond": lambda c: at(c, *TASK, "equipment", 0).update(duration=1.5),
-    "negative time": lambda c: at(c, *TASK).update(maxDuration=-1),
-    "material of no use": lambda c: at(c, *TASK, "materials", 0).update(use="lost"),
-    "no quantity": lambda c: at(c, *TASK, "materials", 0).update(quantity=0),
-    "precedence of one": lambda c: at(c, "recipes", 0)["precedence"].append(["x"]),
-    "empty id": lambda c: at(c, *TASK).update(id=""),
-    "group of one": lambda c: at(c, *TASK, "derived", "sameMachine", 0).update(nodes=["x"]),
-    "call without method": lambda c: opcua(c).pop("method"),
-    "no node id": lambda c: opcua(c).update(object="Robot"),
-    "machine service without providers": lambda c: service(c, "machine").pop("providers"),
-    "loop without bound": lambda c: node(c, "loop").pop("unbounded"),
-    "loop bounded and not": lambda c: node(c, "loop").update(maxIterations=2),
-    "service node without service": lambda c: node(c, "service").pop("ref"),
-    "unknown node": lambda c: node(c, "merge").update(kind="goto"),
-    "unknown operator": lambda c: node(c, "loop").update({"while": {"op": "xor", "args": []}}),
+    "task without equipment": lambda c: find_entry(c, *TASK).pop("equipment"),
+    "empty equipment": lambda c: find_entry(c, *TASK).update(equipment=[]),
+    "mode without machines": lambda c: find_entry(c, *TASK, "equipment", 0).update(machines=[]),
+    "fraction of a millisecond": lambda c: find_entry(c, *TASK, "equipment", 0).update(
+        duration=1.5
+    ),
+    "negative time": lambda c: find_entry(c, *TASK).update(maxDuration=-1),
+    "material of no use": lambda c: find_entry(c, *TASK, "materials", 0).update(use="lost"),
+    "no quantity": lambda c: find_entry(c, *TASK, "materials", 0).update(quantity=0),
+    "precedence of one": lambda c: find_entry(c, "recipes", 0)["precedence"].append(["x"]),
+    "empty id": lambda c: find_entry(c, *TASK).update(id=""),
+    "group of one": lambda c: find_entry(c, *TASK, "derived", "sameMachine", 0).update(nodes=["x"]),
+    "call without method": lambda c: find_opcua(c).pop("method"),
+    "no node id": lambda c: find_opcua(c).update(object="Robot"),
+    "machine service without providers": lambda c: find_service(c, "machine").pop("providers"),
+    "loop without bound": lambda c: find_node(c, "loop").pop("unbounded"),
+    "loop bounded and not": lambda c: find_node(c, "loop").update(maxIterations=2),
+    "service node without service": lambda c: find_node(c, "service").pop("ref"),
+    "unknown node": lambda c: find_node(c, "merge").update(kind="goto"),
+    "unknown operator": lambda c: find_node(c, "loop").update({"while": {"op": "xor", "args": []}}),
     "unknown member": lambda c: c.update(extra=1),
-    "edge without end": lambda c: at(c, "serviceGraphs", 0, "edges", 0).pop("to"),
-    "unknown resource mode": lambda c: resource(c).update(mode="steal"),
+    "edge without end": lambda c: find_entry(c, "serviceGraphs", 0, "edges", 0).pop("to"),
+    "unknown resource mode": lambda c: find_resource(c).update(mode="steal"),
 }
 
 
-def service(content: dict, kind: str) -> dict:
-    """First service of a kind."""
+def find_service(content: dict, kind: str) -> dict:
+    """Return the first service of a kind."""
     return next(service for service in content["services"] if service["kind"] == kind)
 
 
-def opcua(content: dict) -> dict:
-    """First OPC UA call of a provider."""
-    offers = [p for service in content["services"] for p in service.get("providers", ())]
-    return next(provider["opcua"] for provider in offers if "opcua" in provider)
+def find_opcua(content: dict) -> dict:
+    """Return the first OPC UA call of a provider."""
+    providers = (
+        provider for service in content["services"] for provider in service.get("providers", ())
+    )
+    return next(provider["opcua"] for provider in providers if "opcua" in provider)
 
 
-def node(content: dict, kind: str) -> dict:
-    """First node of a kind in the service graph."""
-    return next(node for node in at(content, "serviceGraphs", 0, "nodes") if node["kind"] == kind)
+def find_node(content: dict, kind: str) -> dict:
+    """Return the first node of a kind in the service graph."""
+    nodes = find_entry(content, "serviceGraphs", 0, "nodes")
+    return next(node for node in nodes if node["kind"] == kind)
 
 
-def resource(content: dict) -> dict:
-    """First resource of a function."""
-    return next(f["resources"][0] for f in content["functions"] if "resources" in f)
+def find_resource(content: dict) -> dict:
+    """Return the first resource of a function."""
+    functions = content["functions"]
+    return next(function["resources"][0] for function in functions if "resources" in function)
 
 
 @pytest.mark.parametrize("name", MUTATIONS)
 def test_the_schema_rejects_a_mutation(name):
-    content = recipe_file(samples.task(steps=LOOP))
-    assert complaints(content) == []
-    wrong = copy.deepcopy(content)
-    MUTATIONS[name](wrong)
-    assert complaints(wrong)
+    content = write_recipe(samples.task(steps=LOOP))
+    assert list_faults(content) == []
+    mutation = copy.deepcopy(content)
+    MUTATIONS[name](mutation)
+    assert list_faults(mutation)
+
+
+# -- damaged models ----------------------------------------------------------------------------
+
+ATTRIBUTE = re.compile(r' (?!xmi:)\w+="[^"]*"')
+
+
+def damage(text: str, random: Random) -> str:
+    """Remove an element or an attribute, or change a number, in one to three lines."""
+    lines = text.split("\n")
+    for _ in range(random.randint(1, 3)):
+        number = random.randrange(5, len(lines) - 3)
+        line, attributes = lines[number], list(ATTRIBUTE.finditer(lines[number]))
+        choice = random.random()
+        if choice < 0.5:
+            lines[number] = "" if line.strip().endswith("/>") else line
+        elif choice < 0.8 and attributes:
+            attribute = random.choice(attributes)
+            lines[number] = line[: attribute.start()] + line[attribute.end() :]
+        else:
+            value = random.choice(["-1", "0", "99999999", "x"])
+            lines[number] = re.sub(r'="\d+"', f'="{value}"', line)
+    return "\n".join(lines)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_a_damaged_recipe_gives_a_valid_file_or_none(seed, tmp_path):
+    random = Random(seed)
+    example = find_example(random.choice(["lego-recipe", "four-tasks"]))
+    model = tmp_path / example.name
+    model.write_text(damage(example.read_text(encoding="utf-8"), random), encoding="utf-8")
+    recipes = list_recipes(compile_recipe(model))
+    assert [fault for content in recipes for fault in list_faults(content)] == []

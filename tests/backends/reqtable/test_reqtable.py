@@ -1,28 +1,27 @@
-"""Requirement tables: what they say, in CSV that programs read and Markdown that people read."""
+"""Requirement tables in CSV for programs and in Markdown for people."""
 
 import csv
 import io
-from pathlib import Path
 
 import pytest
 
+from emitting import emit
+from examples.compiling import ROOT, compile_example, outputs
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.reqtable import BACKEND
 from sysmlc.backends.reqtable.backend import BAD_TEMPLATE, format_markdown_cell
 from sysmlc.backends.reqtable.open_requirements import UNSATISFIED, UNVERIFIED
 from sysmlc.backends.reqtable.table import Cell
 from sysmlc.diagnostics import Sink
-from sysmlc.driver import Request, compile_model, select_backends
 from sysmlc.ir.text import parse_text
 from sysmlc.passes import pipeline
-from sysmlc.support.output import Output
 
 SYSML = "http://www.omg.org/spec/SysML/20150709/SysML"
 MAGICDRAW = "http://www.magicdraw.com/spec/Customization/180/SysML"
 PLANT = "http://example.org/plant"
 
 
-def requirement(name, tags, stereotype="Requirement", namespace=SYSML, inside="p"):
+def write_requirement(name, tags, stereotype="Requirement", namespace=SYSML):
     id = name.lower().replace(" ", "")
     return (
         f'  Class {id} "{name}"\n'
@@ -31,7 +30,7 @@ def requirement(name, tags, stereotype="Requirement", namespace=SYSML, inside="p
     )
 
 
-def relation(stereotype, client, supplier):
+def write_relation(stereotype, client, supplier):
     id = f"{stereotype}.{client}.{supplier}"
     return (
         f'  Dependency {id} subkind="abstraction"\n    -> client {client}\n'
@@ -41,14 +40,15 @@ def relation(stereotype, client, supplier):
 
 
 def emit_tables(text, templates=None):
-    graph, sink, output = parse_text(text), Sink(), Output()
-    pipeline.run(graph, sink, verify_each=True)
-    before = len(sink)
-    BACKEND.emit(graph, output, sink, EmitOptions(templates))
-    return {artefact.path: artefact.text for artefact in output.artefacts()}, list(sink)[before:]
+    """Return the texts of the tables by path, and the diagnostics of the back end."""
+    graph = parse_text(text)
+    pipeline.run(graph, Sink(), verify_each=True)
+    artefacts, diagnostics = emit(BACKEND, graph, EmitOptions(templates))
+    return {path: artefact.text for path, artefact in artefacts.items()}, diagnostics
 
 
-def table(text, name="Plant"):
+def read_rows(text, name="Plant"):
+    """Return the rows of a table in CSV by the name of the requirement."""
     files, _ = emit_tables(text)
     rows = list(csv.DictReader(io.StringIO(files[f"requirements/{name}.requirements.csv"])))
     return {row["name"]: row for row in rows}
@@ -56,23 +56,27 @@ def table(text, name="Plant"):
 
 PLANT_MODEL = (
     'Package p "Plant"\n'
-    + requirement("No jam", 'tag.id="R2" tag.text="Pallets never jam."')
-    + requirement("Quiet", 'tag.Id="R10" tag.Text="At most 60 dB | \\"A\\".\\nBy night 50."')
-    + requirement("Gentle", 'tag.id="R1" tag.text="=1+2"', "performanceRequirement", MAGICDRAW)
-    + requirement("Copied", 'tag.id="R3" tag.risk="high" tag.DerivedFrom="nojam"')
-    + relation("DeriveReqt", "quiet", "nojam")
-    + relation("Satisfy", "gate", "nojam")
-    + relation("Verify", "test", "quiet")
-    + relation("Refine", "test", "quiet")
-    + relation("Trace", "quiet", "gate")
-    + relation("Copy", "copied", "nojam")
+    + write_requirement("No jam", 'tag.id="R2" tag.text="Pallets never jam."')
+    + write_requirement("Quiet", 'tag.Id="R10" tag.Text="At most 60 dB | \\"A\\".\\nBy night 50."')
+    + write_requirement(
+        "Gentle", 'tag.id="R1" tag.text="=1+2"', "performanceRequirement", MAGICDRAW
+    )
+    + write_requirement("Copied", 'tag.id="R3" tag.risk="high" tag.DerivedFrom="nojam"')
+    + write_relation("DeriveReqt", "quiet", "nojam")
+    + write_relation("Satisfy", "gate", "nojam")
+    + write_relation("Verify", "test", "quiet")
+    + write_relation("Refine", "test", "quiet")
+    + write_relation("Trace", "quiet", "gate")
+    + write_relation("Copy", "copied", "nojam")
     + '  Class gate "Gate"\n  Activity test "Test jams"\n'
 )
 
 
 def test_one_csv_and_one_markdown_for_each_root_with_requirements():
-    other = requirement("Else", 'tag.id="E1"').replace("  Class", "Class").replace("\n  ", "\n")
-    files, _ = emit_tables(PLANT_MODEL + other + 'Package q "Empty"\n')
+    root = (
+        write_requirement("Else", 'tag.id="E1"').replace("  Class", "Class").replace("\n  ", "\n")
+    )
+    files, _ = emit_tables(PLANT_MODEL + root + 'Package q "Empty"\n')
     assert list(files) == [
         "requirements/Else.requirements.csv",
         "requirements/Else.requirements.md",
@@ -82,11 +86,11 @@ def test_one_csv_and_one_markdown_for_each_root_with_requirements():
 
 
 def test_rows_are_in_the_natural_order_of_their_ids():
-    assert [row["id"] for row in table(PLANT_MODEL).values()] == ["R1", "R2", "R3", "R10"]
+    assert [row["id"] for row in read_rows(PLANT_MODEL).values()] == ["R1", "R2", "R3", "R10"]
 
 
 def test_relations_are_read_from_the_requirement():
-    requirements = table(PLANT_MODEL)
+    requirements = read_rows(PLANT_MODEL)
     assert requirements["Quiet"]["derived from"] == "R2 No jam"
     assert (
         requirements["Quiet"]["verified by"]
@@ -98,8 +102,8 @@ def test_relations_are_read_from_the_requirement():
     assert requirements["No jam"]["owner"] == "Plant"
 
 
-def test_a_copy_has_its_masters_text_and_is_no_trace():
-    row = table(PLANT_MODEL)["Copied"]
+def test_a_copy_has_the_text_of_its_master_and_is_not_listed_as_a_trace():
+    row = read_rows(PLANT_MODEL)["Copied"]
     assert (row["text"], row["copy of"], row["traced to"]) == (
         "Pallets never jam.",
         "R2 No jam",
@@ -107,20 +111,22 @@ def test_a_copy_has_its_masters_text_and_is_no_trace():
     )
 
 
-def test_custom_tags_are_columns_and_derived_tags_are_none():
-    requirements = table(PLANT_MODEL)
+def test_custom_tags_have_columns_and_derived_tags_have_none():
+    requirements = read_rows(PLANT_MODEL)
     assert requirements["Copied"]["risk"] == "high"
     assert requirements["Quiet"]["risk"] == ""
     assert "DerivedFrom" not in requirements["Copied"]
 
 
-def test_tags_that_lead_to_elements_show_their_names():
-    text = 'Package p "Plant"\n' + requirement("Quiet", 'tag.id="R1" tag.owners=["gate","late"]')
-    requirements = table(text + '  Class gate "Gate"\n')
+def test_tags_that_refer_to_elements_show_their_names():
+    text = 'Package p "Plant"\n' + write_requirement(
+        "Quiet", 'tag.id="R1" tag.owners=["gate","late"]'
+    )
+    requirements = read_rows(text + '  Class gate "Gate"\n')
     assert requirements["Quiet"]["owners"] == "Plant::Gate\nlate"
 
 
-def test_a_custom_stereotype_names_the_kind_and_what_it_specialises():
+def test_the_kind_is_the_custom_stereotype_with_its_base():
     profile = (
         f'Profile pr "plant" uri="{PLANT}"\n'
         '  Stereotype s "SafetyRequirement"\n    -> specializes f\n'
@@ -128,14 +134,14 @@ def test_a_custom_stereotype_names_the_kind_and_what_it_specialises():
         '  Stereotype f "functionalRequirement"\n    -> specializes r\n'
         '  Stereotype r "Requirement"\n'
     )
-    text = 'Package p "Plant"\n' + requirement("Quiet", "", "SafetyRequirement", PLANT)
-    requirements = table(text + profile)
+    text = 'Package p "Plant"\n' + write_requirement("Quiet", "", "SafetyRequirement", PLANT)
+    requirements = read_rows(text + profile)
     assert requirements["Quiet"]["kind"] == "SafetyRequirement (functionalRequirement)"
-    assert table(PLANT_MODEL)["Gentle"]["kind"] == "performanceRequirement"
-    assert table(PLANT_MODEL)["No jam"]["kind"] == ""
+    assert read_rows(PLANT_MODEL)["Gentle"]["kind"] == "performanceRequirement"
+    assert read_rows(PLANT_MODEL)["No jam"]["kind"] == ""
 
 
-def test_csv_lines_end_as_rfc_4180_says_and_quotes_are_doubled():
+def test_csv_has_the_line_ends_and_quotes_of_rfc_4180():
     files, _ = emit_tables(PLANT_MODEL)
     text = files["requirements/Plant.requirements.csv"]
     assert text.endswith("\r\n")
@@ -143,13 +149,13 @@ def test_csv_lines_end_as_rfc_4180_says_and_quotes_are_doubled():
 
 
 @pytest.mark.parametrize("start", ["=", "+", "-", "@", "＝"])
-def test_no_cell_is_a_formula(start):
-    text = 'Package p "Plant"\n' + requirement("Quiet", f'tag.id="R1" tag.text="{start}1+2"')
-    assert table(text)["Quiet"]["text"] == f"'{start}1+2"
+def test_no_cell_of_the_csv_is_a_formula(start):
+    text = 'Package p "Plant"\n' + write_requirement("Quiet", f'tag.id="R1" tag.text="{start}1+2"')
+    assert read_rows(text)["Quiet"]["text"] == f"'{start}1+2"
 
 
 @pytest.mark.parametrize(
-    ("text", "shown"),
+    ("text", "markdown"),
     [
         ("a | b", "a \\| b"),
         ("<script>", "\\<script>"),
@@ -159,12 +165,12 @@ def test_no_cell_is_a_formula(start):
         ("back\\slash", "back\\\\slash"),
     ],
 )
-def test_markdown_shows_the_text_as_it_is(text, shown):
-    assert format_markdown_cell(Cell((text,))) == shown
+def test_markdown_shows_the_text_as_it_is(text, markdown):
+    assert format_markdown_cell(Cell((text,))) == markdown
 
 
 def test_markdown_has_no_column_without_values():
-    files, _ = emit_tables('Package p "Plant"\n' + requirement("Quiet", 'tag.id="R1"'))
+    files, _ = emit_tables('Package p "Plant"\n' + write_requirement("Quiet", 'tag.id="R1"'))
     assert files["requirements/Plant.requirements.md"] == (
         "# Requirements of Plant\n\n"
         "1 requirement; made by sysmlc: change the model, not this file.\n\n"
@@ -172,16 +178,16 @@ def test_markdown_has_no_column_without_values():
     )
 
 
-def test_html_text_of_magicdraw_is_shown_without_its_marks():
+def test_html_text_of_magicdraw_is_shown_without_its_tags():
     html = (
         "<html><head><style>p {x}</style></head><body><p>Never &lt; 2 <b>bar</b>.</p><p>Ever.</p>"
     )
-    text = 'Package p "Plant"\n' + requirement("Quiet", f'tag.Id="R1" tag.Text="{html}"')
-    assert table(text)["Quiet"]["text"] == "Never < 2 bar.\nEver."
+    text = 'Package p "Plant"\n' + write_requirement("Quiet", f'tag.Id="R1" tag.Text="{html}"')
+    assert read_rows(text)["Quiet"]["text"] == "Never < 2 bar.\nEver."
 
 
-def test_the_same_name_twice_gives_two_files():
-    first = requirement("Quiet", 'tag.id="R1"')
+def test_packages_of_the_same_name_have_files_of_their_own():
+    first = write_requirement("Quiet", 'tag.id="R1"')
     second = first.replace("quiet", "quiet2")
     files, _ = emit_tables(f'Package p "Plant"\n{first}Package q "Plant"\n{second}')
     assert [path for path in files if path.endswith(".csv")] == [
@@ -193,17 +199,17 @@ def test_the_same_name_twice_gives_two_files():
 # -- rules -------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("rule", [UNSATISFIED, UNVERIFIED], ids=lambda r: r.name)
+@pytest.mark.parametrize("rule", [UNSATISFIED, UNVERIFIED], ids=lambda rule: rule.name)
 def test_open_requirements_are_reported(rule):
     assert rule in [diagnostic.rule for diagnostic in emit_tables(rule.read_page().wrong)[1]]
     assert [diagnostic.rule for diagnostic in emit_tables(rule.read_page().right)[1]] == []
 
 
-def open_ones(text):
+def list_open_requirements(text):
     return [(diagnostic.rule.name, diagnostic.subject.name) for diagnostic in emit_tables(text)[1]]
 
 
-def test_a_derived_requirement_answers_its_source_and_parts_their_whole():
+def test_derived_requirements_and_parts_answer_for_their_source_and_their_whole():
     text = (
         'Package p "P"\n'
         '  Class whole "Whole" role="requirement" req_id="1"\n'
@@ -213,21 +219,21 @@ def test_a_derived_requirement_answers_its_source_and_parts_their_whole():
         '  Class gate "Gate" role="block"\n    -> satisfies a\n    -> satisfies c\n'
         '  Activity t "T"\n    -> verifies a\n'
     )
-    assert open_ones(text) == [
+    assert list_open_requirements(text) == [
         ("unverified-requirement", "P::Whole"),
         ("unverified-requirement", "P::Whole::B"),
         ("unverified-requirement", "P::C"),
     ]
 
 
-def test_derivations_in_a_circle_do_not_hang():
+def test_cyclic_derivations_terminate():
     text = (
         'Class a "A" role="requirement" req_id="1"\n  -> derives b\n'
         'Class b "B" role="requirement" req_id="2"\n  -> derives a\n'
         'Class gate "Gate" role="block"\n  -> satisfies b\n'
         'Activity t "T"\n  -> verifies a\n'
     )
-    assert open_ones(text) == []
+    assert list_open_requirements(text) == []
 
 
 def test_a_faulty_template_is_reported_and_the_csv_is_written(tmp_path):
@@ -240,11 +246,8 @@ def test_a_faulty_template_is_reported_and_the_csv_is_written(tmp_path):
 
 
 def test_the_tables_of_an_example(golden):
-    example = Path(__file__).parents[3] / "examples/lego-recipe/lego-recipe.uml"
-    compilation = compile_model(Request((example,), backends=tuple(select_backends(("reqtable",)))))
-    files = {
-        artefact.path: artefact.text
-        for artefact in compilation.list_published()
-        if "requirements/" in artefact.path
+    texts = outputs(compile_example(ROOT / "examples/lego-recipe/lego-recipe.uml", "reqtable"))
+    tables = {
+        path.rpartition("/")[2]: text for path, text in texts.items() if "requirements/" in path
     }
-    golden.check("reqtable/lego", {path.rpartition("/")[2]: files[path] for path in files})
+    golden.check("reqtable/lego", tables)
