@@ -4,7 +4,6 @@ import os
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 
 from long_runs import quick_first
 from machine_samples import arrow, machine
@@ -13,7 +12,6 @@ from sysmlc.backends.contracts import BACKEND as CONTRACTS
 from sysmlc.backends.plantuml import BACKEND as PLANTUML
 from sysmlc.backends.reqtable import BACKEND as REQTABLE
 from sysmlc.backends.templates import files, process
-from sysmlc.cli import group
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import parse_text
 from sysmlc.passes import pipeline
@@ -28,18 +26,11 @@ CONFIGURATIONS = {
 
 
 @pytest.fixture
-def project(tmp_path, monkeypatch):
-    """A working folder with a model and a folder of templates."""
-    monkeypatch.setenv("SYSMLC_CACHE_DIR", str(tmp_path / "cache"))
-    folder = tmp_path / "project"
-    (folder / "t" / "plantuml").mkdir(parents=True)
-    (folder / "plant.ir").write_text(PLANT)
-    monkeypatch.chdir(folder)
-    return folder
-
-
-def run_sysmlc(*arguments: str):
-    return CliRunner().invoke(group.sysmlc, [*arguments], catch_exceptions=False)
+def repository(project):
+    """A project with a block and an empty folder ``t`` for templates."""
+    project.write("plant.ir", PLANT)
+    (project.folder / "t" / "plantuml").mkdir(parents=True)
+    return project
 
 
 def draw(text: str | None, folder: Path) -> tuple[list[str], list[str]]:
@@ -55,23 +46,23 @@ def draw(text: str | None, folder: Path) -> tuple[list[str], list[str]]:
 
 
 @pytest.mark.parametrize("configuration", CONFIGURATIONS)
-def test_templates_of_a_repository_run_no_shell(project, configuration):
+def test_templates_of_a_repository_run_no_shell(repository, configuration):
     Path(configuration).write_text(CONFIGURATIONS[configuration])
     Path("t/plantuml/bdd.puml.j2").write_text(SHELL)
-    result = run_sysmlc("build", "plant.ir", "--emit", "plantuml")
+    result = repository.run("build", "plant.ir", "--emit", "plantuml")
     assert result.exit_code == 1
     assert "plantuml/bdd.puml.j2:1: access to attribute '__init__'" in result.stderr
     assert not Path("pwned").exists()
 
 
 @pytest.mark.parametrize("configuration", CONFIGURATIONS)
-def test_check_uses_the_shipped_templates_only(project, configuration):
+def test_check_uses_the_shipped_templates_only(repository, configuration):
     Path(configuration).write_text(CONFIGURATIONS[configuration])
     Path("t/plantuml/bdd.puml.j2").write_text("{{ 1 / 0 }}")
-    assert "SM700" in run_sysmlc("build", "plant.ir").stderr
-    result = run_sysmlc("check", "plant.ir")
+    assert "SM700" in repository.run("build", "plant.ir").stderr
+    result = repository.run("check", "plant.ir")
     assert (result.exit_code, "SM700" in result.stderr) == (0, False)
-    assert run_sysmlc("check", "plant.ir", "--templates", "t").exit_code == 2
+    assert repository.run("check", "plant.ir", "--templates", "t").exit_code == 2
 
 
 SANDBOX_ESCAPES = [
@@ -204,24 +195,24 @@ def test_a_template_that_is_not_text_is_refused(tmp_path):
 
 
 @pytest.mark.parametrize("location", ["..", "../outside", "link"])
-def test_a_configuration_cannot_name_a_folder_outside_of_the_project(project, location):
-    outside = project.parent / "outside"
-    outside.mkdir()
-    Path("link").symlink_to(outside)
+def test_a_configuration_cannot_name_a_folder_outside_of_the_project(repository, location):
+    Path("link").symlink_to(repository.outside)
     Path("sysmlc.toml").write_text(f'templates = "{location}"\n')
-    result = run_sysmlc("build", "plant.ir")
+    result = repository.run("build", "plant.ir")
     assert result.exit_code == 2
     assert f"'templates': '{location}' leads out of the project root" in result.stderr
     Path("sysmlc.toml").unlink()
-    assert run_sysmlc("build", "plant.ir", "--templates", str(outside)).exit_code == 0
+    assert (
+        repository.run("build", "plant.ir", "--templates", str(repository.outside)).exit_code == 0
+    )
 
 
-def test_modules_in_the_working_folder_are_not_imported(project):
+def test_modules_in_the_working_folder_are_not_imported(repository):
     """With ``python -m`` the rendering process would import ``jinja2.py`` of the repository."""
     Path("jinja2.py").write_text("open('pwned', 'w')\n")
     Path("json.py").write_text("open('pwned', 'w')\n")
     Path("t/plantuml/bdd.puml.j2").write_text("drawn")
-    assert run_sysmlc("build", "plant.ir", "--templates", "t").exit_code == 0
+    assert repository.run("build", "plant.ir", "--templates", "t").exit_code == 0
     assert Path("out/diagrams/Plant.bdd.puml").read_text() == "drawn"
     assert not Path("pwned").exists()
 
