@@ -85,9 +85,8 @@ def test_a_reached_limit_is_named(workspace):
     workspace.write("wide.gr1.json", json.dumps(WIDE_NUMBERS))
     result = workspace.sysmlc("synth", "wide.gr1.json", "--realizable", "--nodes", "10")
     assert [result.exit_code, result.stdout] == [2, "wide: not decided\n"]
-    assert (
-        "error[SM531 synthesis-limit]: 'wide' is undecided: the limit of 10 nodes" in result.stderr
-    )
+    message = "error[SM531 synthesis-limit]: 'wide' is undecided: the limit of 10 nodes"
+    assert message in result.stderr
 
 
 def test_contracts_of_a_model_are_decided_by_component(workspace, all_passes):

@@ -83,12 +83,8 @@ def test_an_error_about_an_owner_withholds_the_outputs_of_its_members(faulty):
         def run(self, graph, sink):
             sink.report(UNNAMED_PORT, graph.subject(graph["robot"]), owner="Robot")
 
-    assert (
-        list_published(
-            compile_files(faulty, passes=(ReportsRobot(),), backends=(WritesPortOnly(),))
-        )
-        == []
-    )
+    compilation = compile_files(faulty, passes=(ReportsRobot(),), backends=(WritesPortOnly(),))
+    assert list_published(compilation) == []
 
 
 def test_an_error_withholds_the_outputs_of_elements_derived_from_its_element(faulty):

@@ -85,9 +85,8 @@ def test_passes_are_structs_or_dataclasses(monkeypatch, original):
 
 
 def test_an_integer_is_accepted_as_a_number(tmp_path):
-    assert (
-        load_passes_by_name(tmp_path, "[passes.recipe]\ntolerance = 1\n")["recipe"].tolerance == 1
-    )
+    passes = load_passes_by_name(tmp_path, "[passes.recipe]\ntolerance = 1\n")
+    assert passes["recipe"].tolerance == 1
 
 
 MODEL_WITHOUT_RANGES = """

@@ -84,9 +84,8 @@ def test_a_plug_in_that_cannot_be_loaded_is_one_sentence(plugin, tmp_path):
 def test_the_rule_is_reported_and_explained(plugin, tmp_path):
     (tmp_path / "plant.ir").write_text('StateMachine gripper "Gripper"\n')
     result = run_sysmlc(plugin, tmp_path, "check", "plant.ir", "--format", "concise")
-    assert (
-        "warning[SM948 stateless-machine]: state machine 'Gripper' has no states" in result.stderr
-    )
+    message = "warning[SM948 stateless-machine]: state machine 'Gripper' has no states"
+    assert message in result.stderr
     explanation = run_sysmlc(plugin, tmp_path, "explain", "stateless-machine").stdout
     assert explanation.startswith("SM948 stateless-machine (warning)")
     assert "Its contract would allow everything." in explanation

@@ -157,9 +157,8 @@ def test_robots_outside_the_proof_rest_without_violations():
     study = floor(3, None, None, None)
     failure = make_proof(study).find_offer_failure()
     contract = environment_contract(study)
-    assert (
-        list(violated_conjuncts(failure.run, (*contract.assumptions, *contract.guarantees))) == []
-    )
+    conjuncts = (*contract.assumptions, *contract.guarantees)
+    assert list(violated_conjuncts(failure.run, conjuncts)) == []
     assert list(violated_conjuncts(failure.run, mission_guarantees(study))) == []
     assert {step["r2_command"] for step in failure.run.steps} == {STAY}
 

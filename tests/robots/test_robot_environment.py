@@ -98,10 +98,8 @@ def test_runs_of_the_synthesised_machine_satisfy_the_contracts():
     controller = synthesise_robot(study, lambda origin: Subject(), Sink(), Options())
     trace, loop = record_run(study, ((0, 2), (1,)), build_answers(study, controller), (4, 5))
     assert list_violated_texts(environment_contract(study), trace, loop) == []
-    assert (
-        list_violated_texts(robot_contract(study, study.robots[0], is_alone=False), trace, loop)
-        == []
-    )
+    contract = robot_contract(study, study.robots[0], is_alone=False)
+    assert list_violated_texts(contract, trace, loop) == []
 
 
 class SilentWorld(RecordingWorld):
