@@ -1,4 +1,4 @@
-"""Valid owners of members: variants, portions, ends, results, variable features, imports.
+"""Valid members: what may own variants, portions, ends and variable features, and how often.
 
 Members that may occur once are the subject, objective, result, entry, do, exit and rendering.
 """
@@ -82,7 +82,48 @@ ENUMERATION_AND_MORE = rule(
     "attribute '{name}' is typed by an enumeration and by another type",
     help="keep one type",
 )
-
+SECOND_RESULT = rule(
+    "SM265",
+    "several-results",
+    Severity.ERROR,
+    "'{name}' has {count} result expressions, {whose}",
+    help="keep one of them",
+)
+VARIABLE_PORTION = rule(
+    "SM266",
+    "variable-portion",
+    Severity.ERROR,
+    "'{name}' is a portion, so it cannot be variable",
+    help="remove 'var' or 'portion'",
+)
+VARIABLE_ELSEWHERE = rule(
+    "SM267",
+    "variable-elsewhere",
+    Severity.ERROR,
+    "'{name}' is variable, but '{owner}' is not an occurrence",
+    help="remove 'var'",
+)
+ROOT_IMPORT = rule(
+    "SM268",
+    "public-root-import",
+    Severity.ERROR,
+    "the import of '{name}' is outside of all packages and not private",
+    help="write 'private' before 'import'",
+)
+ONLY_ONE = rule(
+    "SM223",
+    "only-one",
+    Severity.ERROR,
+    "'{owner}' may have only one {role}",
+    help="keep the first one, or redefine it",
+)
+SUBJECT_FIRST = rule(
+    "SM224",
+    "subject-first",
+    Severity.ERROR,
+    "the subject of '{owner}' must be its first parameter",
+    help="move the subject before the other parameters",
+)
 
 _FEATURE_MEMBERSHIPS = kinds_of("FeatureMembership")
 _SUCCESSIONS = kinds_of("Succession") | {"TransitionUsage"}
@@ -93,6 +134,22 @@ _WITH_TYPE_CHECKS = frozenset({"AttributeUsage", "MetadataUsage"})
 """Usages whose types are checked here."""
 _VERIFICATIONS = kinds_of("VerificationCaseDefinition") | kinds_of("VerificationCaseUsage")
 _ENUMERATIONS = kinds_of("EnumerationDefinition")
+_FUNCTIONS = kinds_of("Function") | (kinds_of("Expression") & DECLARED_TYPES)
+_IMPORTS = frozenset({"MembershipImport", "NamespaceImport"})
+_ROLES_BY_MEMBERSHIP = {
+    "SubjectMembership": "subject",
+    "ObjectiveMembership": "objective",
+    "ReturnParameterMembership": "result",
+    "ViewRenderingMembership": "rendering",
+}
+SINGLE_MEMBERSHIPS = frozenset({*_ROLES_BY_MEMBERSHIP, "StateSubactionMembership"})
+"""Memberships of members that may occur once."""
+_CASES = kinds_of("CaseDefinition") | kinds_of("CaseUsage")
+_WITH_SUBJECT = _CASES | kinds_of("RequirementDefinition") | kinds_of("RequirementUsage")
+_PARAMETERS = ("parameter", "subject")
+
+
+# -- members and their owners ------------------------------------------------------------------
 
 
 def check_member(model: Model, document: Document, node: Node, sink: Sink) -> None:
@@ -139,15 +196,12 @@ def _find_broken_feature_membership(node: Node, owner: Node) -> Rule | None:
 def _find_broken_type(model: Model, node: Node) -> Rule | None:
     if node.kind == "MetadataUsage":
         types = model.lookup.generals(node)
-        return (
-            ABSTRACT_METADATA
-            if any(type_.attributes.get("isAbstract") for type_ in types)
-            else None
-        )
+        is_abstract = any(type_.attributes.get("isAbstract") for type_ in types)
+        return ABSTRACT_METADATA if is_abstract else None
     if node.kind == "AttributeUsage" and len(model.lookup.generals(node)) > 1:
         types = model.types(node)
-        several = len(types) > 1 and any(type_.kind in _ENUMERATIONS for type_ in types)
-        return ENUMERATION_AND_MORE if several else None
+        has_enumeration = any(type_.kind in _ENUMERATIONS for type_ in types)
+        return ENUMERATION_AND_MORE if len(types) > 1 and has_enumeration else None
     return None
 
 
@@ -164,39 +218,6 @@ def _is_objective(owner: Node) -> bool:
     )
 
 
-SECOND_RESULT = rule(
-    "SM265",
-    "several-results",
-    Severity.ERROR,
-    "'{name}' has {count} result expressions, {whose}",
-    help="keep one of them",
-)
-VARIABLE_PORTION = rule(
-    "SM266",
-    "variable-portion",
-    Severity.ERROR,
-    "'{name}' is a portion, so it cannot be variable",
-    help="remove 'var' or 'portion'",
-)
-VARIABLE_ELSEWHERE = rule(
-    "SM267",
-    "variable-elsewhere",
-    Severity.ERROR,
-    "'{name}' is variable, but '{owner}' is not an occurrence",
-    help="remove 'var'",
-)
-ROOT_IMPORT = rule(
-    "SM268",
-    "public-root-import",
-    Severity.ERROR,
-    "the import of '{name}' is outside of all packages and not private",
-    help="write 'private' before 'import'",
-)
-
-_FUNCTIONS = kinds_of("Function") | (kinds_of("Expression") & DECLARED_TYPES)
-_IMPORTS = frozenset({"MembershipImport", "NamespaceImport"})
-
-
 def check_result(model: Model, node: Node) -> Iterator[Finding]:
     """Report a second result expression; the first one may be owned or inherited."""
     own_results = _list_results(node)
@@ -208,9 +229,11 @@ def check_result(model: Model, node: Node) -> Iterator[Finding]:
     count = len(own_results) + len(inherited)
     if count > 1:
         start = own_results[-1].start if own_results else node.start
-        owners = "inherited ones" if not own_results else "its own and inherited ones"
-        facts = {"name": name_of(model, node), "count": str(count)}
-        yield Finding(SECOND_RESULT, start, {**facts, "whose": owners if inherited else "its own"})
+        whose = "its own and inherited ones" if own_results else "inherited ones"
+        if not inherited:
+            whose = "its own"
+        facts = {"name": name_of(model, node), "count": str(count), "whose": whose}
+        yield Finding(SECOND_RESULT, start, facts)
 
 
 def _list_results(node: Node) -> list[Node]:
@@ -241,30 +264,6 @@ CHECKS = ((_FUNCTIONS, check_result), (DECLARED_FEATURES, check_variable), (_IMP
 
 # -- members that may occur once ---------------------------------------------------------------
 
-ONLY_ONE = rule(
-    "SM223",
-    "only-one",
-    Severity.ERROR,
-    "'{owner}' may have only one {role}",
-    help="keep the first one, or redefine it",
-)
-SUBJECT_FIRST = rule(
-    "SM224",
-    "subject-first",
-    Severity.ERROR,
-    "the subject of '{owner}' must be its first parameter",
-    help="move the subject before the other parameters",
-)
-
-_ROLES_BY_MEMBERSHIP = {
-    "SubjectMembership": "subject",
-    "ObjectiveMembership": "objective",
-    "ReturnParameterMembership": "result",
-    "ViewRenderingMembership": "rendering",
-}
-SINGLE_MEMBERSHIPS = frozenset({*_ROLES_BY_MEMBERSHIP, "StateSubactionMembership"})
-"""Memberships of members that may occur once."""
-
 
 def check_own_members(model: Model, document: Document, node: Node, sink: Sink) -> None:
     """Report members that occur twice, and a subject after other parameters."""
@@ -287,11 +286,6 @@ def _find_single_role(member: Node) -> str:
     if member.membership == "StateSubactionMembership":
         return f"{member.role} action"
     return _ROLES_BY_MEMBERSHIP.get(member.membership, "")
-
-
-_CASES = kinds_of("CaseDefinition") | kinds_of("CaseUsage")
-_WITH_SUBJECT = _CASES | kinds_of("RequirementDefinition") | kinds_of("RequirementUsage")
-_PARAMETERS = ("parameter", "subject")
 
 
 def check_objective(model: Model, node: Node) -> Iterator[Finding]:
