@@ -49,10 +49,6 @@ class IrBackend(Struct, frozen=True):
         output.add("graph.ir", print_text(graph), backend=self.name)
 
 
-JSON = GraphBackend()
-TEXT = IrBackend()
-
-
 def _describe_element(
     element: Element, qualified_name: str, location: Place | None
 ) -> dict[str, object]:
@@ -80,3 +76,7 @@ def _describe_location(location: Place | None) -> dict[str, object] | None:
         "line": location.line or None,
         "column": location.column or None,
     }
+
+
+JSON = GraphBackend()
+TEXT = IrBackend()

@@ -47,8 +47,9 @@ def encode_controller(controller: Controller) -> EncodedController:
 
 
 def decode_controller(encoded: EncodedController, variables: Sequence[Variable]) -> Controller:
-    """Decode a controller over variables of its contract. Raises LookupError, ValueError,
-    TypeError.
+    """Decode a controller over variables of its contract.
+
+    Raises LookupError, ValueError, TypeError.
     """
     variables_by_name = {item.name: item for item in variables}
     inputs, outputs = (

@@ -1,5 +1,4 @@
-"""The PlantUML back end: diagrams of structure, behaviour, requirements, interactions and use
-cases in ``out/diagrams``."""
+"""The PlantUML back end: diagrams of structure, behaviour and requirements in ``out/diagrams``."""
 
 from sysmlc.backends.plantuml.backend import PlantUml
 

@@ -73,9 +73,7 @@ def _group_by_package(
 
 
 def _group_classifiers(graph: Graph) -> dict[str | None, list[Element]]:
-    """Return the classifiers that each package shows: its own and those nested in its
-    classifiers.
-    """
+    """Return the classifiers that each package shows, those nested in its classifiers included."""
     classifiers_by_package: dict[str | None, list[Element]] = {}
     of_use_cases = use_case.find_use_case_actors(graph)
     for root in graph.roots():

@@ -187,9 +187,7 @@ def _iter_measure_ids(graph: Graph, item: Element) -> Iterator[str]:
 
 
 def format_unit(graph: Graph, feature: Element) -> str:
-    """Return ``{unit = kg}`` for a value property, unless the name of its type contains the
-    unit.
-    """
+    """Return ``{unit = kg}`` for a value property, unless its type is named after the unit."""
     unit = unit_of(graph, feature)
     if unit is None:
         return ""

@@ -304,9 +304,7 @@ def make_notes(
     with_parameters: bool = False,
     inside: Iterable[Element] | None = None,
 ) -> tuple[Note, ...]:
-    """Return notes for the comments *inside* the behaviour, and for its own constraints and
-    features.
-    """
+    """Return notes for the comments *inside* the behaviour, its constraints and its features."""
     texts = tuple(
         _make_note(graph, item, aliases)
         for item in (graph.subtree(behaviour) if inside is None else inside)

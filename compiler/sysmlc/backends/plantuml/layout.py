@@ -141,9 +141,7 @@ def _compute_ranks(connections: Sequence[Connection]) -> dict[str, int]:
 
 
 def _iter_steps(connection: Connection) -> Iterator[tuple[str, str]]:
-    """Yield the parts of a connection in the direction of its flow, else in the order of its
-    ends.
-    """
+    """Yield the two parts in the direction of the flow, else in the order of the ends."""
     first, second = connection.source.top, connection.target.top
     if first and second and first != second:
         is_back = connection.arrow.startswith("<") and not connection.arrow.endswith(">")

@@ -246,7 +246,9 @@ def _format_behaviour(behaviour: Element) -> str:
 
 
 def format_trigger(graph: Graph, trigger: Element) -> str:
-    """Return ``signal``, ``operation()``, ``after (5 s)``, ``at (noon)``, ``when (x > 3)`` or
+    """Return the text of a trigger.
+
+    The forms are ``signal``, ``operation()``, ``after (5 s)``, ``at (noon)``, ``when (x > 3)`` and
     ``all``.
     """
     event = ", ".join(labels.name(item) for item in graph.targets(trigger, Edge.TYPED_BY))

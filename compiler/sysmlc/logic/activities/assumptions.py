@@ -26,9 +26,7 @@ from sysmlc.logic.formula import Const
 
 
 class Loop(Struct, frozen=True):
-    """Nodes (ids, in the order of the graph) that reach each other, and the edges that leave
-    them.
-    """
+    """Nodes that reach each other, as ids in the order of the graph, and edges that leave them."""
 
     nodes: tuple[str, ...]
     exits: tuple[TokenEdge, ...]

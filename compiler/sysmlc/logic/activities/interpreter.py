@@ -42,9 +42,7 @@ class NotSafeError(RuntimeError):
 
 
 class State(Struct, frozen=True):
-    """Ids of the edges that hold a token and of the nodes that run, and the values of written
-    variables.
-    """
+    """Ids of edges with a token and of running nodes, and the values of written variables."""
 
     tokens: frozenset[str]
     running: frozenset[str]

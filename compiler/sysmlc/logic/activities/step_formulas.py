@@ -138,9 +138,7 @@ class StepFormulas:
     # -- edges -----------------------------------------------------------------------------
 
     def guard_formula(self, edge: TokenEdge) -> Formula:
-        """The guard of the edge; ``else`` is the conjunction of the negated guards of its
-        siblings.
-        """
+        """Return the guard of the edge; ``else`` is true if no guard of a sibling is."""
         guard = edge.guard
         if guard is None:
             return f.TRUE

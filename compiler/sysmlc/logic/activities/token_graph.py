@@ -241,28 +241,28 @@ class TokenGraph(Struct, frozen=True, dict=True):
 
     @cached_property
     def _incoming(self) -> dict[str, list[TokenEdge]]:
-        return self._index_edges("target")
+        edges: dict[str, list[TokenEdge]] = {node.id: [] for node in self.nodes}
+        for edge in self.edges:
+            edges[edge.target].append(edge)
+        return edges
 
     @cached_property
     def _outgoing(self) -> dict[str, list[TokenEdge]]:
-        return self._index_edges("source")
-
-    def _index_edges(self, end: str) -> dict[str, list[TokenEdge]]:
         edges: dict[str, list[TokenEdge]] = {node.id: [] for node in self.nodes}
         for edge in self.edges:
-            edges[getattr(edge, end)].append(edge)
+            edges[edge.source].append(edge)
         return edges
 
     def node(self, id: str) -> TokenNode:
-        """The node with this id; KeyError when there is none."""
+        """Return the node with this id. Raises KeyError."""
         return self._nodes[id]
 
     def incoming(self, node: TokenNode) -> list[TokenEdge]:
-        """Edges that reach the node, in order."""
+        """Return the edges that reach the node, in order."""
         return self._incoming[node.id]
 
     def outgoing(self, node: TokenNode) -> list[TokenEdge]:
-        """Edges that leave the node, in order."""
+        """Return the edges that leave the node, in order."""
         return self._outgoing[node.id]
 
     def workers(self) -> Iterator[TokenNode]:
@@ -283,7 +283,7 @@ class TokenGraph(Struct, frozen=True, dict=True):
         return self._inside.get(region, ([], []))
 
     def regions(self) -> Iterator[str]:
-        """The activity and every structured node."""
+        """Yield the region of the activity and that of every structured node."""
         yield ACTIVITY_REGION
         yield from (node.id for node in self.nodes if node.kind is NodeKind.STRUCTURED)
 
@@ -324,11 +324,11 @@ class TokenGraph(Struct, frozen=True, dict=True):
         return members
 
     def members(self, region: str) -> list[TokenNode]:
-        """Nodes directly in a region."""
+        """Return the nodes directly in a region."""
         return self._members.get(region, [])
 
     def regions_around(self, region: str) -> Iterator[TokenNode]:
-        """The structured node of the region and those around it, innermost first."""
+        """Yield the structured node of the region and those around it, innermost first."""
         while region != ACTIVITY_REGION:
             node = self._nodes[region]
             yield node

@@ -94,9 +94,7 @@ def _list_blocks(graph: Graph, by_origin: Mapping[str, Contract]) -> list[Elemen
 
 
 def _iter_owners(graph: Graph, element: Element) -> Iterator[Element]:
-    """Yield the elements that have *element* as a part, an action or a behaviour, or that
-    specialise it.
-    """
+    """Yield the elements that contain *element* as part, action or behaviour, or specialise it."""
     yield from graph.sources(element, Edge.SPECIALIZES)
     yield from graph.sources(element, Edge.CLASSIFIER_BEHAVIOR)
     owner = graph.owner(element) if element.kind is Kind.ACTIVITY else None

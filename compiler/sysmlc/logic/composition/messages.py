@@ -187,9 +187,7 @@ def _addressed_names(block: Block, sender: Member, receipt: Receipt) -> Iterator
 
 
 def _are_joined(block: Block, left: Member, right: Member) -> bool:
-    """Return whether a connector leads from a port of one member, or from the member itself, to
-    the other.
-    """
+    """Return whether a connector joins two members, each by a port or by the member itself."""
     left_channels, right_channels = (
         {block.channels.find(end) for end in _iter_ends(block, member)} for member in (left, right)
     )

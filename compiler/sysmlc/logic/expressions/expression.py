@@ -177,9 +177,7 @@ def print_literal(value: bool | float | str) -> str:
 
 
 def dotted_name(expression: Expression) -> str | None:
-    """Return a name or a chain of features as text (``a.b``, ``A::B``); None for any other
-    expression.
-    """
+    """Return a name or a chain of features as text (``a.b``, ``A::B``), or None."""
     match expression:
         case Name(path):
             return "::".join(path)

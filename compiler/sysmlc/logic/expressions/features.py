@@ -124,8 +124,9 @@ def _has_untyped_default(element: Element, type_: Element | None, kind: type) ->
 def _assume_domain(
     element: Element, type_names: set[str], assumed_range: tuple[int, int]
 ) -> Domain:
-    """Return the assumed range, without negative numbers for unsigned types and extended to the
-    default value.
+    """Return the assumed range of a number.
+
+    It has no negative numbers for unsigned types, and contains the default value.
     """
     low, high = assumed_range
     low = max(low, 0) if type_names & _UNSIGNED else low

@@ -47,9 +47,7 @@ def find_raising(graph: Graph) -> Raising:
 
 
 def _find_raiser(graph: Graph, action: Element) -> Element | None:
-    """Return the behaviour that contains the action, or None if a handler in it catches the
-    exception.
-    """
+    """Return the behaviour of the action, or None if a handler in it catches the exception."""
     element: Element | None = action
     while element is not None and element.kind is not Kind.ACTIVITY:
         if "handlers" in element.attrs:

@@ -51,9 +51,7 @@ def _find_region(draft: Draft, flow: Flow, target: str) -> str:
 
 
 def _find_interrupted_region(draft: Draft, flow: Flow) -> str:
-    """Return the id of the interruptible region of this activity that the flow interrupts, or
-    "".
-    """
+    """Return the id of the interruptible region that the flow interrupts, or an empty text."""
     id = flow.element.attrs.get("interrupts")
     region = draft.graph.get(id) if isinstance(id, str) else None
     if region is None or region.subkind != "interruptible":

@@ -1,5 +1,4 @@
-"""Regions of activities: parts of loops and conditionals, groups, interruptible and expansion
-regions.
+"""Regions of activities: loops, conditionals, groups, interruptible and expansion regions.
 
 UML lists only the executable nodes of a part. A fork, decision or buffer between them is assigned
 to the part from which its tokens come. If they come from outside all parts, it is assigned to the

@@ -52,9 +52,7 @@ def _find_breaks(graph: Graph, owner: Element, end: Element) -> Iterator[tuple[E
 
 
 def _start_of_paths(graph: Graph, owner: Element) -> Element | None:
-    """Return the classifier whose features start the paths: the owner or, for an instance, its
-    classifier.
-    """
+    """Return the classifier whose features start the paths: the owner, or that of an instance."""
     if owner.kind is Kind.INSTANCE:
         return graph.target(owner, Edge.INSTANCE_OF)
     return owner

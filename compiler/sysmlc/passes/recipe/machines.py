@@ -13,9 +13,7 @@ from sysmlc.recipe.plant import is_in_plant
 
 
 class Relation(Struct, frozen=True):
-    """An element that relates a task or a service to machines: a dependency, object flow or
-    partition.
-    """
+    """A dependency, object flow or partition that relates a task or a service to machines."""
 
     element: Element
     machines: tuple[Element, ...]

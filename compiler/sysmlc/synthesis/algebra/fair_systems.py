@@ -31,9 +31,7 @@ class DomainError(Exception):
 
 
 class FairSystem(Struct, frozen=True):
-    """Infinite runs from ``init`` whose steps satisfy ``parts`` and that visit each of ``fairness``
-    infinitely often.
-    """
+    """The infinite runs from ``init`` that visit each of ``fairness`` infinitely often."""
 
     symbols: Symbols
     init: Node

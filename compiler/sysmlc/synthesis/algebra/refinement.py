@@ -1,5 +1,6 @@
-"""Entailment of conjuncts, and refinement and compatibility of contracts (thesis 2.2.1; Benveniste
-et al. 2018).
+"""Entailment of conjuncts; refinement and compatibility of contracts (thesis 2.2.1).
+
+The definitions are those of Benveniste et al. (2018).
 
 A contract denotes a set of environments (those that satisfy its assumptions) and a set of systems
 (those that satisfy its guarantees in these environments). Each conjunct is decided by itself on the

@@ -1,5 +1,4 @@
-"""Decision diagrams (BDDs) on CUDD through ``dd.cudd``, or on ``dd.autoref`` with the same
-interface.
+"""Decision diagrams (BDDs) on CUDD through ``dd.cudd``, or on ``dd.autoref``.
 
 Diagrams (``Node``) are combined by ``&``, ``|``, ``~``, ``implies`` and ``equiv``. Operations that
 differ between the two libraries, or that may run for long, are methods of ``Manager``.

@@ -250,12 +250,10 @@ def _build_prefixed(
 def _build_prefixed_nothing(
     tokens: Tokens, stop: int, begin: int, prefixes: list[Prefix], body: list[Node]
 ) -> Node:
-    return apply_prefixes(
-        tokens,
-        begin,
-        prefixes,
-        _turn_into_feature(build_keywordless_usage(tokens, stop, begin, None, None, None, body)),
+    feature = _turn_into_feature(
+        build_keywordless_usage(tokens, stop, begin, None, None, None, body)
     )
+    return apply_prefixes(tokens, begin, prefixes, feature)
 
 
 def _turn_into_feature(node: Node) -> Node:
@@ -327,8 +325,11 @@ def _build_with_cross_feature(
     cross: usages.CrossFeature,
     *rest: Node | list[Prefix],
 ) -> Node:
-    node, next_item = rest[-1], rest[0]
-    all_prefixes = [*prefixes, *next_item] if isinstance(next_item, list) else prefixes
+    """Build a feature with a cross feature; further prefixes may stand between the two."""
+    further_prefixes, node = rest[0], rest[-1]
+    all_prefixes = prefixes
+    if isinstance(further_prefixes, list):
+        all_prefixes = [*prefixes, *further_prefixes]
     assert isinstance(node, Node)
     return prepend_members(apply_prefixes(tokens, begin, all_prefixes, node), [cross.node])
 
