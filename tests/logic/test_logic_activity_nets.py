@@ -27,7 +27,7 @@ def build_unchecked(canvas: Canvas) -> TokenGraph:
     """Return the token graph, safe or not."""
     graph, sink = canvas.graph, Sink()
     drawing = read_drawing(graph, graph["a"], sink)
-    inputs = Inputs(graph, Scope(graph, graph["a"], sink), sink)
+    inputs = Inputs(graph, Scope(graph, graph["a"], Activities().assumed_range, sink), sink)
     return construction.build(graph, drawing, inputs, find_raising(graph), sink)
 
 
