@@ -14,6 +14,7 @@ VARIABLES = (
     Parameter("m", "integer", value=0),
     Parameter("x", "real", value=0.5),
     Parameter("colour", COLOUR, value="red"),
+    Parameter("tool", "string", value="drill"),
 )
 
 
@@ -58,6 +59,7 @@ def test_guards_of_which_exactly_one_is_true_are_valid(guards):
         (("n <= 3", "n >= 3"), "overlap: 'n <= 3' and 'n >= 3' are both true for n = 3"),
         (("x < 0.5", "x > 0.5"), "leave a gap: none is true for x = 0.5"),
         (("colour == Colour::red",), "leave a gap: none is true for colour = green"),
+        (('tool == "drill"',), "leave a gap: none is true for tool = another"),
         (("else", "else"), "contain 'else' 2 times"),
         (("ok", ""), "leave an edge without a guard"),
         (("n + 1", "else"), "are not all Boolean: 'n + 1'"),

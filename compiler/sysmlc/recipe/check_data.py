@@ -6,6 +6,7 @@ from sysmlc.diagnostics import Severity, rule
 from sysmlc.ir.algorithms import sort_topologically
 from sysmlc.logic.expressions.expression import Expression, last_name
 from sysmlc.recipe.expression import (
+    ANOTHER_TEXT,
     UndecidedError,
     is_condition,
     is_satisfied,
@@ -122,7 +123,9 @@ def _format_values(values: Mapping[str, Scalar]) -> str:
 
 
 def _format_value(value: Scalar) -> str:
-    return str(value).lower() if isinstance(value, bool) else str(value).replace("\x00", "an")
+    if value == ANOTHER_TEXT:
+        return "another"
+    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 # -- variables ---------------------------------------------------------------------------------

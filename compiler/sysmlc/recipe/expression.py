@@ -118,7 +118,10 @@ def iter_opaque_texts(expression: Expression) -> Iterator[str]:
 
 # -- evaluation of guards ----------------------------------------------------------------------
 
+ANOTHER_TEXT = "\x00"
+"""Sample value that stands for all texts with which no guard compares the variable."""
 _MOST_VALUATIONS = 5000
+"""Most combinations of sample values for one decision."""
 _COMPARISONS = ("==", "!=", "<", "<=", ">", ">=")
 _NUMERIC = (*"+-*/", "mod", "<", "<=", ">", ">=")
 _OPERATIONS: dict[str, Callable[..., Scalar]] = {
@@ -209,10 +212,9 @@ def _sample_domain(name: str, guards: list[Expression], type_: ValueType | None)
     constants = [value for guard in guards for value in _iter_constants(name, guard)]
     texts = sorted({value for value in constants if isinstance(value, str)})
     if texts:
-        # One text that is equal to none of the constants stands for all the others.
-        return [*texts, "\x00other"]
-    numeric = type_ in ("integer", "real") or any(_is_numeric(name, guard) for guard in guards)
-    if not numeric:
+        return [*texts, ANOTHER_TEXT]
+    is_number = type_ in ("integer", "real") or any(_is_numeric(name, guard) for guard in guards)
+    if not is_number:
         return [False, True]
     # Guards change their value at a constant: one value below, at and above each is enough.
     step = 1 if type_ == "integer" else 0.5
