@@ -125,7 +125,7 @@ SARIF = {
         },
     },
 }
-"""What we expect of SARIF 2.1.0, whose own schema is not shipped."""
+"""The members of SARIF 2.1.0 that sysmlc writes; the official schema is not shipped."""
 
 _VALIDATORS = {
     name: Draft202012Validator(schema) for name, schema in {**SCHEMAS, "sarif": SARIF}.items()
@@ -174,11 +174,11 @@ def command_documents(out: Path) -> Iterator[Document]:
     for form in ("own", "table", "gr1c"):
         yield _run_json("synth", "synth", contract, "--machine", form, "-o", out / form)
     yield from read_documents(out)
-    yield from _manifest_with_kept_files(out / "kept")
+    yield from _build_faulty_model(out / "kept")
 
 
-def _manifest_with_kept_files(folder: Path) -> Iterator[Document]:
-    """Yield a manifest with files that stay because their input is damaged."""
+def _build_faulty_model(folder: Path) -> Iterator[Document]:
+    """Yield the manifest of a build that does not update its outputs, since the model is faulty."""
     folder.mkdir()
     model, out = folder / "plant.ir", folder / "out"
     for text in (BLOCK, "no model"):
@@ -188,7 +188,7 @@ def _manifest_with_kept_files(folder: Path) -> Iterator[Document]:
 
 
 def _run_json(name: str, *arguments: object) -> Document:
-    return _name_schema(name, json.loads(run(*arguments, "--format", "json")))
+    return _make_document(name, json.loads(run(*arguments, "--format", "json")))
 
 
 def _run_sarif(name: str, *arguments: object) -> Document:
@@ -199,7 +199,7 @@ def read_documents(folder: Path) -> Iterator[Document]:
     """Yield the JSON files in a folder, and the JSON in comments of its UML files."""
     for path in sorted(folder.rglob("*.json")):
         name = path.relative_to(folder.parent).as_posix()
-        yield _name_schema(name, json.loads(path.read_text(encoding="utf-8")))
+        yield _make_document(name, json.loads(path.read_text(encoding="utf-8")))
     for path in sorted(folder.rglob("*.uml")):
         for body in etree.parse(path).iter("body"):
             if (body.text or "").startswith(_COMMENT_PREFIX):
@@ -207,7 +207,7 @@ def read_documents(folder: Path) -> Iterator[Document]:
                 yield Document(path.name, "sysmlc-kept", content)
 
 
-def _name_schema(path: str, content: dict) -> Document:
+def _make_document(path: str, content: dict) -> Document:
     for suffix, name in _SCHEMAS_BY_SUFFIX.items():
         if path.endswith(suffix):
             return Document(path, name, content)

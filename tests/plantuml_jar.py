@@ -50,7 +50,7 @@ class PlantUml:
         assert process.returncode == 0, self._explain(process, names, texts)
         pictures = {name: folder / f"{stem}.{form}" for name, stem in names.items()}
         missing = [name for name, picture in pictures.items() if not picture.is_file()]
-        assert not missing, f"PlantUML made no picture of {missing}"
+        assert not missing, f"PlantUML wrote no picture of {missing}"
         contents = {name: picture.read_bytes() for name, picture in pictures.items()}
         faulty = [n for n, data in contents.items() if any(f.encode() in data for f in _FAULTS)]
         assert not faulty, f"PlantUML drew an error instead of {faulty}"

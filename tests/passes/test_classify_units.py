@@ -59,7 +59,7 @@ HALF = (
         ([("factor", print_exponent("1"))], None),
     ],
 )
-def test_the_symbol_of_a_derived_unit(factors, symbol):
+def test_the_symbol_of_a_derived_unit_is_composed_of_its_factors(factors, symbol):
     graph, _ = run_until(print_speed_unit(*factors), "classify")
     assert graph["v"].role == "unit"
     assert graph["v"].attrs.get("symbol") == symbol
