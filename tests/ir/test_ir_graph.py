@@ -19,7 +19,7 @@ Package line
 
 
 def is_consistent(graph: Graph) -> bool:
-    """Whether both ends of every edge know the edge, and of_kind finds every element once."""
+    """Whether every edge is found from both of its ends, and of_kind finds each element once."""
     for edge in Edge:
         for element in graph:
             for target in graph.targets(element, edge):

@@ -53,13 +53,13 @@ def derive_contracts(text: str) -> tuple[Graph, list[Contract], Sink]:
 
 
 def print_before(text: str, pass_name: str) -> str:
-    """Return the model in the state in which the pipeline gives it to the pass."""
+    """Return the model, as text, after the structural passes that precede the pass."""
     number = STRUCTURAL.index(pass_name)
     return print_text(run_until(text, STRUCTURAL[number - 1])[0] if number else parse_text(text))
 
 
 def print_after_second_run(graph: Graph, pass_name: str) -> str:
-    """Run a pass once more and return the graph, which must be valid."""
+    """Run a pass once more and return the graph as text; the graph must be valid."""
     pipeline.load(pass_name).run(graph, Sink())
     assert verify(graph) == []
     return print_text(graph)

@@ -88,7 +88,7 @@ def read_contracts(*files: Path):
 
 
 def sort_content(contract):
-    """Return the variables and the conjuncts of a contract in an order of their own."""
+    """Return the variables and the conjuncts of a contract, sorted by their text."""
     variables = sorted((v.name, str(v.owner), v.domain) for v in contract.variables)
     sides = (contract.assumptions, contract.guarantees)
     return str(variables), [sorted(print_conjuncts(side)) for side in sides]

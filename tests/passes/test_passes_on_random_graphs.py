@@ -70,6 +70,6 @@ def test_resolution_does_not_depend_on_the_order_of_references(graph, random):
 
 
 def sort_content(graph: Graph) -> tuple[list[str], list[tuple[str, str, str]]]:
-    """Return the elements and the edges of a graph in an order of their own."""
+    """Return the elements and the edges of a graph, sorted by their text."""
     elements = [f"{element!r} {element.id} {sorted(element.attrs.items())}" for element in graph]
     return sorted(elements), sorted((str(edge), a, b) for edge, a, b in graph.edges())
