@@ -36,7 +36,7 @@ def classify(formula: Formula) -> Iterator[tuple[Class, Formula]]:
 
 
 def convert_to_class(formula: Formula, class_: Class) -> Formula | None:
-    """Return the formula with primes for X if it belongs to the class, else None.
+    """Return the formula in the form of the class, with primes for X; None if it has no such form.
 
     An initial condition has no next step; only ``other`` has temporal operators that reach further
     than one step.

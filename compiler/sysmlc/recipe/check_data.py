@@ -187,9 +187,9 @@ def _iter_unset(graph: FlowGraph) -> Iterator[tuple[str, str]]:
 
 
 def _collect_set_variables(graph: FlowGraph) -> dict[str, set[str]]:
-    """Return the variables that every path to a time has set, by the time.
+    """Return, for each time, the variables that every path to it has set.
 
-    The key ``id`` stands for the time when a node is done, ``<id`` for the time when it begins.
+    The time ``id`` is when the node of this id is done, ``<id`` is when it begins.
     """
     start = {parameter.name for parameter in graph.inputs}
     start |= {variable.name for variable in graph.variables if variable.value is not None}

@@ -94,7 +94,7 @@ def _make_loop_node(
 def _repeat_condition(outgoing: list[FlowEdge]) -> Expression:
     """Return the condition of another round.
 
-    It is that a body guard holds; if a body edge has no guard or else, that no exit guard holds.
+    It is that a body guard holds; if a body edge has no guard or is else, that no exit guard holds.
     """
     body = [edge for edge in outgoing if edge.role == "body"]
     if any(edge.is_else or edge.guard is None for edge in body):

@@ -196,7 +196,7 @@ class FileLowering:
             self._mark_unsupported(record, UNSUPPORTED, record.local_type)
 
     def _mark_ownerless(self, record: Record) -> None:
-        """Store the verdict of a record whose owner is not read; in a diagram it is no loss."""
+        """Store the verdict of a record whose owner is not read; it is no loss inside a diagram."""
         owner = self.by_id.get(record.find_target("hasParent"))
         if owner and self.verdicts.get(owner.ordinal) is Verdict.IGNORED_NOTATION:
             self.verdicts[record.ordinal] = Verdict.IGNORED_NOTATION
