@@ -58,7 +58,7 @@ def test_the_wrong_example_breaks_the_rule_and_the_right_one_does_not(code):
         (memberships.ENUMERATION_AND_MORE, "SM235"),
     ],
 )
-def test_the_example_of_a_named_rule_breaks_it(rule, code):
+def test_a_rule_has_its_code_and_only_its_wrong_example_breaks_it(rule, code):
     assert rule.code == code
     assert list_codes(rule.read_page().wrong) == {code}
     assert list_codes(rule.read_page().right) == set()

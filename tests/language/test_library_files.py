@@ -118,7 +118,7 @@ def test_the_label_of_the_installed_library_has_the_version():
     assert find_library(None, {}).label == f"sysml {version} (installed)"
 
 
-def test_a_lost_type_is_looked_for_in_library_files_that_nobody_read():
+def test_an_unknown_type_is_searched_in_unread_library_files():
     tools = Source("Tools.sysml", b"library package Tools { part def Drill; }")
     sink = Sink()
     resolve([parse("part d : Drill;", "a.sysml", "sysml", sink)], Library([tools]), sink)

@@ -99,7 +99,7 @@ def test_an_expression_that_is_not_a_call_is_no_effect(text):
         parse_effect(text)
 
 
-def test_the_dotted_name_of_an_expression():
+def test_only_a_path_of_names_has_a_dotted_name():
     assert dotted_name(parse_expression("A::b.c")) == "A::b.c"
     assert dotted_name(parse_expression("f(x).c")) is None
 

@@ -47,13 +47,13 @@ def print_conjuncts(conjuncts):
     return [(str(conjunct.class_), print_formula(conjunct.formula)) for conjunct in conjuncts]
 
 
-def test_the_rules_are_those_of_this_module():
+def test_the_nine_rules_about_formats_are_tested_here():
     assert len(RULES) == 9
     assert rules.UNKNOWN_FORM in RULES
 
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.code)
-def test_the_wrong_example_has_the_fault_and_the_right_one_does_not(rule):
+def test_the_wrong_example_breaks_the_rule_and_the_right_one_does_not(rule):
     assert rule.code in [code for code, *_ in read(rule.read_page().wrong)[1]]
     assert rule.code not in [code for code, *_ in read(rule.read_page().right)[1]]
 
@@ -270,7 +270,7 @@ def test_the_fault_in_the_published_arm_and_the_probability_are_located():
 
 
 @pytest.mark.corpus
-def test_the_lifts_are_not_strict():
+def test_only_the_lifts_are_reported_as_not_strict():
     results = {name: read(text, name)[1] for name, text in read_corpus("tlsf_syntcomp/*.tlsf")}
     codes = {name: [code for code, *_ in diagnostics] for name, diagnostics in results.items()}
     assert {name: listed for name, listed in codes.items() if listed} == {

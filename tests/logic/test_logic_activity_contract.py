@@ -27,7 +27,7 @@ def print_conjunct(conjunct: Conjunct) -> str:
     return f"{prefix}({print_formula(conjunct.formula)})"
 
 
-def test_the_contract_of_one_action():
+def test_one_action_has_an_assumption_about_its_end_and_guarantees_about_its_tokens():
     contract = derive(STRAIGHT)
     assert [f"{variable.owner} {variable.name}" for variable in contract.variables] == [
         "env done_work",

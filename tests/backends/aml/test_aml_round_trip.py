@@ -116,7 +116,7 @@ def test_a_plant_is_read_back_without_differences(plant):
     assert changes == []
 
 
-def test_a_plant_loses_nothing_and_nothing_is_reported(plant):
+def test_a_plant_is_saved_without_losses(plant):
     assert save(plant)[1] == []
 
 

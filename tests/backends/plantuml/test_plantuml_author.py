@@ -35,7 +35,7 @@ def list_lines(name):
     ]
 
 
-def test_the_texts_of_a_small_model(golden):
+def test_the_diagrams_of_the_author_have_their_golden_texts(golden):
     golden.check("plantuml/author", draw_authored())
 
 

@@ -108,7 +108,7 @@ def test_the_legend_lists_the_domains_in_the_diagram(pallet, tag, listed):
     assert re.findall(r"<color:\$(\w+)>", legend) == listed
 
 
-def test_without_domains_nothing_is_added():
+def test_a_diagram_without_domains_has_no_colours_and_no_legend():
     text = draw_line("", "")
     assert "legend bottom" not in text
     assert "$" not in text

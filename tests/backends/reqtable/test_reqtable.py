@@ -245,7 +245,7 @@ def test_a_faulty_template_is_reported_and_the_csv_is_written(tmp_path):
     assert emit_tables(PLANT_MODEL, tmp_path)[0]["requirements/Plant.requirements.md"] == "Plant\n"
 
 
-def test_the_tables_of_an_example(golden):
+def test_the_tables_of_an_example_have_their_golden_texts(golden):
     texts = outputs(compile_example(ROOT / "examples/lego-recipe/lego-recipe.uml", "reqtable"))
     tables = {
         path.rpartition("/")[2]: text for path, text in texts.items() if "requirements/" in path

@@ -508,7 +508,7 @@ def test_the_toolkit_reads_quoted_names(name):
     assert (name, name) in loaded.elements
 
 
-def test_the_text_of_the_plant_of_the_thesis(golden):
+def test_the_plant_of_the_thesis_has_its_golden_text(golden):
     """The gate in AutomationML, refined by its overlay and its behaviour."""
     compilation = compile_example(PLANT, "sysml")
     published = compilation.list_published()

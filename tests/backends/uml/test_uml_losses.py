@@ -20,7 +20,7 @@ RULES = (
 
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
-def test_a_rule_reports_its_wrong_model_and_not_its_right_one(rule):
+def test_the_wrong_example_breaks_the_rule_and_the_right_one_does_not(rule):
     assert rule.code in [message[:5] for message in save(refine(rule.read_page().wrong))[1]]
     assert save(refine(rule.read_page().right))[1] == []
 

@@ -140,7 +140,7 @@ def test_a_damaged_comment_is_reported_and_preserved(body, plant):
 
 
 @pytest.mark.parametrize(("text", "codes"), [("wrong", ["SM189"]), ("right", [])])
-def test_the_rule_reports_its_wrong_model_and_not_its_right_one(text, codes):
+def test_the_wrong_example_breaks_the_rule_and_the_right_one_does_not(text, codes):
     graph, sink = parse_text(getattr(UNREADABLE.read_page(), text)), Sink()
     pipeline.build_pipeline(PASSES).run(graph, sink)
     assert [diagnostic.rule.code for diagnostic in sink] == codes

@@ -100,7 +100,7 @@ def find_faults(text):
     return faults
 
 
-def test_the_search_for_faults_can_fail():
+def test_the_search_for_faults_finds_a_dangling_reference():
     text, _ = save(read(EXAMPLES[0].read_bytes()))
     assert find_faults(text.replace(' source="_', ' source="x_', 1)) != []
 
