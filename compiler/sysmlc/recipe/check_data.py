@@ -275,7 +275,9 @@ def _check_graph(graph: FlowGraph) -> Iterator[Finding]:
 
 
 def _check_expression(element: str, id: str, expression: Expression | None) -> Iterator[Finding]:
-    for text in () if expression is None else iter_opaque_texts(expression):
+    if expression is None:
+        return
+    for text in iter_opaque_texts(expression):
         yield Finding(UNREADABLE, element, {"text": text, "element": id})
 
 

@@ -131,9 +131,10 @@ def check_releases(model: Model, tables: Tables) -> Iterator[Finding]:
     """SM618: each resource that a task acquires is released on every path to the end."""
     for task in model.recipe.tasks:
         graph = tables.service_graphs.get(task.implementation)
-        for resource, node, element in () if graph is None else _iter_unreleased(graph, tables):
-            facts = {"task": task.id, "resource": resource, "node": node}
-            yield Finding(UNRELEASED, element, facts)
+        if graph is not None:
+            for resource, node, element in _iter_unreleased(graph, tables):
+                facts = {"task": task.id, "resource": resource, "node": node}
+                yield Finding(UNRELEASED, element, facts)
 
 
 def _iter_unreleased(graph: FlowGraph, tables: Tables) -> Iterator[tuple[str, str, str]]:

@@ -97,11 +97,14 @@ def _check_machines_of_task(task: Task, tables: Tables) -> Iterator[Finding]:
     for service, offering in sorted(offers.items()):
         if not offering & equipment:
             yield _make_finding(task, f"none of its machines offers the service '{service}'")
-        for machine in sorted(offering - equipment) if offering & equipment else ():
-            facts = {"service": service, "machine": machine, "task": task.id}
-            yield Finding(PROVIDER_OUTSIDE, tables.services[service].element, facts)
+        if offering & equipment:
+            for machine in sorted(offering - equipment):
+                facts = {"service": service, "machine": machine, "task": task.id}
+                yield Finding(PROVIDER_OUTSIDE, tables.services[service].element, facts)
     offered = {machine for offering in offers.values() for machine in offering}
-    for machine in sorted(equipment - offered) if offers else ():
+    if not offers:
+        return
+    for machine in sorted(equipment - offered):
         yield _make_finding(task, f"its machine '{machine}' offers none of its services")
 
 
@@ -154,11 +157,14 @@ def check_materials(model: Model, tables: Tables) -> Iterator[Finding]:
 
 
 def _sum_consumption(task: Task, tables: Tables) -> dict[str, float]:
+    """Return the quantity of each material that the services of a task consume."""
     graph = tables.service_graphs.get(task.implementation)
+    if graph is None:
+        return {}
     consumption: dict[str, float] = {}
-    for node in () if graph is None else graph.nodes:
-        service = tables.find_service(node)
-        for use in () if service is None else service.materials:
+    for service in map(tables.find_service, graph.nodes):
+        uses = [] if service is None else service.materials
+        for use in uses:
             if use.use == "consumed":
                 consumption[use.material] = consumption.get(use.material, 0) + use.quantity
     return consumption

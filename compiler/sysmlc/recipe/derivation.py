@@ -112,10 +112,12 @@ def list_functions(node: Node, tables: Tables) -> list[Function]:
 
 def _collect_functions(graph_id: str, tables: Tables, visited: set[str]) -> list[Function]:
     """Return the functions that a graph calls, directly or through helpers."""
-    graph = tables.function_graphs.get(graph_id)
-    functions: list[Function] = []
     visited.add(graph_id)
-    for node in () if graph is None else graph.nodes:
+    graph = tables.function_graphs.get(graph_id)
+    if graph is None:
+        return []
+    functions: list[Function] = []
+    for node in graph.nodes:
         if node.kind == "call" and node.ref not in visited:
             functions += _collect_functions(node.ref, tables, visited)
         elif node.ref in tables.functions:

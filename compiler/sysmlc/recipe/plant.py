@@ -98,8 +98,9 @@ class Plant:
     def _by_block(self) -> dict[str, list[PlantElement]]:
         index: dict[str, list[PlantElement]] = {}
         for item in self.elements.values():
-            for id in () if item.block is None else self.list_class_ids(item.block):
-                index.setdefault(id, []).append(item)
+            if item.block is not None:
+                for id in self.list_class_ids(item.block):
+                    index.setdefault(id, []).append(item)
         return index
 
     def find_represented(self, element: Element) -> list[PlantElement]:

@@ -97,10 +97,11 @@ class Cache(Struct, frozen=True):
     def _iter_entries(self) -> Iterator[tuple[int, int, str]]:
         """Yield the time of last use, the size and the path of each entry."""
         for folder in os.scandir(self.folder):
-            for entry in os.scandir(folder) if folder.is_dir() else ():
-                if entry.name.endswith(_SUFFIX):
-                    status = entry.stat()
-                    yield status.st_mtime_ns, status.st_size, entry.path
+            if folder.is_dir():
+                for entry in os.scandir(folder):
+                    if entry.name.endswith(_SUFFIX):
+                        status = entry.stat()
+                        yield status.st_mtime_ns, status.st_size, entry.path
 
 
 def open_cache(project_roots: Iterable[Path]) -> Cache | None:

@@ -30,12 +30,13 @@ def collect_statements(graph: Graph) -> list[tuple[Element, list[Statement]]]:
     statements: dict[str, dict[str, Statement]] = {}
     for requirement in filter(query.is_requirement, graph.of_kind(Kind.CLASS)):
         new_statements = list(_iter_statements(graph, requirement))
-        for subject in _iter_subjects(graph, requirement) if new_statements else ():
-            # A constraint that several requirements inherit counts once.
-            by_constraint = statements.setdefault(subject.id, {})
-            by_constraint.update(
-                (statement.constraint.id, statement) for statement in new_statements
-            )
+        if new_statements:
+            for subject in _iter_subjects(graph, requirement):
+                # A constraint that several requirements inherit counts once.
+                by_constraint = statements.setdefault(subject.id, {})
+                by_constraint.update(
+                    (statement.constraint.id, statement) for statement in new_statements
+                )
     return [(graph[id], list(by_constraint.values())) for id, by_constraint in statements.items()]
 
 
