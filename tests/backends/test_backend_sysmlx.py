@@ -4,7 +4,7 @@ from uuid import NAMESPACE_URL, uuid5
 
 import pytest
 
-import emitting
+import backend_runs
 from sysml_metamodel import count_ids, count_with_metamodel
 from sysmlc.backends.base import EmitOptions, InputFile
 from sysmlc.backends.sysmlx import BACKEND
@@ -50,7 +50,7 @@ def read_v2(*files):
 
 def emit(graph, inputs=()):
     """Return the interchange files by path, and the codes of the diagnostics."""
-    artefacts, diagnostics = emitting.emit(BACKEND, graph, EmitOptions(inputs=inputs))
+    artefacts, diagnostics = backend_runs.emit(BACKEND, graph, EmitOptions(inputs=inputs))
     files = {path: artefact.text for path, artefact in artefacts.items()}
     return files, [diagnostic.rule.code for diagnostic in diagnostics]
 
@@ -160,7 +160,7 @@ class FaultyBackend:
 def test_a_syntax_error_in_the_text_is_reported_at_its_element(monkeypatch):
     monkeypatch.setattr("sysmlc.backends.sysmlx.TEXT", FaultyBackend())
     graph = parse_text('Package plant "Plant"\n  Class gate "Gate"\n')
-    artefacts, (diagnostic,) = emitting.emit(BACKEND, graph)
+    artefacts, (diagnostic,) = backend_runs.emit(BACKEND, graph)
     assert artefacts == {}
     assert (diagnostic.rule.code, diagnostic.subject.name) == ("SM749", "Plant::Gate")
     assert diagnostic.message.startswith(

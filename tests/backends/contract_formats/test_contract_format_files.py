@@ -3,7 +3,7 @@
 import pytest
 import spot
 
-from emitting import refine_and_emit
+from backend_runs import refine_and_emit
 from machine_samples import arrow, machine
 from sysmlc.backends.contract_formats import NOT_EXPRESSIBLE
 from sysmlc.diagnostics import Sink

@@ -5,7 +5,7 @@ import json
 import jsonschema
 import pytest
 
-from emitting import refine_and_emit
+from backend_runs import refine_and_emit
 from machine_samples import arrow, machine
 from sysmlc.backends.contracts import BACKEND
 from sysmlc.logic.contract import (

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-import emitting
+import backend_runs
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.plantuml import BACKEND
 from sysmlc.diagnostics import Diagnostic
@@ -23,7 +23,7 @@ def emit(
 ) -> tuple[list[Artefact], list[Diagnostic]]:
     """Return the files that the back end writes, and its diagnostics."""
     options = EmitOptions(templates, diagrams=diagrams)
-    artefacts, diagnostics = emitting.emit(BACKEND, graph, options)
+    artefacts, diagnostics = backend_runs.emit(BACKEND, graph, options)
     return list(artefacts.values()), diagnostics
 
 

@@ -9,7 +9,7 @@ import pytest
 from jsonschema import Draft202012Validator
 from recipe_files import SCHEMA, compile_recipe, find_example, list_faults, list_recipes
 
-import emitting
+import backend_runs
 import recipe_samples as samples
 from sysmlc.backends.base import EmitOptions, InputFile
 from sysmlc.backends.recipe import BACKEND
@@ -26,7 +26,7 @@ def emit(text: str):
     """Return the artefacts of a model in IR text by path, and the codes of the diagnostics."""
     graph = parse_text(text)
     Recipe().run(graph, Sink())
-    artefacts, diagnostics = emitting.emit(BACKEND, graph, EmitOptions(inputs=INPUTS))
+    artefacts, diagnostics = backend_runs.emit(BACKEND, graph, EmitOptions(inputs=INPUTS))
     return artefacts, [diagnostic.rule.code for diagnostic in diagnostics]
 
 

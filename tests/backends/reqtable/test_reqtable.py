@@ -5,7 +5,7 @@ import io
 
 import pytest
 
-from emitting import emit
+from backend_runs import emit
 from examples.compiling import ROOT, compile_example, outputs
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.reqtable import BACKEND

@@ -1,4 +1,4 @@
-"""Runs one back end on a graph, in memory."""
+"""Runs of one back end on a graph, in memory."""
 
 from pathlib import Path
 
