@@ -26,7 +26,7 @@ def format_text(changes: Sequence[Change], *, color: bool = False) -> str:
         "\n".join([_paint(owner, color, bold=True), *_format_change(group, color=color)])
         for owner, group in _group_by_owner(changes)
     ]
-    return "\n\n".join([*blocks, count_changes(changes)]) + "\n"
+    return "\n\n".join([*blocks, _count_changes(changes)]) + "\n"
 
 
 def _group_by_owner(changes: Iterable[Change]) -> Iterator[tuple[str, list[Change]]]:
@@ -47,7 +47,7 @@ def _paint(line: str, color: bool, **style: Any) -> str:  # noqa: ANN401 - optio
 
 
 def _phrase(change: Change) -> str:
-    before, after = excerpt_pair(change.before, change.after)
+    before, after = _excerpt_pair(change.before, change.after)
     if change.what in (What.ADDED, What.REMOVED):
         return f"{change.what}{_list_contents(change, ', with {} below it')}"
     if change.what is What.RENAMED:
@@ -65,7 +65,7 @@ def _list_contents(change: Change, phrase: str) -> str:
     return phrase.format(change.contents) if change.contents else ""
 
 
-def excerpt_pair(before: str, after: str) -> tuple[str, str]:
+def _excerpt_pair(before: str, after: str) -> tuple[str, str]:
     """Return both texts; if one is long, return excerpts around their first difference."""
     if max(len(before), len(after)) <= _MAX_LENGTH:
         return before, after
@@ -80,7 +80,7 @@ def _cut(whole: str, start: int) -> str:
     return f"{head}{whole[start : start + _MAX_LENGTH]}{tail}"
 
 
-def count_changes(changes: Sequence[Change]) -> str:
+def _count_changes(changes: Sequence[Change]) -> str:
     """Return ``1 added, 2 rewired``, or ``no differences``."""
     counts_by_kind = Counter(change.what for change in changes)
     return (
@@ -94,7 +94,7 @@ def count_changes(changes: Sequence[Change]) -> str:
 
 def format_markdown(changes: Sequence[Change]) -> str:
     """Return a summary and a table of changes for each owner, in Markdown."""
-    blocks = [f"**{count_changes(changes)}**"]
+    blocks = [f"**{_count_changes(changes)}**"]
     for owner, group in _group_by_owner(changes):
         rows = [f"| {' | '.join(_format_cells(change))} |" for change in group]
         head = ["| | element | change | before | after |", "|---|---|---|---|---|"]
@@ -107,7 +107,7 @@ def _format_cells(change: Change) -> tuple[str, ...]:
     is_telling = change.what in (What.CHANGED, What.RETYPED, What.REWIRED)
     content = f"{change.what}: {escape_markdown(change.aspect)}" if is_telling else str(change.what)
     content += _list_contents(change, ", with {} below it")
-    before, after = excerpt_pair(change.before, change.after)
+    before, after = _excerpt_pair(change.before, change.after)
     name = f"{escape_markdown(change.kind)} {_format_code_in_table(change.name)}"
     return (f"`{sign}`", name, content, _format_code_in_table(before), _format_code_in_table(after))
 

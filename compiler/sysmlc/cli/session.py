@@ -122,7 +122,7 @@ def compile_unit(
     from sysmlc.driver.project_findings import select_project_findings, without_project_findings
 
     unit = open_single_unit(files, config, settings)
-    compilation = compile_opened(unit, settings, emit)
+    compilation = _compile_opened(unit, settings, emit)
     project_findings = select_project_findings(config, [unit.opened], [compilation.diagnostics])
     return replace(
         compilation,
@@ -130,7 +130,7 @@ def compile_unit(
     )
 
 
-def compile_opened(
+def _compile_opened(
     unit: "Unit", settings: Settings, emit: tuple[str, ...] | None = None
 ) -> "Compilation":
     """Compile a unit with the back ends of *emit* (None for no back end)."""
@@ -194,7 +194,7 @@ def compute_outcome(unit: "Unit", settings: Settings, has_files: bool = True) ->
     """Compile the unit and return the outcome, without the cache."""
     from sysmlc.driver import summarize
 
-    return summarize(compile_opened(unit, settings, unit.emit), has_files)
+    return summarize(_compile_opened(unit, settings, unit.emit), has_files)
 
 
 def make_request(files: tuple[Path, ...], config: "Config", settings: Settings) -> "Request":

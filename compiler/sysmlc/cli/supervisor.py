@@ -193,15 +193,15 @@ def _end_as(code: int) -> NoReturn:
 def _report_end(code: int, shared: SharedState) -> None:
     """Report why a child ended early; a child reports its memory limit itself."""
     if -code == signal.SIGALRM:
-        report_time_limit(shared.time_limit)
+        _report_time_limit(shared.time_limit)
     elif code < 0:
-        report_crash(-code)
+        _report_crash(-code)
 
 
 # -- reports -----------------------------------------------------------------------------------
 
 
-def report_time_limit(seconds: float) -> None:
+def _report_time_limit(seconds: float) -> None:
     """Report that the command reached its time limit."""
     from sysmlc.driver import faults
 
@@ -216,7 +216,7 @@ def report_memory_limit(gibibytes: float) -> None:
     _report(faults.MEMORY_LIMIT, limit=limit)
 
 
-def report_crash(number: int) -> None:
+def _report_crash(number: int) -> None:
     """Report that a signal has ended the command."""
     from sysmlc.driver import faults
 

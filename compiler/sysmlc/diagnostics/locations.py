@@ -185,7 +185,7 @@ class _SourceText:
         self._index = 0
         """Index of the character at ``_offset``."""
         self._text = self._decode(source.data[mark:])
-        self._line_starts = find_line_starts(self._text)
+        self._line_starts = _find_line_starts(self._text)
 
     def locate(self, offset: int, xpath: str) -> Location:
         """Return the location of the byte at *offset*."""
@@ -232,7 +232,7 @@ class _SourceText:
         return starts[line - 1], starts[line] if line < len(starts) else len(self._text)
 
 
-def find_line_starts(text: str) -> list[int]:
+def _find_line_starts(text: str) -> list[int]:
     """Return the indices of the characters at which the lines of a text start."""
     if "\r" in text:
         return [0, *(match.end() for match in _NEWLINE.finditer(text))]

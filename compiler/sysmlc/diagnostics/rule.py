@@ -66,9 +66,9 @@ class Rule(Struct, frozen=True):
     def read_page(self) -> RulePage:
         """Return the page of the rule, with empty texts if the rule has no page."""
         if self.page:
-            return parse_page(self.page)
+            return _parse_page(self.page)
         try:
-            return parse_page((PAGES / f"{self.code}.md").read_text(encoding="utf-8"))
+            return _parse_page((PAGES / f"{self.code}.md").read_text(encoding="utf-8"))
         except OSError:
             return RulePage()
 
@@ -101,7 +101,7 @@ def catalogue() -> dict[str, Rule]:
 # -- pages -------------------------------------------------------------------------------------
 
 
-def parse_page(text: str) -> RulePage:
+def _parse_page(text: str) -> RulePage:
     """Return the texts of a page. Lines of a paragraph are joined, lines of code are not."""
     head, *parts = _SECTION.split(text)
     sections = dict(zip(parts[::2], parts[1::2], strict=True))

@@ -21,14 +21,14 @@ def classify(formula: Formula) -> Iterator[tuple[Class, Formula]]:
             for arg in args:
                 yield from classify(f.always(arg))
         case Apply(Op.ALWAYS, (Apply(Op.EVENTUALLY, (inner,)),)) if (
-            step := replace_next_by_primes(inner)
+            step := _replace_next_by_primes(inner)
         ) is not None:
             yield Class.LIVENESS, step
         case Apply(Op.NOT, (Apply(Op.EVENTUALLY, (Apply(Op.ALWAYS, (inner,)),)),)) if (
-            step := replace_next_by_primes(inner)
+            step := _replace_next_by_primes(inner)
         ) is not None:
             yield Class.LIVENESS, f.negate(step)
-        case Apply(Op.ALWAYS, (inner,)) if (step := replace_next_by_primes(inner)) is not None:
+        case Apply(Op.ALWAYS, (inner,)) if (step := _replace_next_by_primes(inner)) is not None:
             yield Class.SAFETY, step
         case _:
             is_initial = not has_future(formula) and not has_primes(formula)
@@ -43,11 +43,11 @@ def convert_to_class(formula: Formula, class_: Class) -> Formula | None:
     """
     if class_ is Class.OTHER:
         return formula
-    step = replace_next_by_primes(formula) if has_future(formula) else formula
+    step = _replace_next_by_primes(formula) if has_future(formula) else formula
     return None if class_ is Class.INIT and step is not None and has_primes(step) else step
 
 
-def replace_next_by_primes(formula: Formula) -> Formula | None:
+def _replace_next_by_primes(formula: Formula) -> Formula | None:
     """Return the formula with primes for X, or None if it reaches further than one step."""
     match formula:
         case Apply(Op.NEXT, (inner,)):
@@ -56,7 +56,7 @@ def replace_next_by_primes(formula: Formula) -> Formula | None:
         case Apply(op, _) if op in FUTURE:
             return None
         case Apply(op, args):
-            parts = [replace_next_by_primes(arg) for arg in args]
+            parts = [_replace_next_by_primes(arg) for arg in args]
             converted = tuple(part for part in parts if part is not None)
             return _apply(op, converted) if len(converted) == len(parts) else None
         case _:

@@ -29,7 +29,7 @@ def find_node_duration(node: Node, tables: Tables, machines: tuple[str, ...] = (
     return _DURATIONS_BY_KIND.get(node.kind, _find_no_duration)(node, tables, machines)
 
 
-def find_service_duration(
+def _find_service_duration(
     service: Service, tables: Tables, machines: tuple[str, ...] = ()
 ) -> Range | None:
     """Return the duration of a service on *machines*, or on all machines if none of them offers it.
@@ -72,7 +72,7 @@ def _find_called_service_duration(
     node: Node, tables: Tables, machines: tuple[str, ...]
 ) -> Range | None:
     service = tables.find_service(node)
-    return None if service is None else find_service_duration(service, tables, machines)
+    return None if service is None else _find_service_duration(service, tables, machines)
 
 
 def _find_function_duration(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range | None:

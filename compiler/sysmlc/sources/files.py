@@ -88,7 +88,7 @@ def is_model_entry(name: str) -> bool:
     return _MODEL_ENTRY.search(name) is not None
 
 
-def is_library_entry(name: str) -> bool:
+def _is_library_entry(name: str) -> bool:
     """Whether an entry of an archive is MagicDraw's snapshot of a used project."""
     return _LIBRARY_ENTRY.search(name) is not None
 
@@ -98,13 +98,13 @@ def is_description_entry(name: str) -> bool:
     return _DESCRIPTION_ENTRY.search(name) is not None
 
 
-def is_wanted_entry(name: str) -> bool:
+def _is_wanted_entry(name: str) -> bool:
     """Whether an entry of an archive is read: a model, or an entry needed to read a model."""
     return is_model_entry(name) or _is_auxiliary_entry(name)
 
 
 def _is_auxiliary_entry(name: str) -> bool:
-    return is_library_entry(name) or is_description_entry(name)
+    return _is_library_entry(name) or is_description_entry(name)
 
 
 def _is_plain_entry(name: str) -> bool:
@@ -115,7 +115,7 @@ def _is_plain_entry(name: str) -> bool:
 def load(
     path: Path,
     name: str,
-    wanted: Callable[[str], bool] = is_wanted_entry,
+    wanted: Callable[[str], bool] = _is_wanted_entry,
     limits: Limits = DEFAULT_LIMITS,
 ) -> list[Source]:
     """Return a file as one source, or the *wanted* entries of an archive.

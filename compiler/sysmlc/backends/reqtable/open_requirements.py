@@ -25,14 +25,14 @@ UNVERIFIED = rule(
 def report_open_requirements(graph: Graph, requirements: list[Element], sink: Sink) -> None:
     """Report each requirement that nothing satisfies, and each that nothing verifies."""
     for open_rule, edge in ((UNSATISFIED, Edge.SATISFIES), (UNVERIFIED, Edge.VERIFIES)):
-        closed = find_closed(graph, requirements, edge)
+        closed = _find_closed(graph, requirements, edge)
         for requirement in requirements:
             if requirement.id not in closed:
                 name = graph.qualified_name(requirement)
                 sink.report(open_rule, graph.subject(requirement), requirement=name)
 
 
-def find_closed(graph: Graph, requirements: Iterable[Element], edge: Edge) -> frozenset[str]:
+def _find_closed(graph: Graph, requirements: Iterable[Element], edge: Edge) -> frozenset[str]:
     """Return the ids of the requirements with a relation *edge*, directly or by implication.
 
     A compound requirement is satisfied if all requirements in it are (SysML 1.6 clause 16.3.1), and
