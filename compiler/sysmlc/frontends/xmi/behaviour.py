@@ -14,7 +14,7 @@ from sysmlc.frontends.xmi.value_features import (
     store_alternatives,
 )
 from sysmlc.frontends.xmi.values import Value, read_opaque, read_value
-from sysmlc.ir import AttrValue, Edge, Element
+from sysmlc.ir import AttrValue, Edge, Element, list_items
 
 _RECORD_COLUMNS = {
     "clauses": ("test", "body"),
@@ -154,8 +154,7 @@ def _add_record(context: Context, key: str, element: Element, row: int) -> None:
     record: tuple[AttrValue, ...] = tuple(
         tuple(_find_ids(context, row, feature)) for feature in _RECORD_COLUMNS[key]
     )
-    records = element.attrs.get(key, ())
-    element.attrs[key] = (*records, record) if isinstance(records, tuple) else (record,)
+    element.attrs[key] = (*list_items(element.attrs.get(key)), record)
 
 
 def _find_ids(context: Context, row: int, feature: str) -> list[str]:

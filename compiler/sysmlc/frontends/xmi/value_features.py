@@ -6,7 +6,7 @@ from sysmlc.frontends.xmi.context import Context, RowHandler, check_references_i
 from sysmlc.frontends.xmi.document import WrittenReference
 from sysmlc.frontends.xmi.elements import add_element
 from sysmlc.frontends.xmi.values import Value, is_natural, parse_bound, read_value
-from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.ir import AttrValue, Edge, Element, Kind, as_items
 
 
 def lower_value(context: Context, row: int) -> Value:
@@ -38,7 +38,7 @@ def _append(element: Element, key: str, value: AttrValue) -> None:
     if stored is None:
         element.attrs[key] = value
     else:
-        element.attrs[key] = (*stored, value) if isinstance(stored, tuple) else (stored, value)
+        element.attrs[key] = (*as_items(stored), value)
 
 
 # -- multiplicities --------------------------------------------------------------------------------

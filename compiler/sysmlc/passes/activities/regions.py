@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from msgspec import Struct
 from msgspec.structs import replace
 
-from sysmlc.ir import Edge, Element, Graph, Kind, list_items, query
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, as_items, list_items, query
 from sysmlc.ir.element import derived_id
 
 NODES = (
@@ -153,10 +153,11 @@ def count_handlers(node: Element) -> int:
     return len(value) if isinstance(value, tuple) else int(value is not None)
 
 
-def _list_handler_parts(value: object) -> Iterator[tuple[object, object, object]]:
-    for handler in value if isinstance(value, tuple) else (value,) if value else ():
-        parts = handler if isinstance(handler, tuple) else (handler,)
-        body, inputs, types, *_ = (*parts, (), (), ())
+def _list_handler_parts(value: AttrValue) -> Iterator[tuple[object, object, object]]:
+    if not value:
+        return
+    for handler in as_items(value):
+        body, inputs, types, *_ = (*as_items(handler), (), (), ())
         yield body, inputs, types
 
 
