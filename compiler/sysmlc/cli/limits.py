@@ -75,7 +75,7 @@ class Limits:
         self._set(self.seconds, self.gibibytes)
 
     def has_ended_build(self, input_digest: int) -> bool:
-        """Return whether an earlier child process reached a limit with the same inputs."""
+        """Whether an earlier child process reached a limit with the same inputs."""
         return self._shared is not None and self._shared.input_digest == input_digest
 
     @contextmanager

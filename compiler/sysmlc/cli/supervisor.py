@@ -81,7 +81,7 @@ Run = Callable[[SharedState], NoReturn]
 
 
 def can_supervise() -> bool:
-    """Return whether commands can run in a child process.
+    """Whether commands can run in a child process.
 
     They cannot without fork, and under a tracer or profiler, which would not see a child.
     """
@@ -167,7 +167,7 @@ def _forward_signals(numbers: Iterable[int], child: int) -> None:
 
 
 def _is_in_foreground() -> bool:
-    """Return whether the terminal sends signals of the keyboard to this process."""
+    """Whether the terminal sends signals of the keyboard to this process."""
     try:
         with open("/dev/tty", "rb", buffering=0) as terminal:  # noqa: PTH123
             return os.tcgetpgrp(terminal.fileno()) == os.getpgrp()

@@ -77,12 +77,12 @@ _VARIANT = dict(zip("0123456789abcdef", "89ab" * 4, strict=True))
 
 
 def is_globally_unique(id: str) -> bool:
-    """Return whether no two models can have this id, because a tool has generated it."""
+    """Whether no two models can have this id, because a tool has generated it."""
     return len(id) >= _SHORTEST_UNIQUE and not id.startswith(ROOT)
 
 
 def is_generated(id: str) -> bool:
-    """Return whether *id* has the form that Eclipse, MagicDraw or Enterprise Architect generate."""
+    """Whether *id* has the form that Eclipse, MagicDraw or Enterprise Architect generate."""
     return _TOOL_ID.fullmatch(id) is not None
 
 

@@ -30,7 +30,7 @@ def size(domain: Domain) -> int:
 
 
 def contains(domain: Domain, value: Literal) -> bool:
-    """Return whether the value belongs to the domain; ``True`` is no integer."""
+    """Whether the value belongs to the domain; ``True`` is no integer."""
     match domain:
         case BooleanDomain():
             return isinstance(value, bool)

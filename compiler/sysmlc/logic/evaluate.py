@@ -79,7 +79,7 @@ def _any_true(parts: tuple[Evaluation, ...], now: Valuation, then: Valuation | N
 
 
 def is_true(formula: Formula, now: Valuation, then: Valuation | None = None) -> bool:
-    """Return whether a formula without temporal operators holds in one step."""
+    """Whether a formula without temporal operators holds in one step."""
     return bool(value_of(formula, now, then))
 
 

@@ -253,7 +253,7 @@ def split_conjunction(formula: Formula) -> tuple[Formula, ...]:
 
 
 def has_primes(formula: Formula) -> bool:
-    """Return whether the formula has primed variables, which have their values in the next step."""
+    """Whether the formula has primed variables, which have their values in the next step."""
     match formula:
         case Var(_, primed):
             return primed
@@ -265,14 +265,14 @@ def has_primes(formula: Formula) -> bool:
 
 @lru_cache(_CACHED_FORMULAS)
 def has_future(formula: Formula) -> bool:
-    """Return whether the formula has temporal operators of the future; primes do not count."""
+    """Whether the formula has temporal operators of the future; primes do not count."""
     if not isinstance(formula, Apply):
         return False
     return formula.op in FUTURE or any(map(has_future, formula.args))
 
 
 def has_past(formula: Formula) -> bool:
-    """Return whether the formula has temporal operators of the past."""
+    """Whether the formula has temporal operators of the past."""
     if not isinstance(formula, Apply):
         return False
     return formula.op in PAST or any(map(has_past, formula.args))

@@ -72,7 +72,7 @@ def _fold_equivalence(left: Formula, right: Formula) -> Formula:
 def is_satisfiable(
     formula: Formula, domain_by_name: Mapping[str, Domain], limit: int = _MAX_VALUATIONS
 ) -> bool:
-    """Return whether some values make the formula true, or there are too many values to try.
+    """Whether some values make the formula true, or there are too many values to try.
 
     Primed and unprimed variables are independent of one another.
     """
@@ -96,7 +96,7 @@ def _count(variable_domains: Iterable[Domain], limit: int) -> int:
 
 @lru_cache(_CACHED_ANSWERS)
 def _is_satisfiable(formula: Formula, variables: tuple[tuple[Var, Domain], ...]) -> bool:
-    """Return whether some values make the formula true.
+    """Whether some values make the formula true.
 
     The branches of a disjunction, and parts of a conjunction without common variables, are tried
     separately: that needs far fewer valuations than all variables together.
@@ -157,7 +157,7 @@ def _group_by_variables(formulas: tuple[Formula, ...]) -> list[list[Formula]]:
 
 
 def _has_model(formula: Formula, variable_domains: Mapping[Var, Domain]) -> bool:
-    """Return whether some valuation makes the formula true, by trying all."""
+    """Whether some valuation makes the formula true, by trying all."""
     if len(variable_domains) == 1:
         return any(
             _solutions(formula, variable, domain) for variable, domain in variable_domains.items()

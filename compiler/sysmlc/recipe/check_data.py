@@ -243,7 +243,7 @@ def _describe_misfit(formal: Parameter | None, actual: Parameter | None) -> str:
 
 
 def _is_assignable(actual: ValueType, formal: ValueType) -> bool:
-    """Return whether values of the actual type are values of the formal type.
+    """Whether values of the actual type are values of the formal type.
 
     References are not compared: their types may specialise one another, which the language checks.
     An enumeration may be one of numbers (SysML v2, 8.3.8): its values are integers then.

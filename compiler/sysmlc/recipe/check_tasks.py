@@ -195,7 +195,7 @@ def _name_owner(model: Model, call: OpcUa) -> str:
 
 
 def is_complete(call: OpcUa) -> bool:
-    """Return whether an executor can perform the call: no node id is missing or malformed."""
+    """Whether an executor can perform the call: no node id is missing or malformed."""
     ids = [call.object, *([call.method] if call.method else [])]
     return all(map(_NODE_ID.fullmatch, ids)) and (call.kind != "call" or bool(call.method))
 

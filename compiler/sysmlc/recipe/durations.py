@@ -221,7 +221,7 @@ class _Clock(Struct, frozen=True):
         return sum(bounds) - (0 if is_tested_first else len(loops))
 
     def _has_step(self, head: str, loop: str, inner: _Edges) -> bool:
-        """Return whether a step precedes the loop node in a round, which begins at *head*."""
+        """Whether a step precedes the loop node in a round, which begins at *head*."""
         after_head = find_reachable([head], [(a, b) for a, b in inner if a != loop])
         before_loop = find_reachable([loop], [(b, a) for a, b in inner])
         return any(self.nodes[id].kind in STEPS for id in after_head & before_loop)

@@ -144,7 +144,7 @@ class UndecidedError(ValueError):
 
 
 def is_condition(expression: Expression, types: Mapping[str, ValueType | None]) -> bool:
-    """Return whether the expression is Boolean; an unknown type counts as Boolean."""
+    """Whether the expression is Boolean; an unknown type counts as Boolean."""
     name = variable_name(expression)
     if name is not None:
         return types.get(name) in ("boolean", None)
@@ -172,7 +172,7 @@ def iter_valuations(
 
 
 def is_satisfied(expression: Expression, values: Mapping[str, Scalar]) -> bool:
-    """Return whether a condition is true. Raises UndecidedError."""
+    """Whether a condition is true. Raises UndecidedError."""
     return bool(_evaluate(expression, values))
 
 
@@ -247,7 +247,7 @@ def _operands_of_operator(expression: Expression) -> tuple[Expression, ...]:
 
 
 def _is_numeric(name: str, expression: Expression) -> bool:
-    """Return whether the variable is an operand of arithmetic or is compared with a number."""
+    """Whether the variable is an operand of arithmetic or is compared with a number."""
     if not isinstance(expression, Unary | Binary):
         return False
     inner = operands(expression)

@@ -33,7 +33,7 @@ class PlantElement(Struct, frozen=True):
 
 
 def is_in_plant(graph: Graph, element: Element) -> bool:
-    """Return whether *element* is in an instance hierarchy or class library of AutomationML."""
+    """Whether *element* is in an instance hierarchy or class library of AutomationML."""
     root = [element, *graph.ancestors(element)][-1]
     return root.subkind == HIERARCHY or root.subkind in LIBRARIES
 
@@ -80,7 +80,7 @@ class Plant:
         return None
 
     def _has_instance(self, part: Element) -> bool:
-        """Return whether an instance represents the part or a feature that the part redefines."""
+        """Whether an instance represents the part or a feature that the part redefines."""
         parts = [part, *query.redefined_features(self.graph, part)]
         sources = (source for p in parts for source in self.graph.sources(p, Edge.REPRESENTS))
         return any(source.kind is Kind.INSTANCE for source in sources)

@@ -262,5 +262,5 @@ class _BranchAndBound:
         return max(even_end, *self.reached.values(), 0)
 
     def _can_prune(self, duration: int, total_steps: int) -> bool:
-        """Return whether these lower bounds of the costs reach the costs of the best schedule."""
+        """Whether these lower bounds of the costs reach the costs of the best schedule."""
         return self.best is not None and (duration, total_steps) >= self.best.cost

@@ -230,7 +230,7 @@ def _names_of(conjunct: Conjunct) -> set[str]:
 
 
 def _is_about_offers(conjunct: Conjunct) -> bool:
-    """Return whether the conjunct reads a sensor, which the environment sets."""
+    """Whether the conjunct reads a sensor, which the environment sets."""
     return any("_sensor_" in name for name in _names_of(conjunct))
 
 

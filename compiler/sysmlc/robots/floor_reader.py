@@ -144,7 +144,7 @@ class _FloorReader:
         return [part for part in query.parts(self.graph, block) if self.is_typed(part, kind)]
 
     def is_typed(self, part: Element, kind: str) -> bool:
-        """Return whether a part is typed by the library's definition *kind* or a specialisation."""
+        """Whether a part is typed by the library's definition *kind* or a specialisation."""
         type_ = self._type_of(part)
         if type_ is None:
             return False
@@ -278,7 +278,7 @@ class Reader(Protocol):
         """Report an error of an element."""
 
     def is_typed(self, part: Element, kind: str) -> bool:
-        """Return whether a part is typed by the library's definition *kind*."""
+        """Whether a part is typed by the library's definition *kind*."""
 
 
 def _read_orders(

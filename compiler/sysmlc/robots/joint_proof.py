@@ -80,7 +80,7 @@ class JointProof:
         return self._is_entailed(conjunct)
 
     def _is_entailed(self, conjunct: Conjunct) -> bool:
-        """Return whether the guarantees about the robots of the conjunct entail it."""
+        """Whether the guarantees about the robots of the conjunct entail it."""
         robots = self.contracts.robots_of(conjunct)
         if robots is None:
             return False
@@ -196,7 +196,7 @@ class JointProof:
         )
 
     def _satisfies_contracts(self, run: Trace, broken: Conjunct) -> bool:
-        """Return whether a run satisfies the contracts, apart from the assumption *broken*."""
+        """Whether a run satisfies the contracts, apart from the assumption *broken*."""
         contracts = self.contracts
         assumptions = (
             *contracts.wiring,

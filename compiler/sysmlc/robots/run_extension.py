@@ -156,7 +156,7 @@ def violated_conjuncts(run: Trace, conjuncts: Iterable[Conjunct]) -> Iterator[Co
 
 
 def satisfies_contract(run: Trace, contract: Contract) -> bool:
-    """Return whether a run satisfies the guarantees of a contract.
+    """Whether a run satisfies the guarantees of a contract.
 
     Liveness guarantees need to hold only if all liveness assumptions do.
     """

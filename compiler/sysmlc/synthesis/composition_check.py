@@ -245,7 +245,7 @@ def _split_composite(composite: Composite) -> list[Composite]:
 
 
 def has_shared_variables(composite: Composite) -> bool:
-    """Return whether two parts, or a part and the whole, share variables."""
+    """Whether two parts, or a part and the whole, share variables."""
     return any(
         len(group.parts) > 1 or _has_variables(group.whole) for group in _split_composite(composite)
     )

@@ -167,7 +167,7 @@ def _print_with_registers(formula: Formula, names: Mapping[str, str]) -> str:
 
 
 def has_diagram(machine: Machine) -> bool:
-    """Return whether the machine is small enough for a readable diagram."""
+    """Whether the machine is small enough for a readable diagram."""
     return machine.size <= MAX_DIAGRAM_STATES and machine.count <= MAX_DIAGRAM_ARROWS
 
 

@@ -281,7 +281,7 @@ def _search_bound(
 
 
 def _is_bound_of(conjunct: Conjunct, timers: frozenset[str]) -> bool:
-    """Return whether the conjunct is nothing but an upper bound of a timer."""
+    """Whether the conjunct is nothing but an upper bound of a timer."""
     if conjunct.class_ is not Class.SAFETY:
         return False
     match conjunct.formula:

@@ -118,7 +118,7 @@ def _keep_guarantees(
 
 
 def is_won(game: Game) -> bool:
-    """Return whether the system wins a game. Raises LimitError."""
+    """Whether the system wins a game. Raises LimitError."""
     with game.manager.guard():
         arena = eliminate_commands(eliminate_determined_variables(game))
     return solve_arena(arena, is_complete=False).is_realizable

@@ -40,7 +40,7 @@ class Typing:
 
 
 def is_attribute(context: Context, feature: Element) -> bool:
-    """Return whether a property has values: it is typed by a value type, or untyped."""
+    """Whether a property has values: it is typed by a value type, or untyped."""
     if feature.kind is not Kind.PROPERTY or feature.role not in ("value", ""):
         return False
     type_ = context.graph.target(feature, Edge.TYPED_BY)
@@ -167,7 +167,7 @@ def _write_values(feature: Element, node: Node) -> None:
 
 
 def _is_equal(value: object, text: str) -> bool:
-    """Return whether *text* is a lexical form of the value."""
+    """Whether *text* is a lexical form of the value."""
     if isinstance(value, bool):
         return text.strip().lower() in (("true", "1") if value else ("false", "0"))
     if isinstance(value, int | float):

@@ -74,13 +74,13 @@ def _find_kind_of_uml_class(graph: Graph, element: Element) -> ClassKind | None:
 
 
 def _is_only_realised(graph: Graph, element: Element) -> bool:
-    """Return whether the element is realised by others, but is no type of a feature or instance."""
+    """Whether the element is realised by others, but is no type of a feature or instance."""
     used = graph.source(element, Edge.TYPED_BY) or graph.source(element, Edge.INSTANCE_OF)
     return used is None and graph.source(element, Edge.REALIZES) is not None
 
 
 def is_inline(element: Element) -> bool:
-    """Return whether the front end ``caex`` made the type for one feature.
+    """Whether the front end ``caex`` made the type for one feature.
 
     Such a type holds what the object adds to its class; it is written as part of the object.
     """
@@ -89,13 +89,13 @@ def is_inline(element: Element) -> bool:
 
 
 def is_primitive(element: Element) -> bool:
-    """Return whether the element is a primitive type of UML, or a library's type of that name."""
+    """Whether the element is a primitive type of UML, or a library's type of that name."""
     is_external = bool(element.attrs.get("external")) and element.name in PRIMITIVES
     return element.kind is Kind.DATA_TYPE and (element.subkind == "primitive" or is_external)
 
 
 def is_measured_type(element: Element) -> bool:
-    """Return whether the front end ``caex`` made the value type to combine a type with a unit.
+    """Whether the front end ``caex`` made the value type to combine a type with a unit.
 
     Its name ends in the unit: ``Real[kg]``.
     """

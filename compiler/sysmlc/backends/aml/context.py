@@ -48,7 +48,7 @@ class ObjectIds(Struct, frozen=True):
     """Names of the sources that are AutomationML."""
 
     def is_from_caex(self, element: Element) -> bool:
-        """Return whether the element comes from an AutomationML file."""
+        """Whether the element comes from an AutomationML file."""
         return element.source in self.files
 
     def find_original(self, element: Element) -> str:

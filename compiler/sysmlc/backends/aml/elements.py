@@ -44,12 +44,12 @@ def fill_hierarchy(context: Context, package: Element, node: Node, file: File) -
 
 
 def has_plant_objects(context: Context, package: Element) -> bool:
-    """Return whether a package owns instances that an instance hierarchy holds."""
+    """Whether a package owns instances that an instance hierarchy holds."""
     return any(_is_plant_object(context, element) for element in context.graph.owned(package))
 
 
 def _is_plant_object(context: Context, element: Element) -> bool:
-    """Return whether the element is an instance of a block, or any instance in AutomationML."""
+    """Whether the element is an instance of a block, or any instance in AutomationML."""
     if element.kind is not Kind.INSTANCE:
         return False
     if context.ids.is_from_caex(element):

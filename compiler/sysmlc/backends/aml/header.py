@@ -95,7 +95,7 @@ def _write_comments(context: Context, element: Element, node: Node) -> None:
 
 
 def _is_general_comment(context: Context, element: Element) -> bool:
-    """Return whether the element is a comment that no instance owns.
+    """Whether the element is a comment that no instance owns.
 
     Comments of instances are about features of their class; ``instances.py`` writes them.
     """

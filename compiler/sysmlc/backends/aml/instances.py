@@ -43,7 +43,7 @@ class SystemUnit:
 
 
 def is_part(context: Context, element: Element) -> bool:
-    """Return whether a property is written as an internal element."""
+    """Whether a property is written as an internal element."""
     if element.kind is not Kind.PROPERTY:
         return False
     if element.role == "part":

@@ -35,7 +35,7 @@ def place_classes(context: Context) -> None:
 
 
 def _is_in_library(context: Context, element: Element) -> bool:
-    """Return whether the element is in a file of the unit or in a standard library."""
+    """Whether the element is in a file of the unit or in a standard library."""
     return context.ids.is_from_caex(element) or (
         not element.source and _is_library_content(context, element)
     )

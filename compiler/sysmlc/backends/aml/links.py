@@ -145,7 +145,7 @@ def _write_dangling_link(context: Context, element: Element, ids: frozenset[str]
 
 
 def _is_resolvable(text: str, ids: frozenset[str]) -> bool:
-    """Return whether a side may name an object of the files: an ID, an ``ID:name`` or a path.
+    """Whether a side may name an object of the files: an ID, an ``ID:name`` or a path.
 
     IDs may contain colons.
     """

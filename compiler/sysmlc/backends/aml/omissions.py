@@ -80,7 +80,7 @@ def _mark_documents(context: Context) -> None:
 
 
 def _needs_no_object(context: Context, element: Element) -> bool:
-    """Return whether an element needs no CAEX object: a stub, a unit, a mere container."""
+    """Whether an element needs no CAEX object: a stub, a unit, a mere container."""
     graph = context.graph
     if element.attrs.get("external") or element.kind in _MEASURES or is_measured_type(element):
         return True
@@ -112,7 +112,7 @@ def _note_attributes(context: Context, element: Element) -> None:
 
 
 def _is_attribute_expressed(context: Context, element: Element, name: str) -> bool:
-    """Return whether an attribute follows from what the files state about the element."""
+    """Whether an attribute follows from what the files state about the element."""
     if element.kind in (Kind.METADATA, Kind.DOCUMENT):
         return True
     if name == "unresolved":
@@ -139,7 +139,7 @@ def _note_edges(context: Context, edge: Edge) -> None:
 
 
 def _is_edge_implied(context: Context, edge: Edge, source: Element, target: Element) -> bool:
-    """Return whether something that is written implies an edge."""
+    """Whether something that is written implies an edge."""
     if edge is Edge.REFERENCES:
         is_measure = target.kind in _MEASURES or target.role in _MEASURE_ROLES
         return is_measure or source.kind is Kind.IMPORT
@@ -152,7 +152,7 @@ def _is_edge_implied(context: Context, edge: Edge, source: Element, target: Elem
 
 
 def _has_written_dependency(context: Context, source: Element, target: Element) -> bool:
-    """Return whether a dependency is written from which ``classify`` derives the edge."""
+    """Whether a dependency is written from which ``classify`` derives the edge."""
     graph = context.graph
     return any(
         dependency.id in context.written and target in graph.targets(dependency, Edge.SUPPLIER)

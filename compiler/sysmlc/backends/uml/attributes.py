@@ -69,7 +69,7 @@ def write_attributes(context: Context, element: Element) -> None:
 
 
 def _is_expressed_otherwise(context: Context, element: Element, key: str) -> bool:
-    """Return whether another attribute, an application or a pass accounts for the attribute."""
+    """Whether another attribute, an application or a pass accounts for the attribute."""
     if key in _DERIVED or key.endswith(_COMPANIONS):
         return True
     if key in ("languages", "bodies", "language"):
@@ -80,7 +80,7 @@ def _is_expressed_otherwise(context: Context, element: Element, key: str) -> boo
 
 
 def _has_tags(context: Context, element: Element, key: str) -> bool:
-    """Return whether the source of a derived attribute is written: tags, slots or item flows."""
+    """Whether the source of a derived attribute is written: tags, slots or item flows."""
     is_flow = element.kind in (Kind.ITEM_FLOW, Kind.CONNECTOR) and key not in _PATHS
     is_unit = element.role in ("unit", "quantity kind")
     return is_flow or is_unit or any(iter_applications(context.graph, element))
@@ -245,7 +245,7 @@ def _write_direction(context: Context, element: Element, key: str, value: AttrVa
 
 
 def _is_direction_implied(context: Context, port: Element) -> bool:
-    """Return whether passes derive the direction from the rest of the model."""
+    """Whether passes derive the direction from the rest of the model."""
     graph, type_ = context.graph, type_of(context.graph, port)
     if port.role == "flow port" or graph.targets(port, Edge.REDEFINES):
         return True
@@ -259,7 +259,7 @@ def _is_direction_implied(context: Context, port: Element) -> bool:
 
 
 def _is_conjugate(context: Context, type_: Element) -> bool:
-    """Return whether SysML's tag ``original`` makes the type a conjugated interface block."""
+    """Whether SysML's tag ``original`` makes the type a conjugated interface block."""
     applications = iter_applications(context.graph, type_)
     return any("tag.original" in application.attrs for application in applications)
 

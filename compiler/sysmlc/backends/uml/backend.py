@@ -130,13 +130,13 @@ def _add_nodes(context: Context, root: Element) -> None:
 
 
 def _is_in_instance(graph: Graph, element: Element) -> bool:
-    """Return whether the element is a connector that an instance owns."""
+    """Whether the element is a connector that an instance owns."""
     owner = graph.owner(element)
     return element.kind is Kind.CONNECTOR and owner is not None and owner.kind is Kind.INSTANCE
 
 
 def _has_node(context: Context, element: Element) -> bool:
-    """Return whether the element and those below it get nodes; count them if UML has none."""
+    """Whether the element and those below it get nodes; count them if UML has none."""
     if is_external(element) or element.kind is Kind.APPLICATION:
         return False
     if element.kind in _DERIVED_KINDS and "origin" in element.attrs:

@@ -45,7 +45,7 @@ class Context:
         return self.nodes[element.id]
 
     def is_available(self, element: Element) -> bool:
-        """Return whether the file can refer to an element: it is written, or external."""
+        """Whether the file can refer to an element: it is written, or external."""
         return is_external(element) or element.id in self.nodes
 
     def add_part(self, holder: Element, parent: Node, tag: str, metaclass: str) -> Node:

@@ -27,7 +27,7 @@ _STEPS = {
 
 
 def is_external(element: Element) -> bool:
-    """Return whether the element is a stub for one outside the compile unit."""
+    """Whether the element is a stub for one outside the compile unit."""
     return bool(element.attrs.get("external"))
 
 
@@ -68,7 +68,7 @@ def _escape_name(name: str) -> str:
 
 
 def _contains_name(href: str, name: str) -> bool:
-    """Return whether a reader finds the name at the end of the href, or as the name of its file."""
+    """Whether a reader finds the name at the end of the href, or as the name of its file."""
     file = href.partition("#")[0].rpartition("/")[2]
     return href.endswith(name) or file.partition(".")[0] == name
 

@@ -65,7 +65,7 @@ def _write_references(context: Context, element: Element, edge: Edge, targets: _
 
 
 def _is_group_member(context: Context, comment: Element, target: Element) -> bool:
-    """Return whether the stereotype of an element group lists the target as a member."""
+    """Whether the stereotype of an element group lists the target as a member."""
     if comment.kind is not Kind.COMMENT or comment.role != "element group":
         return False
     for application in iter_applications(context.graph, comment):

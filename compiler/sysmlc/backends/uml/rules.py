@@ -79,7 +79,7 @@ _IMPLIED_EDGES = frozenset({Edge.OWNS, Edge.FEATURE})
 
 
 def is_plant(graph: Graph) -> bool:
-    """Return whether the graph comes from AutomationML."""
+    """Whether the graph comes from AutomationML."""
     documents = graph.of_kind(Kind.DOCUMENT)
     return any(document.subkind == "caex" and document.owner is None for document in documents)
 

@@ -118,7 +118,7 @@ def read_extended_metaclasses() -> dict[str, tuple[str, ...]]:
 
 
 def is_foreign(namespace: str, name: str) -> bool:
-    """Return whether a stereotype is another tool's copy of one in Papyrus's SysML profile."""
+    """Whether a stereotype is another tool's copy of one in Papyrus's SysML profile."""
     is_other = _OTHER_NAMESPACES.match(namespace) is not None
     return is_other and name in read_packages() and name not in _NOT_IN_PAPYRUS
 
@@ -183,7 +183,7 @@ def list_lineage(application: Element) -> tuple[str, ...]:
 
 
 def _is_structural(graph: Graph, element: Element) -> bool:
-    """Return whether ``classify`` derives the role from ports or constraint parameters.
+    """Whether ``classify`` derives the role from ports or constraint parameters.
 
     See SysML 1.6, clauses 9.3 and 10.3.
     """
@@ -232,7 +232,7 @@ def _list_measures(graph: Graph, element: Element) -> dict[str, str | list[Eleme
 
 
 def is_implied(graph: Graph, source: Element, edge: Edge, target: Element) -> bool:
-    """Return whether passes derive an edge from a dependency, a tag or a binding connector."""
+    """Whether passes derive an edge from a dependency, a tag or a binding connector."""
     if edge in _DEPENDENCY_ROLES and _has_dependency(graph, source, edge, target):
         return True
     if edge is Edge.REFERENCES and _is_measure_reference(source, target):
@@ -257,7 +257,7 @@ def _has_dependency(graph: Graph, source: Element, edge: Edge, target: Element) 
 
 
 def _is_tagged(graph: Graph, source: Element, edge: Edge, target: Element | None = None) -> bool:
-    """Return whether a tag that implies the edge names *target*, or has a value if that is None."""
+    """Whether a tag that implies the edge names *target*, or has a value if that is None."""
     for application in iter_applications(graph, source):
         for tag in _TAGS[edge]:
             value = application.attrs.get(f"tag.{tag}")
@@ -281,13 +281,13 @@ def _iter_named_ids(graph: Graph, value: AttrValue) -> Iterator[str]:
 
 
 def _is_measure_reference(source: Element, target: Element) -> bool:
-    """Return whether one end is a unit or quantity kind: slots or type names express the edge."""
+    """Whether one end is a unit or quantity kind: slots or type names express the edge."""
     is_measure = source.role in ("unit", "quantity kind") or source.kind is Kind.UNIT
     return is_measure or target.kind in (Kind.UNIT, Kind.QUANTITY_KIND)
 
 
 def _is_allocated(graph: Graph, source: Element, target: Element) -> bool:
-    """Return whether a tag of the target or a partition of the source implies an allocation."""
+    """Whether a tag of the target or a partition of the source implies an allocation."""
     for application in iter_applications(graph, target):
         value = application.attrs.get("tag.allocatedFrom")
         if value is not None and source.id in _iter_named_ids(graph, value):
@@ -301,7 +301,7 @@ def _is_allocated(graph: Graph, source: Element, target: Element) -> bool:
 
 
 def _is_bound(graph: Graph, source: Element, target: Element) -> bool:
-    """Return whether a binding connector joins both elements."""
+    """Whether a binding connector joins both elements."""
     for end in graph.sources(source, Edge.ROLE):
         connector = graph.owner(end)
         if connector is not None and connector.role == "binding connector":
@@ -312,7 +312,7 @@ def _is_bound(graph: Graph, source: Element, target: Element) -> bool:
 
 
 def _is_conformance(graph: Graph, source: Element, target: Element) -> bool:
-    """Return whether a generalization with a stereotype expresses conformance to a viewpoint.
+    """Whether a generalization with a stereotype expresses conformance to a viewpoint.
 
     The stereotype Conform of SysML 1.6 extends Generalization.
     """

@@ -256,7 +256,7 @@ def _connect_binding(lowering: "Lowering", node: Node, flow: Element) -> None:
 def _is_default_value(
     lowering: "Lowering", node: Node, ends: tuple[Element | None, Element | None]
 ) -> bool:
-    """Return whether a binding leads from a parameter to a property or port; set the default if so.
+    """Whether a binding leads from a parameter to a property or port; set the default if so.
 
     Such a feature has no object node. The default of the parameter is its path as text.
     """

@@ -113,7 +113,7 @@ def _iter_unpaired(pairs: Pairs, side: Side, what: What) -> Iterator[Change]:
 
 
 def _is_transparent(side: Side, owner_id: str, paired: Container[str]) -> bool:
-    """Return whether the owner is a new own class, whose children are reported without it.
+    """Whether the owner is a new own class, whose children are reported without it.
 
     The InternalElement of the class has a partner in the other model; only the class is new.
     """
@@ -124,7 +124,7 @@ def _is_transparent(side: Side, owner_id: str, paired: Container[str]) -> bool:
 
 
 def _is_consequence(side: Side, element: Element, paired: Container[str]) -> bool:
-    """Return whether an unpaired element is reported as part of another element's change.
+    """Whether an unpaired element is reported as part of another element's change.
 
     The occurrences at the ends of a message are added and removed with the message.
     """
@@ -190,12 +190,12 @@ def _compare_pair(
 
 
 def _is_implied_role(difference: _Difference) -> bool:
-    """Return whether only one of two file formats states a role that the other one implies."""
+    """Whether only one of two file formats states a role that the other one implies."""
     return difference.names == {"role"} and not (difference.before and difference.after)
 
 
 def _is_renamed_with_part(pairs: Pairs, old: Element, new: Element) -> bool:
-    """Return whether the renaming is reported for another element of the InternalElement."""
+    """Whether the renaming is reported for another element of the InternalElement."""
     if is_own_class(old) and is_own_class(new):
         return any(_is_renamed(pairs, user) for user in users_of_own_class(pairs.new, new))
     part = _paired_part(pairs, new)
@@ -208,7 +208,7 @@ def _is_renamed(pairs: Pairs, new: Element) -> bool:
 
 
 def _is_retyped_with_part(pairs: Pairs, new: Element) -> bool:
-    """Return whether *new* holds the values of a part whose change of type is reported."""
+    """Whether *new* holds the values of a part whose change of type is reported."""
     part = _paired_part(pairs, new)
     if part is None:
         return False

@@ -118,19 +118,19 @@ MOVABLE = frozenset(
 
 
 def is_external(element: Element) -> bool:
-    """Return whether *element* is an external stub or an element of a library."""
+    """Whether *element* is an external stub or an element of a library."""
     return element.attrs.get("external") is True
 
 
 def is_header(element: Element) -> bool:
-    """Return whether *element* describes the file, not the plant (docs/automationml.md)."""
+    """Whether *element* describes the file, not the plant (docs/automationml.md)."""
     if element.owner is not None:
         return False
     return element.subkind in ("caex", "alias") or element.kind is Kind.METADATA
 
 
 def is_detail(element: Element, owner: Element | None) -> bool:
-    """Return whether *element* is compared as a property of its owner."""
+    """Whether *element* is compared as a property of its owner."""
     if owner is None or owner.kind in (Kind.PACKAGE, Kind.PROFILE):
         return element.kind in _OF_PACKAGES
     is_guard = element.kind is Kind.CONSTRAINT and (not element.name or owner.kind in _GUARDED)

@@ -137,7 +137,7 @@ def pair_by_id(pairs: Pairs) -> None:
 
 
 def _are_kinds_compatible(old: Element, new: Element) -> bool:
-    """Return whether an element can have changed its kind: a class may become a component."""
+    """Whether an element can have changed its kind: a class may become a component."""
     return old.kind is new.kind or (old.kind in CLASSIFIERS and new.kind in CLASSIFIERS)
 
 
@@ -151,7 +151,7 @@ def _pair_by_alternate_id(pairs: Pairs) -> None:
 
 
 def _are_ids_stable(pairs: Pairs, common: list[tuple[Element, Element]]) -> bool:
-    """Return whether equal ids denote the same elements.
+    """Whether equal ids denote the same elements.
 
     If a tool numbers the elements anew in each export, ids are shifted: the kind and name of an id
     in one model belong to another id in the other model.

@@ -109,7 +109,7 @@ class _Propagation:
                     yield neighbour, candidate
 
     def _can_pair(self, old: Element, new: Element) -> bool:
-        """Return whether *new* is unpaired and the owners are a pair."""
+        """Whether *new* is unpaired and the owners are a pair."""
         if new.id in self._pairs.old_of:
             return False
         old_owner, new_owner = self._pairs.old.graph.owner(old), self._pairs.new.graph.owner(new)

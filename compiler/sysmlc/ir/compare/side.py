@@ -152,7 +152,7 @@ _TYPES = (Edge.TYPED_BY, Edge.INSTANCE_OF)
 
 
 def is_own_class(element: Element) -> bool:
-    """Return whether *element* is the own class of an InternalElement."""
+    """Whether *element* is the own class of an InternalElement."""
     return element.kind is Kind.CLASS and element.subkind == "internal-element"
 
 
@@ -176,7 +176,7 @@ def declared_class(side: Side, type_: Element) -> Element | str:
 
 
 def is_part_instance(element: Element) -> bool:
-    """Return whether *element* is an instance that holds the values of a part."""
+    """Whether *element* is an instance that holds the values of a part."""
     return element.kind is Kind.INSTANCE and element.subkind == "part"
 
 

@@ -15,7 +15,7 @@ _Successors = Mapping[str, list[str]]
 
 
 def is_joined(graph: Graph, end: Element) -> bool:
-    """Return whether no other token is left when a token reaches a final node of an activity.
+    """Whether no other token is left when a token reaches a final node of an activity.
 
     This holds if all paths from every fork before the end (or step with several outgoing control
     flows) lead through one node that waits for several flows. Then the end of the flow is the
@@ -35,7 +35,7 @@ def is_joined(graph: Graph, end: Element) -> bool:
 
 
 def _may_fork(graph: Graph, step: Element) -> bool:
-    """Return whether several flows of any kind leave a step."""
+    """Whether several flows of any kind leave a step."""
     return len(graph.sources(step, Edge.FLOW_SOURCE)) > 1 and step.subkind not in _CHOICES
 
 
@@ -48,7 +48,7 @@ def _list_successors(graph: Graph, step: Element) -> list[str]:
 
 
 def _is_join(graph: Graph, step: Element) -> bool:
-    """Return whether a step waits for several control flows."""
+    """Whether a step waits for several control flows."""
     if step.subkind in _CHOICES or step.subkind.endswith("final"):
         return False
     return sum(1 for flow in graph.sources(step, Edge.FLOW_TARGET) if _is_control_flow(flow)) > 1

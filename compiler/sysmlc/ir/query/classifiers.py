@@ -61,7 +61,7 @@ def _list_transitive_targets(graph: Graph, element: Element, edge: Edge) -> list
 
 
 def conforms(graph: Graph, specific: Element, general: Element) -> bool:
-    """Return whether the first classifier is, specialises or realises the second one."""
+    """Whether the first classifier is, specialises or realises the second one."""
     if specific is general:
         return True
     family = [specific, *generals(graph, specific)]
@@ -106,7 +106,7 @@ def flow_properties(graph: Graph, type_: Element) -> list[Element]:
 
 
 def is_flow_property(feature: Element) -> bool:
-    """Return whether *feature* is a flow property (SysML 1.6 clause 9.3.2.7)."""
+    """Whether *feature* is a flow property (SysML 1.6 clause 9.3.2.7)."""
     return feature.kind is Kind.FLOW_PROPERTY or feature.role == "flow property"
 
 
@@ -143,12 +143,12 @@ def domain_of(graph: Graph, classifier: Element) -> str | None:
 
 
 def is_unit(element: Element) -> bool:
-    """Return whether *element* is a measurement unit, in SysML v1 or v2."""
+    """Whether *element* is a measurement unit, in SysML v1 or v2."""
     return element.kind is Kind.UNIT or element.role == "unit"
 
 
 def is_quantity_kind(element: Element) -> bool:
-    """Return whether *element* is a kind of quantity, in SysML v1 or v2."""
+    """Whether *element* is a kind of quantity, in SysML v1 or v2."""
     return element.kind is Kind.QUANTITY_KIND or element.role == "quantity kind"
 
 
@@ -201,7 +201,7 @@ def stereotypes(graph: Graph, element: Element) -> tuple[str, ...]:
 
 
 def has_stereotype(graph: Graph, element: Element, *names: str) -> bool:
-    """Return whether one of the stereotypes, or one that specialises it, applies to *element*."""
+    """Whether one of the stereotypes, or one that specialises it, applies to *element*."""
     return not set(names).isdisjoint(stereotypes(graph, element))
 
 

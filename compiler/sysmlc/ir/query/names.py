@@ -37,7 +37,7 @@ def _find_subject(graph: Graph, requirement: Element) -> Element | None:
 
 
 def is_requirement(element: Element) -> bool:
-    """Return whether *element* is a requirement, in SysML v1 or v2."""
+    """Whether *element* is a requirement, in SysML v1 or v2."""
     return element.attrs.get("role") == "requirement" or element.kind is Kind.REQUIREMENT
 
 

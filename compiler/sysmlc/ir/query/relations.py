@@ -73,7 +73,7 @@ def role_of(graph: Graph, end: Element) -> Element | None:
 
 
 def is_boundary(graph: Graph, end: Element) -> bool:
-    """Return whether a connector end is a port of the connector's own classifier, not of a part.
+    """Whether a connector end is a port of the connector's own classifier, not of a part.
 
     A port nested in such a port counts too.
     """

@@ -110,7 +110,7 @@ def _is_exit(graph: TokenGraph, edge: TokenEdge, component: Collection[str]) -> 
 
 
 def _is_decided_outside(graph: TokenGraph, edge: TokenEdge) -> bool:
-    """Return whether the guard of the branch reads an input.
+    """Whether the guard of the branch reads an input.
 
     An else branch is decided by the guards of the other branches.
     """

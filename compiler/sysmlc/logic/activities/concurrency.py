@@ -61,7 +61,7 @@ class ConcurrencyRelation:
         return [edge.id for edge in self.graph.inside(region)[0] if edge.marked]
 
     def are_concurrent(self, left: str, right: str) -> bool:
-        """Return whether both places may hold a token at the same time."""
+        """Whether both places may hold a token at the same time."""
         return bool(self._concurrent[left] & self._bits[right])
 
     @cached_property

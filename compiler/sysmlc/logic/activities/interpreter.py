@@ -110,12 +110,12 @@ def next_state(
 
 
 def is_finished(graph: TokenGraph, state: State) -> bool:
-    """Return whether the activity ends in this state, so that the next step restarts it."""
+    """Whether the activity ends in this state, so that the next step restarts it."""
     return is_complete(graph, state, ACTIVITY_REGION)
 
 
 def is_complete(graph: TokenGraph, state: State, region: str) -> bool:
-    """Return whether a region is complete.
+    """Whether a region is complete.
 
     Then a token is at one of its final nodes, or nothing in it can move.
     """
@@ -125,7 +125,7 @@ def is_complete(graph: TokenGraph, state: State, region: str) -> bool:
 
 
 def _is_active(graph: TokenGraph, state: State, node: TokenNode) -> bool:
-    """Return whether the node prevents the completion of its region.
+    """Whether the node prevents the completion of its region.
 
     It does if it runs, or has all tokens that it can get from inside its region.
     """
@@ -188,7 +188,7 @@ class _Step:
         return State(frozenset(self.tokens), frozenset(self.running), tuple(self._stored_values()))
 
     def _is_listening_triggered(self, edge: TokenEdge) -> bool:
-        """Return whether a listening edge gets a token.
+        """Whether a listening edge gets a token.
 
         A token enters the region to which it listens, and its target neither waits nor runs.
         """
@@ -218,7 +218,7 @@ class _Step:
         return is_running and is_complete(self.graph, self.old, node.id)
 
     def _is_alive(self, node: TokenNode) -> bool:
-        """Return whether all regions around the node run and none of them ends in this step."""
+        """Whether all regions around the node run and none of them ends in this step."""
         enclosing = list(self.graph.regions_around(node.region))
         return all(
             region_node.id in self.old.running and region_node not in self.ended

@@ -147,7 +147,7 @@ def _reachable_edges(graph: TokenGraph, start: TokenEdge) -> Iterator[TokenEdge]
 
 
 def _can_fire(graph: TokenGraph, node: TokenNode) -> bool:
-    """Return whether the node is to be reported if it never moves a token; sinks are not."""
+    """Whether the node is to be reported if it never moves a token; sinks are not."""
     is_sink = node.firing is Firing.ANY and not graph.outgoing(node)
     return bool(graph.incoming(node)) and node.firing is not _NEVER and not is_sink
 

@@ -119,7 +119,7 @@ class _Search:
         return True
 
     def _can_saturate(self, write: Write, state: token_game.State) -> bool:
-        """Return whether the node may end in this state and assign a saturated value."""
+        """Whether the node may end in this state and assign a saturated value."""
         if write.node not in state.running or token_game.is_finished(self._graph, state):
             return False
         node, values = self._graph.node(write.node), token_game.values_of(self._graph, state)
@@ -160,7 +160,7 @@ class _PlannedChoices:
         self._answers: dict[Formula, bool] = {}
 
     def holds(self, formula: Formula, values: Mapping[str, Literal]) -> bool:
-        """Return whether a condition holds; the plan decides conditions over unknown inputs."""
+        """Whether a condition holds; the plan decides conditions over unknown inputs."""
         if all(variable.name in values for variable in f.variables(formula)):
             return evaluate.is_true(formula, values)
         if formula not in self._answers:

@@ -28,7 +28,7 @@ def token_at(edge: TokenEdge) -> Formula:
 
 
 def is_else(edge: TokenEdge) -> bool:
-    """Return whether the edge is taken only if no other branch is open."""
+    """Whether the edge is taken only if no other branch is open."""
     return edge.guard is not None and edge.guard.condition is None
 
 
@@ -91,7 +91,7 @@ class StepFormulas:
         return [n for n in self.graph.nodes if _can_choose(self.graph.outgoing(n), n)]
 
     def is_chosen(self, edge: TokenEdge) -> bool:
-        """Return whether the edge leaves a decision with several branches open at the same time."""
+        """Whether the edge leaves a decision with several branches open at the same time."""
         source = self.graph.node(edge.source)
         return _can_choose(self.graph.outgoing(source), source)
 
@@ -265,7 +265,7 @@ class StepFormulas:
 
 
 def _can_choose(branches: list[TokenEdge], node: TokenNode) -> bool:
-    """Return whether several branches of the node can be open at the same time."""
+    """Whether several branches of the node can be open at the same time."""
     # Several else branches are open together, although UML allows only one.
     if node.firing is not Firing.CHOICE:
         return False

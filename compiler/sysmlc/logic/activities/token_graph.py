@@ -228,11 +228,11 @@ class TokenGraph(Struct, frozen=True, dict=True):
         return frozenset(store.variable.name for store in self.stores)
 
     def is_decided_outside(self, formula: Formula) -> bool:
-        """Return whether the condition reads an input."""
+        """Whether the condition reads an input."""
         return any(variable.name not in self.written_variables for variable in variables(formula))
 
     def is_decided_inside(self, formula: Formula) -> bool:
-        """Return whether the condition reads variables, all of which the activity writes."""
+        """Whether the condition reads variables, all of which the activity writes."""
         return bool(variables(formula)) and not self.is_decided_outside(formula)
 
     @cached_property
@@ -304,7 +304,7 @@ class TokenGraph(Struct, frozen=True, dict=True):
         return self._nodes[edge.target].region != edge.region
 
     def is_entered_from_outside(self, node: TokenNode) -> bool:
-        """Return whether an edge from outside its region leads to the node."""
+        """Whether an edge from outside its region leads to the node."""
         return any(map(self.enters, self._incoming[node.id]))
 
     def triggers(self, node: TokenNode) -> list[TokenEdge]:
@@ -342,7 +342,7 @@ class TokenGraph(Struct, frozen=True, dict=True):
             yield node
 
     def can_rest(self, region: str) -> bool:
-        """Return whether the region can be complete without a token at a final node."""
+        """Whether the region can be complete without a token at a final node."""
         return self.rests is None or region in self.rests
 
     def ends(self, region: str) -> list[TokenEdge]:

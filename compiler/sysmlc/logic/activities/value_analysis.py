@@ -61,7 +61,7 @@ class ValueAnalysis:
         return is_alone and not self._graph.interruptibles and not self._value_sets.has_given_up
 
     def may_stop(self, write: Write) -> bool:
-        """Return whether the write may saturate."""
+        """Whether the write may saturate."""
         values = self._values_at.get(write.node, 0)
         values &= self._value_sets.filter_values(
             self._formulas.done_formula(self._graph.node(write.node))

@@ -156,12 +156,12 @@ def _as_member(block: Block, contract: Contract | None) -> Member | None:
 
 
 def _has_decided_outputs(block: Block, member: Member, parts: Iterable[Member]) -> bool:
-    """Return whether some output of the member is joined to an output of a part."""
+    """Whether some output of the member is joined to an output of a part."""
     return _shares_outputs(block, member, parts, Owner.SYSTEM)
 
 
 def _has_read_outputs(block: Block, member: Member, parts: Iterable[Member]) -> bool:
-    """Return whether some output of the member is joined to an input of a part."""
+    """Whether some output of the member is joined to an input of a part."""
     return _shares_outputs(block, member, parts, Owner.ENVIRONMENT)
 
 

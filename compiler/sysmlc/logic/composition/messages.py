@@ -102,7 +102,7 @@ def _iter_listeners(
 
 
 def _is_reachable_from_outside(block: Block, member: Member) -> bool:
-    """Return whether a port of the block leads to the member, so that others can send to it."""
+    """Whether a port of the block leads to the member, so that others can send to it."""
     ends = {block.channels.find(end) for end in _iter_ends(block, member)}
     ports = query.ports(block.graph, block.element)
     block_channels = {block.channels.find((ITSELF, port.name)) for port in ports}
@@ -187,7 +187,7 @@ def _addressed_names(block: Block, sender: Member, receipt: Receipt) -> Iterator
 
 
 def _are_joined(block: Block, left: Member, right: Member) -> bool:
-    """Return whether a connector joins two members, each by a port or by the member itself."""
+    """Whether a connector joins two members, each by a port or by the member itself."""
     left_channels, right_channels = (
         {block.channels.find(end) for end in _iter_ends(block, member)} for member in (left, right)
     )

@@ -74,7 +74,7 @@ def _name_wire(block_feature: str, ends: list[tuple[Member, Variable]]) -> str:
 
 
 def has_single_type(wire: Wire) -> bool:
-    """Return whether the domains of all ends have the same type and, for texts, are equal."""
+    """Whether the domains of all ends have the same type and, for texts, are equal."""
     domains = [variable.domain for _, variable in wire.ends]
     has_texts = any(isinstance(domain, EnumerationDomain) and domain.texts for domain in domains)
     return len(set(domains) if has_texts else set(map(type, domains))) == 1

@@ -62,12 +62,12 @@ def _type_of_usage(graph: Graph, feature: Element) -> Element | None:
 
 
 def _is_plain_usage(graph: Graph, action: Element) -> bool:
-    """Return whether an action specialises another one and has no steps of its own."""
+    """Whether an action specialises another one and has no steps of its own."""
     return bool(graph.targets(action, Edge.SPECIALIZES)) and not _is_drawn(graph, action)
 
 
 def _is_own_action(graph: Graph, action: Element) -> bool:
-    """Return whether an action with steps is used by no other element than its owner."""
+    """Whether an action with steps is used by no other element than its owner."""
     edges = (Edge.CLASSIFIER_BEHAVIOR, Edge.METHOD, Edge.CALLS)
     is_used = any(True for edge in edges for _ in graph.sources(action, edge))
     return _is_drawn(graph, action) and not is_used
@@ -215,7 +215,7 @@ def iter_performed_steps(graph: Graph, block: Element, path: str) -> Iterator[tu
 
 
 def is_end_observable(graph: Graph, step: Element) -> bool:
-    """Return whether the step calls an action that reports when it is executed."""
+    """Whether the step calls an action that reports when it is executed."""
     action = graph.target(step, Edge.CALLS) if step.kind is Kind.ACTION else None
     if action is None or action.kind is not Kind.ACTIVITY:
         return False

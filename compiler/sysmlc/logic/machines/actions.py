@@ -275,7 +275,7 @@ def _effect_output(reading: ReadingContext, text: str, behaviour: Element) -> st
 def _has_other_writer(
     reading: ReadingContext, feature: Feature, text: str, behaviour: Element
 ) -> bool:
-    """Return whether another behaviour writes *feature*; report it."""
+    """Whether another behaviour writes *feature*; report it."""
     writer = reading.sharing.find_other_writer(feature.element)
     if writer is not None:
         reading.sink.report(

@@ -55,7 +55,7 @@ class GuardComparison:
         """The guard of each transition, by its id, and the domains of the variables in it."""
 
     def are_compatible(self, left: Transition, right: Transition) -> bool:
-        """Return whether some values of the variables satisfy both guards.
+        """Whether some values of the variables satisfy both guards.
 
         The answer is yes if the comparison has more than ``_MAX_VALUATIONS_OF_PAIR`` valuations.
         Raises TooManyValuationsError beyond the bound for the machine.
@@ -88,7 +88,7 @@ class GuardComparison:
 def may_compete(
     outgoing: tuple[Transition, ...], vertex: Vertex, comparison: GuardComparison
 ) -> bool:
-    """Return whether two transitions that leave the vertex can be enabled at once."""
+    """Whether two transitions that leave the vertex can be enabled at once."""
     if vertex.kind == "initial":
         return False
     is_state = vertex.kind == "state"
@@ -101,7 +101,7 @@ def may_compete(
 def have_common_cause(
     outgoing: tuple[Transition, ...], vertex: Vertex, comparison: GuardComparison
 ) -> bool:
-    """Return whether one occurrence can enable two of the *outgoing* transitions."""
+    """Whether one occurrence can enable two of the *outgoing* transitions."""
     return any(
         (vertex.kind != "state" or _have_equal_trigger(left, right))
         and comparison.are_compatible(left, right)
@@ -110,7 +110,7 @@ def have_common_cause(
 
 
 def _have_equal_trigger(left_transition: Transition, right_transition: Transition) -> bool:
-    """Return whether a single occurrence can trigger both transitions."""
+    """Whether a single occurrence can trigger both transitions."""
     if not left_transition.occurrences or not right_transition.occurrences:
         return not left_transition.occurrences and not right_transition.occurrences
     pairs = [
@@ -122,7 +122,7 @@ def _have_equal_trigger(left_transition: Transition, right_transition: Transitio
 
 
 def _can_coincide(left_transition: Transition, right_transition: Transition) -> bool:
-    """Return whether two transitions with the same source can be triggered in one step.
+    """Whether two transitions with the same source can be triggered in one step.
 
     A completion transition and a triggered transition never compete: the completion goes first.
     """
@@ -136,7 +136,7 @@ def _can_coincide(left_transition: Transition, right_transition: Transition) -> 
 
 
 def _can_share_step(left: object, right: object) -> bool:
-    """Return whether two occurrences of triggers can happen in one step."""
+    """Whether two occurrences of triggers can happen in one step."""
     if isinstance(left, OnEvent) and isinstance(right, OnEvent):
         return left.literal is None or right.literal is None or left.literal == right.literal
     # Both count the steps since their common source was entered.
@@ -146,7 +146,7 @@ def _can_share_step(left: object, right: object) -> bool:
 
 
 def can_be_simultaneous(left: Transition, right: Transition) -> bool:
-    """Return whether two transitions with different sources can be triggered in one step."""
+    """Whether two transitions with different sources can be triggered in one step."""
     if not left.occurrences or not right.occurrences:
         return True
     # A step has at most one event, but times and changes coincide with any other occurrence. The
@@ -192,7 +192,7 @@ CROSSING = rule(
 def are_regions_independent(
     graph: Graph, machine: Machine, comparison: GuardComparison, sink: Sink
 ) -> bool:
-    """Return whether orthogonal regions react independently; report the transitions if not."""
+    """Whether orthogonal regions react independently; report the transitions if not."""
     is_orthogonal = len(machine.top) > 1 or any(
         len(vertex.regions) > 1 for vertex in machine.vertices.values()
     )
@@ -284,7 +284,7 @@ def _report_crossings(
 
 
 def _can_leave(machine: Machine, transition: Transition, state: str) -> bool:
-    """Return whether the transition can leave *state*."""
+    """Whether the transition can leave *state*."""
     if not state or transition.kind == "internal":
         return False
     regions = [

@@ -195,7 +195,7 @@ class Machine(Struct, frozen=True):
         return states
 
     def contains(self, state: str, vertex: str) -> bool:
-        """Return whether *vertex* lies strictly inside *state*."""
+        """Whether *vertex* lies strictly inside *state*."""
         return bool(self.vertices[state].regions) and state in self.list_enclosing_states(vertex)
 
     def list_enclosing_regions(self, vertex: str) -> list[str]:
@@ -206,7 +206,7 @@ class Machine(Struct, frozen=True):
         return list(dict.fromkeys(regions))
 
     def has_concurrent_exits(self, vertex: str) -> bool:
-        """Return whether all transitions that leave *vertex* are taken together.
+        """Whether all transitions that leave *vertex* are taken together.
 
         That holds for a fork, and for an entry point of an orthogonal state whose transitions lead
         to different regions of the state (UML 2.5.1, 14.2.3.7).

@@ -210,7 +210,7 @@ class PathExplorer(Struct, frozen=True):
         ]
 
     def _has_exit_behaviour(self, state: Vertex) -> bool:
-        """Return whether the state, or a state inside it, has an exit behaviour."""
+        """Whether the state, or a state inside it, has an exit behaviour."""
         inner = [
             vertex
             for vertex in self.machine.list_states()

@@ -300,7 +300,7 @@ def clamp(value: int, domain: IntegerDomain) -> int:
 
 
 def is_active(machine: Machine, store: Mapping[str, Literal], vertex: str) -> bool:
-    """Return whether the vertex is the active state of its region."""
+    """Whether the vertex is the active state of its region."""
     state = machine.vertices[vertex]
     return store[machine.regions[state.region].variable] == state.literal and state.is_stable
 

@@ -50,7 +50,7 @@ _REDEFINABLE = frozenset([Kind.STATE_MACHINE, Kind.REGION, Kind.STATE, Kind.TRAN
 
 
 def is_supported(graph: Graph, machine: Element, sink: Sink) -> bool:
-    """Return whether a contract can be derived from the machine; report unsupported constructs."""
+    """Whether a contract can be derived from the machine; report unsupported constructs."""
     elements = [
         element
         for owner in _collect_submachines(graph, machine)
@@ -156,7 +156,7 @@ def _describe_unsupported_pseudostate(graph: Graph, element: Element) -> str:
 
 
 def _is_broken(graph: Graph, element: Element, sink: Sink) -> bool:
-    """Return whether the element lacks a mandatory part, and report it.
+    """Whether the element lacks a mandatory part, and report it.
 
     A region needs an initial pseudostate, and a transition needs both ends.
     """

@@ -45,12 +45,12 @@ MALFORMED = rule(
 
 
 def has_valid_targets(graph: Graph, machine: Machine, sink: Sink) -> bool:
-    """Return whether every transition leads to a vertex of the machine; report the others."""
+    """Whether every transition leads to a vertex of the machine; report the others."""
     return not list(_report_foreign_targets(graph, machine, sink))
 
 
 def is_well_formed(graph: Graph, machine: Machine, sink: Sink) -> bool:
-    """Return whether the machine passes the other checks; report the faults."""
+    """Whether the machine passes the other checks; report the faults."""
     if [*_report_dead_ends(graph, machine, sink), *_report_cycles(graph, machine, sink)]:
         return False
     return not [*_report_strays(graph, machine, sink), *_report_malformed(graph, machine, sink)]
@@ -199,7 +199,7 @@ def _explain_join_exits(outgoing: tuple[Transition, ...]) -> str:
 
 
 def _are_orthogonal(machine: Machine, vertices: list[str]) -> bool:
-    """Return whether the vertices lie in different regions of one state."""
+    """Whether the vertices lie in different regions of one state."""
     states = [find_common_state(machine, *pair) for pair in combinations(vertices, 2)]
     return None not in states and len(set(states)) <= 1
 

@@ -57,7 +57,7 @@ def _reduce_conjuncts(
 
 
 def is_gr1(conjunct: Conjunct) -> bool:
-    """Return whether the conjunct is in GR(1) as it is."""
+    """Whether the conjunct is in GR(1) as it is."""
     if conjunct.class_ is Class.LIVENESS:
         return not has_primes(conjunct.formula)
     return conjunct.class_ is not Class.OTHER

@@ -140,7 +140,7 @@ def _make_context(graph: Graph, service: Element, assumed: tuple[int, int]) -> C
 
 
 def _has_parameters(graph: Graph, method: Element) -> bool:
-    """Return whether a method has parameters of its own or inherited ones."""
+    """Whether a method has parameters of its own or inherited ones."""
     family = (method, *query.generals(graph, method))
     return any(query.parameters(graph, relative) for relative in family)
 
@@ -190,7 +190,7 @@ def _read_formula(context: Context, constraint: Element) -> Formula:
 
 
 def _is_single_bound(expression: Expression, formula: Formula) -> bool:
-    """Return whether the expression is a single bound such as ``h > 0``, which is no range."""
+    """Whether the expression is a single bound such as ``h > 0``, which is no range."""
     return (
         isinstance(expression, Binary)
         and expression.op in _ORDERS
@@ -219,7 +219,7 @@ def _find_symbol(context: Context, name: str) -> Symbol | None:
 
 
 def _is_precondition(context: Context, formula: Formula) -> bool:
-    """Return whether the formula reads only inputs of the service."""
+    """Whether the formula reads only inputs of the service."""
     names = {feature.name for feature in f.variables(formula)}
     return all(
         is_input(feature) for feature in context.features.values() if feature.variable in names
@@ -227,7 +227,7 @@ def _is_precondition(context: Context, formula: Formula) -> bool:
 
 
 def is_input(feature: Feature) -> bool:
-    """Return whether the feature is an input parameter, whose value the caller decides."""
+    """Whether the feature is an input parameter, whose value the caller decides."""
     direction = feature.direction or "in"
     return feature.element.kind is Kind.PARAMETER and direction == "in"
 

@@ -137,7 +137,7 @@ class _Facts:
         return Recurrence(self.runs.runs, parts, self._universe)
 
     def can_break(self, conjunct: Conjunct, own_guarantees: Iterable[Conjunct] = ()) -> bool:
-        """Return whether a run of the facts can reach a step that violates *conjunct*.
+        """Whether a run of the facts can reach a step that violates *conjunct*.
 
         *conjunct* is an initial or a safety condition. The run need not continue after the
         violation. In the violating step *own_guarantees* need not hold: a part that has seen its

@@ -80,7 +80,7 @@ def _restricted_together(contract: Contract, universe: Universe) -> frozenset[st
 
 
 def _is_restricted(name: str, states: Node, universe: Universe) -> bool:
-    """Return whether the states do not allow every value of the variable."""
+    """Whether the states do not allow every value of the variable."""
     symbols = universe.symbols
     any_value = universe.manager.exist(symbols.bits(name), states) & symbols.domain(name)
     return any_value != states
@@ -129,7 +129,7 @@ class DependencyGraph(Struct, frozen=True):
         return False
 
     def _reads(self, reader: tuple[Part, Dependency], writer: tuple[Part, Dependency]) -> bool:
-        """Return whether *reader* reads an output of *writer* in the same step, also by wires."""
+        """Whether *reader* reads an output of *writer* in the same step, also by wires."""
         (reading_part, reading), (writing_part, writing) = reader, writer
         read_names = reading.inputs.union(*(wire for wire in self.wires if wire & reading.inputs))
         return (
@@ -140,7 +140,7 @@ class DependencyGraph(Struct, frozen=True):
 
 
 def _is_about_outputs(conjunct: Conjunct, dependency: Dependency) -> bool:
-    """Return whether the conjunct reads an output of the dependency in the same step."""
+    """Whether the conjunct reads an output of the dependency in the same step."""
     variables = f.variables(conjunct.formula)
     is_state_predicate = not any(variable.primed for variable in variables)
     names = {variable.name for variable in variables if variable.primed or is_state_predicate}

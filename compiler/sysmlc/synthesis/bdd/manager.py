@@ -300,7 +300,7 @@ class Manager:
 
 
 def _is_memory_error(text: str) -> bool:
-    """Return whether dd's message says that CUDD has no more memory.
+    """Whether dd's message says that CUDD has no more memory.
 
     dd does not check most results of CUDD, so that the message is often about a NULL node.
     """

@@ -65,7 +65,7 @@ class QuickCheck:
         return self.closed_loop.symbols.unprime(self._forward(states))
 
     def satisfies_safety(self) -> bool:
-        """Return whether all safety guarantees hold in all steps, including the first one."""
+        """Whether all safety guarantees hold in all steps, including the first one."""
         state_predicates = [
             node for node in self.safety_guarantees if self._is_state_predicate(node)
         ]
@@ -83,7 +83,7 @@ class QuickCheck:
         return not any(self._can_violate(~node) for node in conjunctions)
 
     def _can_violate(self, step: Node) -> bool:
-        """Return whether a transition from a reachable state satisfies *step*."""
+        """Whether a transition from a reachable state satisfies *step*."""
         # First test with the few transition parts about the variables of the step. They admit more
         # steps, so the expensive test with all parts is needed only if this one does not exclude
         # it.
@@ -112,7 +112,7 @@ class QuickCheck:
             yield from join_conjuncts(self.manager, group)
 
     def can_step(self, step: Node, parts: Iterable[Node]) -> bool:
-        """Return whether a reachable state has a transition that satisfies *step* and *parts*."""
+        """Whether a reachable state has a transition that satisfies *step* and *parts*."""
         if step == self.manager.false:
             return False
         product = Product(self.manager, [*parts, step], self._all_bits)

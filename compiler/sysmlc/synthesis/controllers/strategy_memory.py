@@ -139,7 +139,7 @@ def _is_number(strategy: Strategy, name: str) -> bool:
 
 
 def _is_counter(reachable: ReachableStrategy, name: str) -> bool:
-    """Return whether an output counts: each step adds or subtracts one, keeps it or resets it.
+    """Whether an output counts: each step adds or subtracts one, keeps it or resets it.
 
     It may be reset to ``MAX_SET_VALUES`` different values. An output that is only kept or reset is
     no counter.

@@ -98,7 +98,7 @@ class _Verification:
                 yield from _FAULT_SEARCHES[conjunct.class_](self, conjunct, violation)
 
     def _passes_quick_check(self) -> bool:
-        """Return whether the quick check proves that there is no fault.
+        """Whether the quick check proves that there is no fault.
 
         Groups of independent variables are checked separately.
         """
@@ -166,7 +166,7 @@ class _Verification:
         )
 
     def _can_step(self, step: Node, parts: Iterable[Node]) -> bool:
-        """Return whether a reachable state has a transition that satisfies *step* and *parts*."""
+        """Whether a reachable state has a transition that satisfies *step* and *parts*."""
         if step == self.manager.false:
             return False
         product = Product(self.manager, [*parts, step], self.runs.bits)
@@ -238,7 +238,7 @@ class _Verification:
 
 
 def _has_fair_run(runs: Runs | QuickCheck, within: Node) -> bool:
-    """Return whether some fair run stays inside *within* forever.
+    """Whether some fair run stays inside *within* forever.
 
     The fixpoint of Emerson and Lei, computed with successors instead of predecessors, which for
     controllers is faster.

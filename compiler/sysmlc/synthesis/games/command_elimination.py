@@ -163,7 +163,7 @@ def _find_plant_inputs(game: Game, choice: Sequence[Node]) -> dict[str, tuple[No
 def _has_unique_values(
     symbols: Symbols, parts: Sequence[Node], own_bits: frozenset[str], choice: Sequence[Node]
 ) -> bool:
-    """Return whether the parts leave exactly one value of *own_bits* for all allowed commands."""
+    """Whether the parts leave exactly one value of *own_bits* for all allowed commands."""
     manager = symbols.manager
     relation = manager.true
     for part in parts:

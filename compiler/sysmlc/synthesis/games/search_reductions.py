@@ -81,7 +81,7 @@ def _find_swap(arena: Arena, left_goal: Node, right_goal: Node) -> Swap | None:
 
 
 def _is_symmetric(arena: Arena, swap: Swap) -> bool:
-    """Return whether the swap maps the arena to itself.
+    """Whether the swap maps the arena to itself.
 
     Parts are compared as sets of diagrams, so some symmetries are not recognised.
     """

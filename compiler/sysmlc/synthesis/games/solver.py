@@ -245,7 +245,7 @@ class _Solver:
         return dict.fromkeys(range(len(self._goals)), ())
 
     def _is_lost(self, winning: Node) -> bool:
-        """Return whether the candidates show already that the game is lost."""
+        """Whether the candidates show already that the game is lost."""
         # In an arena that is ahead, several turns lie between the first state and the candidates:
         # playing them is not cheap.
         if self.arena.is_ahead and winning != self.arena.manager.false:

@@ -117,7 +117,7 @@ def _find_functions(
 def _holds_initially(
     game: Game, is_input: bool, bits: Mapping[str, Node], other_names: Collection[str]
 ) -> bool:
-    """Return whether the definition also holds in the first step."""
+    """Whether the definition also holds in the first step."""
     manager, symbols = game.manager, game.symbols
     current_bits = {_current_bit(bit): symbols.unprime(node) for bit, node in bits.items()}
     parts = game.init_assumptions if is_input else game.init_guarantees

@@ -137,7 +137,7 @@ def check_games(contract: Contract, create_manager: ManagerFactory) -> Iterator[
 
 
 def is_won(contract: Contract, create_manager: ManagerFactory) -> bool:
-    """Return whether the contract is realizable."""
+    """Whether the contract is realizable."""
     return solve(make_game(contract, create_manager()), is_complete=False).is_realizable
 
 
@@ -211,7 +211,7 @@ def _value_predicates(variable: Variable) -> Iterator[Formula]:
 
 
 def is_forced(contract: Contract, create_manager: ManagerFactory) -> bool:
-    """Return whether the component can force the environment to violate its assumptions.
+    """Whether the component can force the environment to violate its assumptions.
 
     That is: from some reachable state it can do so while it satisfies its own safety guarantees
     (well-separation: Klein and Pnueli 2010, Maoz and Ringert 2016).
@@ -286,7 +286,7 @@ def _system_of_game(game: Game) -> FairSystem:
 
 
 def _is_always_restricted(game: Game, variable: Variable) -> bool:
-    """Return whether some guarantee always restricts the output, examining one guarantee at a time.
+    """Whether some guarantee always restricts the output, examining one guarantee at a time.
 
     A cheap test that often succeeds, because most guarantees are about a single output.
     """
