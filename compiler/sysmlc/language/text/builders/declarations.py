@@ -102,9 +102,9 @@ def _build_conjugated_typing(_tokens: Tokens, _stop: int, _begin: int, name: Ref
 
 
 def _build_typings(
-    _tokens: Tokens, _stop: int, _begin: int, *types: list[Relation]
+    _tokens: Tokens, _stop: int, _begin: int, _typed_by: list[Node], types: list[Relation]
 ) -> list[Relation]:
-    return types[-1]
+    return types
 
 
 def _build_subsettings(
