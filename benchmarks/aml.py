@@ -2,9 +2,9 @@
 
     python benchmarks/aml.py --sizes 5 50
 
-All numbers of one run come from one machine in one state: the ratios to lxml and to expat count.
-Every number is the least of several processes. Where SYSMLC_CORPUS is set, three real plants are
-measured as well. The exit code is 1 when a budget is missed.
+Compare the ratios to lxml and expat, which are measured in the same run: times depend on the
+machine. Each figure is the least of several processes. If SYSMLC_CORPUS is set, three real plants
+are measured, too. The exit code is 1 when a budget is missed.
 """
 
 import argparse
@@ -13,10 +13,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-from aml_model import write
-from measuring import Report, Row, measure, rounds_for
+from aml_model import write_plant
+from measuring import Report, Row, limit_rounds, measure_work
 
-_WORK = Path(__file__).with_name("aml_work.py")
+_WORK = Path(__file__).with_name("xml_work.py")
 _REAL = (
     "dev/amlsec_casestudy_d.aml",
     "dev/amlsec_casestudy_a.aml",
@@ -24,40 +24,40 @@ _REAL = (
 )
 
 LXML = 8.0
-"""Multiple of the CPU time of ``lxml.etree.parse``, from AutomationML to the resolved graph."""
+"""Budget from AutomationML to the resolved graph: multiple of the time of ``lxml.etree.parse``."""
 
 MEMORY = 14.0
-"""Peak of the resident memory, as a multiple of the file's size, from 5 MB on."""
+"""Budget of the peak of the resident memory: multiple of the size of a file of at least 5 MB."""
 
 LINEAR = 1.2
-"""Largest ratio of the time for a megabyte of the largest file to one of the smallest file."""
+"""Budget of the time per megabyte of the largest file: multiple of that of the smallest file."""
 
 _LEAST_ROUNDS = 3
 
 _SMALL = 10.0
-"""Megabytes up to which the whole command is measured, too."""
+"""Megabytes; for smaller files ``sysmlc check`` is measured, too."""
 
 _LARGE = 4.0
-"""Megabytes from which on the time to start no longer distorts ratios and memory."""
+"""Megabytes; only larger files are judged, because start-up distorts the figures of small ones."""
 
 
 def report_file(report: Report, path: Path, rounds: int, *, is_judged: bool = True) -> Row:
     """Print the lines of one file and return the row of sysmlc."""
-    rounds = max(rounds_for(path, rounds), _LEAST_ROUNDS)
-    ours = measure(_WORK, "ours", path, rounds)
-    report.line(f"{path.name} ({ours.megabytes:.1f} MB)", ours.text)
-    if ours.megabytes < _SMALL:
-        whole = measure(_WORK, "check", path, rounds)
-        report.line("  sysmlc check, imports included", f"{whole.total:6.0f} ms/MB")
+    rounds = max(limit_rounds(path, rounds), _LEAST_ROUNDS)
+    sysmlc = measure_work(_WORK, "aml", path, rounds)
+    report.print_line(f"{path.name} ({sysmlc.megabytes:.1f} MB)", sysmlc.as_text)
+    if sysmlc.megabytes < _SMALL:
+        check = measure_work(_WORK, "check", path, rounds)
+        report.print_line("  sysmlc check, imports included", f"{check.total_time:6.0f} ms/MB")
     for work in ("lxml", "expat"):
-        peer = measure(_WORK, work, path, rounds)
-        ratio = ours.total / peer.total
-        text = f"{peer.total:6.1f} ms/MB, memory {peer.memory:.1f} x; ours is {ratio:.1f} x"
-        if work == "lxml" and ours.megabytes > _LARGE and is_judged:
-            report.budget(f"  {work}", text, ratio, LXML, "x")
+        peer = measure_work(_WORK, work, path, rounds)
+        ratio = sysmlc.total_time / peer.total_time
+        text = f"{peer.total_time:6.1f} ms/MB, memory {peer.memory:.1f} x; sysmlc {ratio:.1f} x"
+        if work == "lxml" and sysmlc.megabytes > _LARGE and is_judged:
+            report.judge(f"  {work}", text, ratio, LXML, "x")
         else:
-            report.line(f"  {work}", text)
-    return ours
+            report.print_line(f"  {work}", text)
+    return sysmlc
 
 
 def report_generated(report: Report, options: argparse.Namespace, folder: Path) -> None:
@@ -66,15 +66,15 @@ def report_generated(report: Report, options: argparse.Namespace, folder: Path) 
     for size in sorted(options.sizes):
         path = folder / f"plant{size:g}.aml"
         with path.open("wb") as stream:
-            write(stream, size, options.seed)
+            write_plant(stream, size, options.seed)
         row = report_file(report, path, options.rounds)
         path.unlink()
         if row.megabytes > _LARGE:
-            report.budget("  memory", f"{row.memory:6.1f} x", row.memory, MEMORY, "x")
+            report.judge("  memory", f"{row.memory:6.1f} x", row.memory, MEMORY, "x")
         rows.append(row)
     if len(rows) > 1:
-        ratio = rows[-1].total / rows[0].total
-        report.budget("largest to smallest", f"{ratio:6.2f} x per MB", ratio, LINEAR, "x")
+        ratio = rows[-1].total_time / rows[0].total_time
+        report.judge("largest to smallest", f"{ratio:6.2f} x per MB", ratio, LINEAR, "x")
 
 
 def report_real(report: Report, options: argparse.Namespace) -> None:
@@ -92,7 +92,7 @@ def main() -> int:
     parser.add_argument("--rounds", type=int, default=5)
     options = parser.parse_args()
     report = Report()
-    report.calibration()
+    report.print_calibration()
     with tempfile.TemporaryDirectory() as folder:
         report_generated(report, options, Path(folder))
         report_real(report, options)

@@ -1,6 +1,16 @@
-"""The libraries of a generated plant: devices, stations, and what types them."""
+"""The libraries of a generated plant: classes of devices, stations, roles and interfaces."""
 
-from aml_words import WAYS, attribute, element, interface, link, position, way
+from collections.abc import Iterable
+
+from aml_words import (
+    DIRECTIONS,
+    print_attribute,
+    print_direction,
+    print_element,
+    print_interface,
+    print_link,
+    print_position,
+)
 
 BASE_ROLE = "AutomationMLBaseRoleClassLib/AutomationMLBaseRole"
 _BASE_INTERFACE = "AutomationMLInterfaceClassLib/AutomationMLBaseInterface"
@@ -16,7 +26,7 @@ MEASURES = {
     "vendor": ("xs:string", "", ""),
     "enabled": ("xs:boolean", "", ""),
 }
-"""Attributes that classes declare: data type, unit, attribute type (or none)."""
+"""Data type, unit and attribute type (maybe "") of the attributes that classes declare."""
 
 _DEVICES: dict[str, tuple[str, tuple[str, ...], tuple[str, ...]]] = {
     "Device": ("", ("serial", "vendor"), ("net",)),
@@ -27,14 +37,14 @@ _DEVICES: dict[str, tuple[str, tuple[str, ...], tuple[str, ...]]] = {
     "LightBarrier": ("Sensor", ("voltage",), ()),
     "Conveyor": ("Motor", (), ("infeed", "outfeed")),
 }
-"""Classes of devices: base class, attributes, interfaces."""
+"""Base class, attributes and interfaces of each class of devices."""
 
 STATIONS = {
     "Press": ("Motor", "Valve", "LightBarrier"),
     "Oven": ("Valve", "Valve", "LightBarrier"),
     "Feeder": ("Motor", "LightBarrier", "LightBarrier"),
 }
-"""Classes of stations: the classes of their devices."""
+"""The classes of the devices of each class of stations."""
 
 PARTS = ("drive", "actor", "sensor")
 """Names of the devices in a station."""
@@ -53,59 +63,64 @@ _ROLES = {
 _TYPES = {"Speed": "m/s", "Power": "kW", "Length": "mm"}
 
 
-def attributes(device: str) -> list[str]:
-    """Names of the attributes of a device, inherited ones first."""
-    base, own, _ = _DEVICES[device]
-    return [*(attributes(base) if base else ()), *own]
+def list_attributes(device: str) -> list[str]:
+    """Return the names of the attributes of a device, inherited ones first."""
+    base, names, _ = _DEVICES[device]
+    return [*(list_attributes(base) if base else ()), *names]
 
 
-def ports(device: str) -> list[str]:
-    """Names of the interfaces of a device, inherited ones first."""
-    base, _, own = _DEVICES[device]
-    return [*(ports(base) if base else ()), *own]
+def list_ports(device: str) -> list[str]:
+    """Return the names of the interfaces of a device, inherited ones first."""
+    base, _, names = _DEVICES[device]
+    return [*(list_ports(base) if base else ()), *names]
 
 
-def declared(name: str, value: str = "") -> str:
-    """An attribute as classes declare it, and instances repeat it with a value."""
+def print_measure(name: str, value: str = "") -> str:
+    """Print an attribute of ``MEASURES``: without a value in a class, with one in an instance."""
     data_type, unit, type_ = MEASURES[name]
-    return attribute(name, data_type, unit, value, type_)
+    return print_attribute(name, data_type, unit, value, type_)
 
 
-def role(device: str) -> str:
-    """The role that a device plays."""
+def role_of(device: str) -> str:
+    """Return the role that a device plays."""
     return device if device in _ROLES else "Device"
 
 
-def _device(name: str) -> str:
-    base, own, interfaces = _DEVICES[name]
+def _print_device_class(name: str) -> str:
+    base, attributes, ports = _DEVICES[name]
     path = f' RefBaseClassPath="Devices/{base}"' if base else ""
-    inside = "".join(map(declared, own))
-    inside += "".join(
-        interface(one, f"class-{name}-{one}", inside=way(WAYS[one])) for one in interfaces
+    content = "".join(map(print_measure, attributes))
+    content += _print_ports(name, ports) + _print_supported_role(role_of(name))
+    return f'<SystemUnitClass Name="{name}"{path}>\n{content}</SystemUnitClass>\n'
+
+
+def _print_ports(class_name: str, ports: Iterable[str]) -> str:
+    """Print the interfaces that a class declares, with their directions."""
+    directions = {port: print_direction(DIRECTIONS[port]) for port in ports}
+    return "".join(
+        print_interface(port, f"class-{class_name}-{port}", content=direction)
+        for port, direction in directions.items()
     )
-    inside += _supported(role(name))
-    return f'<SystemUnitClass Name="{name}"{path}>\n{inside}</SystemUnitClass>\n'
 
 
-def _station(name: str) -> str:
-    inside = declared("delay", "50") + position("0", "0")
-    for one in STATION_PORTS:
-        inside += interface(one, f"class-{name}-{one}", inside=way(WAYS[one]))
+def _print_station_class(name: str) -> str:
+    content = print_measure("delay", "50") + print_position("0", "0")
+    content += _print_ports(name, STATION_PORTS)
     links = ""
     for part, device in zip(PARTS, STATIONS[name], strict=True):
         id = f"class-{name}-{part}"
-        made = "".join(interface(one, f"{id}-{one}") for one in ports(device))
-        inside += element(part, id, f"Devices/{device}", made)
-        links += link(f"net-{part}", f"class-{name}-net", f"{id}-net")
-    inside += _supported("Station") + links
-    return f'<SystemUnitClass Name="{name}">\n{inside}</SystemUnitClass>\n'
+        ports = "".join(print_interface(port, f"{id}-{port}") for port in list_ports(device))
+        content += print_element(part, id, f"Devices/{device}", ports)
+        links += print_link(f"net-{part}", f"class-{name}-net", f"{id}-net")
+    content += _print_supported_role("Station") + links
+    return f'<SystemUnitClass Name="{name}">\n{content}</SystemUnitClass>\n'
 
 
-def _supported(name: str) -> str:
+def _print_supported_role(name: str) -> str:
     return f'<SupportedRoleClass RefRoleClassPath="Roles/{name}"/>\n'
 
 
-def _interfaces() -> str:
+def _print_interface_classes() -> str:
     return (
         f'<InterfaceClass Name="Fieldbus" RefBaseClassPath="{_BASE_INTERFACE}/Communication"/>\n'
         f'<InterfaceClass Name="Material" RefBaseClassPath="{_BASE_INTERFACE}/Port"/>\n'
@@ -114,25 +129,26 @@ def _interfaces() -> str:
     )
 
 
-def _role_class(name: str) -> str:
+def _print_role_class(name: str) -> str:
     return f'<RoleClass Name="{name}" RefBaseClassPath="{_ROLES[name]}"/>\n'
 
 
-def _type(name: str) -> str:
+def _print_attribute_type(name: str) -> str:
     return f'<AttributeType Name="{name}" AttributeDataType="xs:double" Unit="{_TYPES[name]}"/>\n'
 
 
-def _library(tag: str, name: str, inside: str) -> str:
-    return f'<{tag} Name="{name}">\n<Version>1.0</Version>\n{inside}</{tag}>\n'
+def _print_library(tag: str, name: str, classes: Iterable[str]) -> str:
+    content = "".join(classes)
+    return f'<{tag} Name="{name}">\n<Version>1.0</Version>\n{content}</{tag}>\n'
 
 
 LIBRARIES = "".join(
     (
-        _library("InterfaceClassLib", "Interfaces", _interfaces()),
-        _library("RoleClassLib", "Roles", "".join(map(_role_class, _ROLES))),
-        _library("SystemUnitClassLib", "Devices", "".join(map(_device, _DEVICES))),
-        _library("SystemUnitClassLib", "Stations", "".join(map(_station, STATIONS))),
-        _library("AttributeTypeLib", "Quantities", "".join(map(_type, _TYPES))),
+        _print_library("InterfaceClassLib", "Interfaces", [_print_interface_classes()]),
+        _print_library("RoleClassLib", "Roles", map(_print_role_class, _ROLES)),
+        _print_library("SystemUnitClassLib", "Devices", map(_print_device_class, _DEVICES)),
+        _print_library("SystemUnitClassLib", "Stations", map(_print_station_class, STATIONS)),
+        _print_library("AttributeTypeLib", "Quantities", map(_print_attribute_type, _TYPES)),
     )
 )
-"""All libraries as text."""
+"""The text of all libraries."""

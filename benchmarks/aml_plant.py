@@ -1,10 +1,10 @@
-"""What a generated plant says: production lines that are instances of classes, and others.
+"""Printing of the production lines of a generated plant.
 
-A line has stations that say again what their classes have, with values and ids of their own;
-devices with more than their class; a control cabinet several deep without classes, as many
-tools write it; links within and between stations; a group of mirrors; roles. The proportions
-are those of real files (a third attributes, eight hundredths internal elements), and the
-compiler has nothing to object to.
+The stations of a line repeat the content of their classes with values and ids of their own. Some
+devices have more attributes than their class. A control cabinet has elements on several levels
+without classes, as many tools write it. A line also has links within and between stations, a group
+of mirrors, and roles. The proportions are those of real files (33 % of the elements are attributes,
+8 % internal elements), and the compiler reports nothing about the plant.
 """
 
 from collections.abc import Iterable
@@ -12,7 +12,16 @@ from dataclasses import dataclass
 from random import Random
 
 import aml_classes as classes
-from aml_words import attribute, element, interface, link, new_id, position, requirement, way
+from aml_words import (
+    make_id,
+    print_attribute,
+    print_direction,
+    print_element,
+    print_interface,
+    print_link,
+    print_position,
+    print_role,
+)
 
 HEAD = """<?xml version="1.0" encoding="utf-8"?>
 <CAEXFile xmlns="http://www.dke.de/CAEX" SchemaVersion="3.0" FileName="plant.aml">
@@ -26,117 +35,126 @@ FOOT = f"</InstanceHierarchy>\n{classes.LIBRARIES}</CAEXFile>\n"
 
 _VENDORS = ("Alpha Drives", "Beta Sensors", "Gamma Automation", "Delta &amp; Sons")
 _STATION_COUNT = 6
-_WITH_MORE = 0.05
-"""Share of devices that have an attribute beyond those of their class."""
+_EXTENDED_SHARE = 0.05
+"""Share of the devices that have an attribute that their class lacks."""
 
 
 @dataclass(frozen=True, slots=True)
-class _Made:
-    """Text of an internal element, its id, and the ids of its interfaces by name."""
+class _Element:
+    """The text of an internal element, its id, and the ids of its interfaces by name."""
 
     text: str
     id: str
     ports: dict[str, str]
 
 
-def line(number: int, chance: Random) -> str:
-    """One production line: stations in a row, a conveyor after each, a cabinet, a group."""
-    places = range(1, _STATION_COUNT + 1)
-    stations = [_station(f"S{number}.{k}", chance) for k in places]
-    belts = [_device(f"B{number}.{k}", "Conveyor", chance) for k in places]
-    cabinet = _cabinet(f"C{number}", chance)
-    inside = "<Description>Production line of the generated plant</Description>\n"
-    inside += attribute("throughput", "xs:double", "1/min", str(chance.randint(10, 90)))
-    inside += "".join(one.text for one in (*stations, *belts, cabinet))
-    inside += _group(f"G{number}", [belt.id for belt in belts[:3]], chance)
-    inside += "".join(_links(stations, belts, cabinet)) + requirement("Roles/Line")
-    return element(f"Line{number}", new_id(chance), "", inside)
+def print_line(number: int, random: Random) -> str:
+    """Print a production line: a row of stations and conveyors, a cabinet, and a group."""
+    positions = range(1, _STATION_COUNT + 1)
+    stations = [_make_station(f"S{number}.{k}", random) for k in positions]
+    belts = [_make_device(f"B{number}.{k}", "Conveyor", random) for k in positions]
+    cabinet = _make_cabinet(f"C{number}", random)
+    content = "<Description>Production line of the generated plant</Description>\n"
+    content += print_attribute("throughput", "xs:double", "1/min", str(random.randint(10, 90)))
+    content += "".join(element.text for element in (*stations, *belts, cabinet))
+    content += _print_group(f"G{number}", [belt.id for belt in belts[:3]], random)
+    content += "".join(_print_links(stations, belts, cabinet)) + print_role("Roles/Line")
+    return print_element(f"Line{number}", make_id(random), "", content)
 
 
-def _links(stations: list[_Made], belts: list[_Made], cabinet: _Made) -> Iterable[str]:
+def _print_links(
+    stations: list[_Element], belts: list[_Element], cabinet: _Element
+) -> Iterable[str]:
     for k, (station, belt) in enumerate(zip(stations, belts, strict=True), 1):
-        yield link(f"m{k}", station.ports["outfeed"], belt.ports["infeed"])
-        yield link(f"f{k}", station.ports["net"], cabinet.ports[f"X{k}"])
-        yield link(f"b{k}", belt.ports["net"], cabinet.ports[f"X{k + _STATION_COUNT}"])
+        yield print_link(f"m{k}", station.ports["outfeed"], belt.ports["infeed"])
+        yield print_link(f"f{k}", station.ports["net"], cabinet.ports[f"X{k}"])
+        yield print_link(f"b{k}", belt.ports["net"], cabinet.ports[f"X{k + _STATION_COUNT}"])
 
 
 # -- instances of classes ----------------------------------------------------------------------
 
 
-def _station(name: str, chance: Random) -> _Made:
-    kind = chance.choice(tuple(classes.STATIONS))
-    named = list(zip(classes.PARTS, classes.STATIONS[kind], strict=True))
-    devices = [_device(part, device, chance) for part, device in named]
-    ports = {one: new_id(chance) for one in classes.STATION_PORTS}
-    inside = classes.declared("delay", str(chance.randint(51, 200)))
-    inside += position(*(f"{chance.uniform(1, 99):.2f}" for _ in "xy"))
-    inside += _interfaces(ports) + "".join(device.text for device in devices)
+def _make_station(name: str, random: Random) -> _Element:
+    kind = random.choice(tuple(classes.STATIONS))
+    parts = list(zip(classes.PARTS, classes.STATIONS[kind], strict=True))
+    devices = [_make_device(part, device, random) for part, device in parts]
+    ports = {port: make_id(random) for port in classes.STATION_PORTS}
+    content = classes.print_measure("delay", str(random.randint(51, 200)))
+    content += print_position(*(f"{random.uniform(1, 99):.2f}" for _ in "xy"))
+    content += _print_interfaces(ports) + "".join(device.text for device in devices)
     for part, device in zip(classes.PARTS, devices, strict=True):
-        inside += link(f"net-{part}", ports["net"], device.ports["net"])
-    inside += requirement("Roles/Station")
-    id = new_id(chance)
-    return _Made(element(name, id, f"Stations/{kind}", inside), id, ports)
+        content += print_link(f"net-{part}", ports["net"], device.ports["net"])
+    content += print_role("Roles/Station")
+    id = make_id(random)
+    return _Element(print_element(name, id, f"Stations/{kind}", content), id, ports)
 
 
-def _device(name: str, kind: str, chance: Random) -> _Made:
-    ports = {one: new_id(chance) for one in classes.ports(kind)}
-    values = (classes.declared(one, _value(one, chance)) for one in classes.attributes(kind))
-    inside = "".join(values)
-    if chance.random() < _WITH_MORE:
-        inside += attribute("inventory", "xs:string", "", f"I-{chance.getrandbits(24)}")
-    inside += _interfaces(ports) + requirement(f"Roles/{classes.role(kind)}")
-    id = new_id(chance)
-    return _Made(element(name, id, f"Devices/{kind}", inside), id, ports)
+def _make_device(name: str, kind: str, random: Random) -> _Element:
+    ports = {port: make_id(random) for port in classes.list_ports(kind)}
+    content = "".join(
+        classes.print_measure(attribute, _choose_value(attribute, random))
+        for attribute in classes.list_attributes(kind)
+    )
+    if random.random() < _EXTENDED_SHARE:
+        content += print_attribute("inventory", "xs:string", "", f"I-{random.getrandbits(24)}")
+    content += _print_interfaces(ports) + print_role(f"Roles/{classes.role_of(kind)}")
+    id = make_id(random)
+    return _Element(print_element(name, id, f"Devices/{kind}", content), id, ports)
 
 
-def _interfaces(ports: dict[str, str]) -> str:
-    return "".join(interface(name, id) for name, id in ports.items())
+def _print_interfaces(ports: dict[str, str]) -> str:
+    return "".join(print_interface(name, id) for name, id in ports.items())
 
 
-def _value(name: str, chance: Random) -> str:
+def _choose_value(name: str, random: Random) -> str:
     if name in ("vendor", "serial"):
-        return chance.choice(_VENDORS) if name == "vendor" else f"SN-{chance.getrandbits(32):08x}"
+        return random.choice(_VENDORS) if name == "vendor" else f"SN-{random.getrandbits(32):08x}"
     data_type = classes.MEASURES[name][0]
     if data_type == "xs:boolean":
-        return chance.choice(("true", "false"))
-    return str(chance.randint(1, 500)) if data_type == "xs:integer" else f"{chance.random():.4f}"
+        return random.choice(("true", "false"))
+    return str(random.randint(1, 500)) if data_type == "xs:integer" else f"{random.random():.4f}"
 
 
-# -- what has no class -------------------------------------------------------------------------
+# -- elements without a class ------------------------------------------------------------------
 
 
-def _cabinet(name: str, chance: Random) -> _Made:
-    """A cabinet with racks, modules and channels, none of which has a class."""
-    ports = {f"X{k}": new_id(chance) for k in range(1, 2 * _STATION_COUNT + 1)}
-    inside = attribute("protection", "xs:string", "", "IP54")
-    inside += "".join(interface(one, id, "net", way("InOut")) for one, id in ports.items())
-    inside += "".join(_rack(f"Rack{k}", chance) for k in (1, 2)) + requirement("Roles/Cabinet")
-    id = new_id(chance)
-    return _Made(element(name, id, "", inside), id, ports)
+def _make_cabinet(name: str, random: Random) -> _Element:
+    """Return a cabinet with racks and modules."""
+    ports = {f"X{k}": make_id(random) for k in range(1, 2 * _STATION_COUNT + 1)}
+    content = print_attribute("protection", "xs:string", "", "IP54")
+    content += "".join(
+        print_interface(port, id, "net", print_direction("InOut")) for port, id in ports.items()
+    )
+    content += "".join(_print_rack(f"Rack{k}", random) for k in (1, 2))
+    content += print_role("Roles/Cabinet")
+    id = make_id(random)
+    return _Element(print_element(name, id, "", content), id, ports)
 
 
-def _rack(name: str, chance: Random) -> str:
-    modules = "".join(_module(f"M{k}", k, chance) for k in range(1, 4))
-    return element(name, new_id(chance), "", modules + requirement("Roles/Cabinet"))
+def _print_rack(name: str, random: Random) -> str:
+    modules = "".join(_print_module(f"M{k}", k, random) for k in range(1, 4))
+    return print_element(name, make_id(random), "", modules + print_role("Roles/Cabinet"))
 
 
-def _module(name: str, slot: int, chance: Random) -> str:
-    values = (
-        ("order", "xs:string", "", f"6ES7-{chance.getrandbits(16)}"),
-        ("current", "xs:double", "mA", str(chance.randint(10, 900))),
+def _print_module(name: str, slot: int, random: Random) -> str:
+    attributes = (
+        ("order", "xs:string", "", f"6ES7-{random.getrandbits(16)}"),
+        ("current", "xs:double", "mA", str(random.randint(10, 900))),
         ("slot", "xs:integer", "", str(slot)),
-        ("address", "xs:string", "", f"10.0.{chance.randint(0, 255)}.{chance.randint(1, 254)}"),
-        ("firmware", "xs:string", "", f"V{chance.randint(1, 4)}.{chance.randint(0, 9)}"),
+        ("address", "xs:string", "", f"10.0.{random.randint(0, 255)}.{random.randint(1, 254)}"),
+        ("firmware", "xs:string", "", f"V{random.randint(1, 4)}.{random.randint(0, 9)}"),
     )
-    inside = "".join(attribute(*value) for value in values)
-    inside += interface("signal", new_id(chance), inside=way(chance.choice(("In", "Out"))))
-    inside += requirement("Roles/Module")
-    return element(name, new_id(chance), "", inside)
+    content = "".join(print_attribute(*attribute) for attribute in attributes)
+    id, direction = make_id(random), random.choice(("In", "Out"))
+    content += print_interface("signal", id, content=print_direction(direction))
+    content += print_role("Roles/Module")
+    return print_element(name, make_id(random), "", content)
 
 
-def _group(name: str, masters: Iterable[str], chance: Random) -> str:
+def _print_group(name: str, masters: Iterable[str], random: Random) -> str:
     mirrors = "".join(
-        element(f"mirror{k}", new_id(chance), master, "") for k, master in enumerate(masters, 1)
+        print_element(f"mirror{k}", make_id(random), master, "")
+        for k, master in enumerate(masters, 1)
     )
-    inside = mirrors + requirement(f"{classes.BASE_ROLE}/Group")
-    return element(name, new_id(chance), "", inside)
+    content = mirrors + print_role(f"{classes.BASE_ROLE}/Group")
+    return print_element(name, make_id(random), "", content)

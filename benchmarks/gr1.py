@@ -1,10 +1,10 @@
-"""CPU seconds to decide contracts in GR(1), to make machines, cores, deadlines; to refine.
+"""CPU seconds of synthesis: verdicts, controllers, unrealizable cores, refinements, deadlines.
 
-``python benchmarks/gr1.py CORPUS`` prints what issue 6 asks for (2 to 4), from files below
-CORPUS/gr1 and generated grids; Python's start is not counted. ``--long`` adds what takes more than
-a quarter of a minute. With ``--gr1c`` and ``--slugs`` those programs decide the same contracts in
-the same run. Budgets count times as much longer as expat takes here than where they were set
-(``xmi.py``); whether they hold as they stand is told beside. The robots' study is ``robots.py``.
+``python benchmarks/gr1.py CORPUS`` measures contracts in files below CORPUS/gr1 and contracts of
+generated grids. The start of Python does not count. ``--long`` adds contracts that take over 15 s.
+With ``--gr1c`` and ``--slugs`` those programs decide the same contracts in the same run. The
+budgets are multiplied by the ratio in the line "floor" (``xmi.py``). Missions of robots are
+measured by ``robots.py``. The exit code is 1 when a budget is missed.
 """
 
 import argparse
@@ -16,19 +16,20 @@ from functools import partial
 from pathlib import Path
 
 import gr1_work as work
-from gr1_grid import holistic
-from gr1_peers import FORMS, Peer
+from gr1_grid import build_contract
+from gr1_peers import FORMATS, Peer
 from measuring import Report
-from xmi import slowness
+from xmi import measure_slowness
 
 PEER_LIMIT = 60.0
+"""Seconds that another program may run."""
 DIN = "din8580"
 ACTIONS = ("turn", "move", "pick", "place", "compose", "decompose", "coordinator")
-WHOLE = "assembly_holistic"
-DECIDED = {
+HOLISTIC = "assembly_holistic"
+VERDICT_BUDGETS = {
     **{f"{DIN}/{name}.json": 0.10 for name in ACTIONS},
     f"{DIN}/move.json": 0.2,
-    f"{DIN}/{WHOLE}.json": 3.0,
+    f"{DIN}/{HOLISTIC}.json": 3.0,
     "robots/robot_9.json": 0.3,
     "robots/robot_16.json": 0.3,
     "robots/robot_25.json": 0.3,
@@ -39,115 +40,129 @@ DECIDED = {
     "tlsf_syntcomp/gr_3.tlsf": 10.0,
 }
 GRIDS = {(5, 3): (8.0, 1.0), (4, 4): (30.0, 1.0)}
-"""Sides and robots of generated contracts: budgets without and with symmetry."""
+"""Budgets without and with symmetry, by the side of a generated grid and the number of robots."""
 LONG_GRIDS = {(5, 4): (0.0, 20.0), (5, 5): (0.0, 250.0)}
 MACHINE = 0.3
 CORE, REFINEMENT = 2.0, 0.2
+"""Budgets of a controller, of an unrealizable core, and of a check of refinement."""
 DEADLINES = {"hol_16x1_smart": 7, "hol_9x2_move_T4": 4, "hol_16x2_move_T5": 5}
+"""Expected smallest deadline of each contract."""
 
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """Where things are, how slow the machine is, whom to compare with."""
+    """The report, the folder of contracts, the slowness of the machine, and programs to compare."""
 
     report: Report
     corpus: Path
-    slower: float
+    slowness: float
     peers: tuple[Peer, ...]
 
-    def line(self, name: str, measured: tuple[float, str], limit: float, more: str = "") -> None:
-        """A line with a budget."""
-        seconds, said = measured
-        text = f"{seconds:8.3f} s {said}{more}"
-        self.report.scaled(name, text, seconds, limit, self.slower, "s")
+    def judge(
+        self, name: str, measurement: tuple[float, str], limit: float, remark: str = ""
+    ) -> None:
+        """Print a line with a budget for seconds and their result."""
+        seconds, result = measurement
+        text = f"{seconds:8.3f} s {result}{remark}"
+        self.report.judge_by_ratio(name, text, seconds, limit, self.slowness, "s")
 
-    def text(self, name: str) -> str:
-        """A file of the corpus."""
-        return work.text_of(self.corpus / "gr1" / name)
+    def read_text(self, name: str) -> str:
+        """Return the text of a file of the corpus."""
+        return (self.corpus / "gr1" / name).read_text(encoding="utf-8")
 
-    def others(self, name: str, text: str) -> str:
-        """What other programs need."""
-        return "".join(f", {peer.decided(name, text)}" for peer in self.peers)
+    def run_peers(self, name: str, text: str) -> str:
+        """Return times and verdicts of the other programs."""
+        return "".join(f", {peer.decide(name, text)}" for peer in self.peers)
 
 
 def main() -> int:
-    """Print a line a contract and question; 1 when a budget is missed by ratio."""
-    given = _arguments()
+    """Print the measurements; return 1 when a budget is missed."""
+    options = _parse_arguments()
     report = Report()
-    slower = slowness(report, 3)
-    peers = ((name, getattr(given, name)) for name in FORMS)
-    known = tuple(Peer(name, program, PEER_LIMIT) for name, program in peers if program)
-    run = Run(report, given.corpus, slower, known)
-    for section in (decided, machines, cores, refinements, deadlines):
-        section(run)
-    grids(run, GRIDS | LONG_GRIDS if given.long else GRIDS)
+    slowness = measure_slowness(report, 3)
+    programs = ((name, getattr(options, name)) for name in FORMATS)
+    peers = tuple(Peer(name, program, PEER_LIMIT) for name, program in programs if program)
+    run = Run(report, options.corpus, slowness, peers)
+    report_verdicts(run)
+    report_controllers(run)
+    report_cores(run)
+    report_refinements(run)
+    report_deadlines(run)
+    report_grids(run, GRIDS | LONG_GRIDS if options.long else GRIDS)
     return 0 if report.is_good else 1
 
 
-def _arguments() -> argparse.Namespace:
+def _parse_arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("corpus", type=Path)
     parser.add_argument("--long", action="store_true")
-    for name in FORMS:
+    for name in FORMATS:
         parser.add_argument(f"--{name}", default="", metavar="PROGRAM")
     return parser.parse_args()
 
 
-def decided(run: Run) -> None:
-    """Verdicts of files."""
-    for name, limit in DECIDED.items():
-        text = run.text(name)
-        found = work.best(partial(work.decided, name, text))
-        run.line(f"decide {name}", found, limit, run.others(name, text))
+def report_verdicts(run: Run) -> None:
+    """Print the lines of verdicts on files."""
+    for name, limit in VERDICT_BUDGETS.items():
+        text = run.read_text(name)
+        measurement = work.measure_best(partial(work.decide_contract, name, text))
+        run.judge(f"decide {name}", measurement, limit, run.run_peers(name, text))
 
 
-def grids(run: Run, known: dict[tuple[int, int], tuple[float, float]]) -> None:
-    """Verdicts of generated grids; symmetry is found, so that there is one time for two budgets."""
-    for (side, robots), (without, limit) in known.items():
-        contract = holistic(side, robots)
+def report_grids(run: Run, budgets: dict[tuple[int, int], tuple[float, float]]) -> None:
+    """Print the lines of verdicts on generated grids.
+
+    The solver finds the symmetry by itself, so the budget without symmetry is only printed.
+    """
+    for (side, robots), (without, limit) in budgets.items():
+        contract = build_contract(side, robots)
         name, text = f"{contract['name']}.gr1.json", json.dumps(contract)
-        found = work.best(partial(work.decided, name, text))
-        budget = f" (without symmetry {without:g} s)" if without else ""
-        run.line(f"decide {name}", found, limit, budget + run.others(name, text))
+        measurement = work.measure_best(partial(work.decide_contract, name, text))
+        remark = f" (budget without symmetry {without:g} s)" if without else ""
+        run.judge(f"decide {name}", measurement, limit, remark + run.run_peers(name, text))
 
 
-def machines(run: Run) -> None:
-    """Actions with their machines, checked."""
+def report_controllers(run: Run) -> None:
+    """Print the lines of controllers for actions, verified."""
     for action in ACTIONS:
         name = f"{DIN}/{action}.json"
-        found = work.best(partial(work.made, name, run.text(name)))
-        run.line(f"machine {name}", found, MACHINE)
+        text = run.read_text(name)
+        measurement = work.measure_best(partial(work.synthesise_contract, name, text))
+        run.judge(f"controller {name}", measurement, MACHINE)
 
 
-def cores(run: Run) -> None:
-    """Unrealizable variants with what cannot be kept together."""
-    for name in _din(run):
-        text = run.text(name)
+def report_cores(run: Run) -> None:
+    """Print the lines of unrealizable cores."""
+    for name in _iter_din_names(run):
+        text = run.read_text(name)
         if json.loads(text)["status"] == "unrealizable":
-            run.line(f"core {name}", work.best(partial(work.cored, name, text)), CORE)
+            measurement = work.measure_best(partial(work.find_core, name, text))
+            run.judge(f"core {name}", measurement, CORE)
 
 
-def refinements(run: Run) -> None:
-    """Each variant against the contract that it varies."""
-    for name in _din(run):
+def report_refinements(run: Run) -> None:
+    """Print the lines of checks whether a variant refines its base contract."""
+    for name in _iter_din_names(run):
         stem = Path(name).stem
-        base = next(one for one in (*ACTIONS, WHOLE) if stem.startswith(one))
+        base = next(action for action in (*ACTIONS, HOLISTIC) if stem.startswith(action))
         if base != stem:
-            found = work.best(partial(work.refined, run.text(name), run.text(f"{DIN}/{base}.json")))
-            run.line(f"refine {stem} < {base}", found, REFINEMENT)
+            texts = run.read_text(name), run.read_text(f"{DIN}/{base}.json")
+            measurement = work.measure_best(partial(work.check_refinement, *texts))
+            run.judge(f"refine {stem} < {base}", measurement, REFINEMENT)
 
 
-def _din(run: Run) -> Iterator[str]:
+def _iter_din_names(run: Run) -> Iterator[str]:
     return (f"{DIN}/{path.name}" for path in sorted((run.corpus / "gr1" / DIN).glob("*.json")))
 
 
-def deadlines(run: Run) -> None:
-    """Smallest deadlines: the values are what is asked for."""
+def report_deadlines(run: Run) -> None:
+    """Print the lines of smallest deadlines, which must have the expected values."""
     for name, bound in DEADLINES.items():
-        seconds, found = work.bounded(f"{name}.gr1.json", run.text(f"robots/{name}.json"))
-        run.report.is_good &= found == bound
-        verdict = "as wanted" if found == bound else f"NOT the {bound} that is wanted"
-        run.report.line(f"deadline {name}", f"{seconds:8.3f} s, {found}: {verdict}")
+        text = run.read_text(f"robots/{name}.json")
+        seconds, deadline = work.measure_deadline(f"{name}.gr1.json", text)
+        run.report.is_good &= deadline == bound
+        verdict = "as expected" if deadline == bound else f"NOT the expected {bound}"
+        run.report.print_line(f"deadline {name}", f"{seconds:8.3f} s, {deadline}: {verdict}")
 
 
 if __name__ == "__main__":

@@ -1,7 +1,8 @@
-"""Robots on a grid, as the thesis writes their contract (chapter 4): sensors, free cells, commands.
+"""Contracts of robots on a grid, as in chapter 4 of the thesis.
 
-Each robot has a position and a target (inputs), four sensors, and a command; a bit a cell says that
-it is free. Positions obey the commands; targets stay until they are reached.
+The inputs are the position, the target and four sensors of each robot, and a Boolean for each cell
+that is true if the cell is free. The output of each robot is a command, which determines its next
+position. A target changes only after the robot has reached it.
 """
 
 from collections.abc import Iterator
@@ -11,65 +12,65 @@ COMMANDS = ("stay", "up", "down", "left", "right")
 SENSORS = {"up": "su", "down": "sd", "left": "sl", "right": "sr"}
 
 
-def holistic(side: int, robots: int) -> dict[str, object]:
-    """The contract of all robots together, in the neutral form."""
+def build_contract(side: int, robots: int) -> dict[str, object]:
+    """Return one contract of all robots on a square grid, in the neutral form."""
     cells = range(side * side)
-    rules = list(_seen(side, robots))
-    motion = [rule for robot in range(robots) for rule in _motion(side, robot)]
-    apart = [
-        f"!(pos{one}={cell} & pos{other}={cell})"
-        for one, other in combinations(range(robots), 2)
+    rules = list(_iter_sensor_rules(side, robots))
+    motion = [rule for robot in range(robots) for rule in _iter_motion_rules(side, robot)]
+    no_collision = [
+        f"!(pos{first}={cell} & pos{second}={cell})"
+        for first, second in combinations(range(robots), 2)
         for cell in cells
     ]
     return {
         "name": f"grid_{side * side}x{robots}",
-        "variables": _variables(side, robots),
+        "variables": _declare_variables(side, robots),
         "assumptions": {
-            "init": [*apart, *rules],
-            "safety": [*map(_primed, rules), *motion],
+            "init": [*no_collision, *rules],
+            "safety": [*map(_prime_variables, rules), *motion],
             "liveness": [],
         },
         "guarantees": {
             "init": [f"cmd{robot}=stay" for robot in range(robots)],
-            "safety": [*apart, *_obedience(robots)],
+            "safety": [*no_collision, *_iter_command_rules(robots)],
             "liveness": [f"pos{robot}=tgt{robot}" for robot in range(robots)],
         },
     }
 
 
-def _variables(side: int, robots: int) -> dict[str, dict[str, object]]:
-    found: dict[str, dict[str, object]] = {}
+def _declare_variables(side: int, robots: int) -> dict[str, dict[str, object]]:
+    variables: dict[str, dict[str, object]] = {}
     for robot in range(robots):
         for name in ("pos", "tgt"):
-            found[f"{name}{robot}"] = {"owner": "env", "type": [0, side * side - 1]}
+            variables[f"{name}{robot}"] = {"owner": "env", "type": [0, side * side - 1]}
         for sensor in SENSORS.values():
-            found[f"{sensor}{robot}"] = {"owner": "env", "type": "bool"}
-        found[f"cmd{robot}"] = {"owner": "sys", "type": list(COMMANDS)}
+            variables[f"{sensor}{robot}"] = {"owner": "env", "type": "bool"}
+        variables[f"cmd{robot}"] = {"owner": "sys", "type": list(COMMANDS)}
     for cell in range(side * side):
-        found[f"free{cell}"] = {"owner": "env", "type": "bool"}
-    return found
+        variables[f"free{cell}"] = {"owner": "env", "type": "bool"}
+    return variables
 
 
-def _seen(side: int, robots: int) -> Iterator[str]:
-    """What sensors and free cells are, in one step."""
+def _iter_sensor_rules(side: int, robots: int) -> Iterator[str]:
+    """Yield the values of sensors and free cells in one step, which positions determine."""
     for cell in range(side * side):
-        there = " | ".join(f"pos{robot}={cell}" for robot in range(robots))
-        yield f"free{cell} <-> !({there})"
+        robots_there = " | ".join(f"pos{robot}={cell}" for robot in range(robots))
+        yield f"free{cell} <-> !({robots_there})"
     for robot in range(robots):
         for command, sensor in SENSORS.items():
             for cell in range(side * side):
-                target = neighbour(side, cell, command)
-                own = f"{sensor}{robot}"
-                value = f"!{own}" if target == cell else f"({own} <-> free{target})"
+                target = find_neighbour(side, cell, command)
+                bit = f"{sensor}{robot}"
+                value = f"!{bit}" if target == cell else f"({bit} <-> free{target})"
                 yield f"pos{robot}={cell} -> {value}"
 
 
-def _primed(rule: str) -> str:
-    """The rule about the next step: names begin with a letter and end with a digit."""
-    return "".join(_words(rule))
+def _prime_variables(rule: str) -> str:
+    """Return the rule about the next step: every name, which begins with a letter, gets a prime."""
+    return "".join(_iter_primed_words(rule))
 
 
-def _words(rule: str) -> Iterator[str]:
+def _iter_primed_words(rule: str) -> Iterator[str]:
     word = ""
     for char in f"{rule} ":
         if char.isalnum():
@@ -80,22 +81,22 @@ def _words(rule: str) -> Iterator[str]:
         word = ""
 
 
-def _motion(side: int, robot: int) -> Iterator[str]:
+def _iter_motion_rules(side: int, robot: int) -> Iterator[str]:
     for cell in range(side * side):
         for command in COMMANDS:
-            after = neighbour(side, cell, command)
-            yield f"pos{robot}={cell} & cmd{robot}={command} -> pos{robot}'={after}"
+            successor = find_neighbour(side, cell, command)
+            yield f"pos{robot}={cell} & cmd{robot}={command} -> pos{robot}'={successor}"
         yield f"pos{robot}!=tgt{robot} & tgt{robot}={cell} -> tgt{robot}'={cell}"
 
 
-def _obedience(robots: int) -> Iterator[str]:
+def _iter_command_rules(robots: int) -> Iterator[str]:
     for robot in range(robots):
         for command, sensor in SENSORS.items():
             yield f"cmd{robot}'={command} -> {sensor}{robot}'"
 
 
-def neighbour(side: int, cell: int, command: str) -> int:
-    """The cell that a command leads to; a command into a wall leads nowhere."""
+def find_neighbour(side: int, cell: int, command: str) -> int:
+    """Return the cell that a command leads to: the same cell if there is a wall."""
     row, column = divmod(cell, side)
     rows, columns = {"up": (-1, 0), "down": (1, 0), "left": (0, -1), "right": (0, 1)}.get(
         command, (0, 0)

@@ -1,58 +1,59 @@
-"""Other programs that decide the same contracts, where their binaries are given."""
+"""Other synthesis programs, which decide the same contracts for comparison."""
 
-import resource
 import subprocess
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from gr1_work import read
+from gr1_work import read_contract
+from measuring import read_children_time
 
 from sysmlc.logic import formats
 from sysmlc.logic.reduction.contract_reduction import reduce_contract
 
-FORMS = {"gr1c": ("gr1c", ("-r",)), "slugs": ("slugsin", ())}
-"""The form that a program reads, and its options to decide only."""
+FORMATS = {"gr1c": ("gr1c", ("-r",)), "slugs": ("slugsin", ())}
+"""Format that each program reads, and its options for a decision without a controller."""
 VERDICTS = {"unrealizable": "unrealizable", "not realizable": "unrealizable"}
-"""What programs write when no system keeps the contract, in lower case; looked for first."""
+"""Verdict by a text in the output, in lower case. They are searched before "realizable", which they
+contain."""
 
 
 @dataclass(frozen=True, slots=True)
 class Peer:
-    """A program, and for how many seconds it may run."""
+    """A program and the seconds that it may run."""
 
     name: str
     program: str
     limit: float
 
-    def decided(self, name: str, text: str) -> str:
-        """CPU seconds and its verdict, or why there are none."""
-        form, arguments = FORMS[self.name]
+    def decide(self, name: str, text: str) -> str:
+        """Return CPU seconds and the verdict of the program, or the reason for their absence."""
+        format_, arguments = FORMATS[self.name]
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder, "contract")
             try:
-                told = formats.write(reduce_contract(read(name, text)).contract, form)
+                contract = reduce_contract(read_contract(name, text)).contract
+                written = formats.write(contract, format_)
             except formats.NotExpressibleError as problem:
-                return f"{self.name} cannot be told: {problem.reason}"
-            path.write_text(told, encoding="utf-8")
-            return f"{self.name} {self._run([self.program, *arguments, str(path)])}"
+                return f"{self.name} cannot express the contract: {problem.reason}"
+            path.write_text(written, encoding="utf-8")
+            return f"{self.name} {self._run_program([self.program, *arguments, str(path)])}"
 
-    def _run(self, command: list[str]) -> str:
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    def _run_program(self, command: list[str]) -> str:
+        before = read_children_time()
         try:
-            done = subprocess.run(
+            process = subprocess.run(
                 command, capture_output=True, text=True, timeout=self.limit, check=False
             )
         except subprocess.TimeoutExpired:
             return f"over {self.limit:g} s"
         except OSError as problem:
             return f"does not run ({problem.strerror})"
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-        return f"{seconds:.3f} s {_verdict(done.stdout + done.stderr)}"
+        seconds = read_children_time() - before
+        return f"{seconds:.3f} s {_read_verdict(process.stdout + process.stderr)}"
 
 
-def _verdict(said: str) -> str:
-    words = said.lower()
-    found = next((verdict for word, verdict in VERDICTS.items() if word in words), "")
-    return found or ("realizable" if "realizable" in words else "no verdict")
+def _read_verdict(output: str) -> str:
+    text = output.lower()
+    verdict = next((verdict for phrase, verdict in VERDICTS.items() if phrase in text), "")
+    return verdict or ("realizable" if "realizable" in text else "no verdict")

@@ -1,8 +1,8 @@
-"""What a generated model says: one cell of a plant, and what all cells share.
+"""Content of a generated UML/SysML model: the elements of one cell, and those that cells share.
 
-A cell is a production line of six machines: blocks with values, ports, a state machine and an
-activity each; connectors with nested ends, item flows and requirements. The model is sane: the
-compiler makes token graphs of its activities and has next to nothing to object to.
+A cell is a production line of six machines. Each machine is a block with values, ports, a state
+machine and an activity. A line has connectors with nested ends, item flows and requirements. The
+compiler derives token graphs from the activities and reports no errors.
 """
 
 from collections.abc import Iterator
@@ -24,10 +24,10 @@ _DEFAULTS = {"Integer": ("LiteralInteger", "3"), "Real": ("LiteralReal", "1.5")}
 
 @dataclass(frozen=True, slots=True)
 class Node:
-    """One element. ``refs`` lead to keys of nodes; a key with ``@`` is the same in all cells.
+    """One element of the model. A key that begins with ``@`` names an element that all cells share.
 
-    ``<n>`` in a name or value stands for the number of the cell, ``texts`` are children that
-    hold only text, ``hrefs`` references into other files.
+    ``refs`` map features to keys of nodes. ``texts`` are children that contain only text, ``hrefs``
+    are references into other files. ``<n>`` in a name or value stands for the number of the cell.
     """
 
     feature: str
@@ -43,7 +43,7 @@ class Node:
 
 @dataclass(frozen=True, slots=True)
 class Application:
-    """One stereotype application; ``bases`` are the base properties that lead to the element."""
+    """One stereotype application; ``bases`` are its properties that refer to the element."""
 
     stereotype: str
     key: str
@@ -55,41 +55,43 @@ class Application:
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """Elements for the model's tree, and the stereotype applications that follow it."""
+    """Elements of the model's tree, and the stereotype applications on them."""
 
     nodes: tuple[Node, ...]
     applications: tuple[Application, ...]
 
 
-def walk(node: Node) -> Iterator[Node]:
-    """The node and all below it."""
+def iter_subtree(node: Node) -> Iterator[Node]:
+    """Yield the node and its descendants."""
     yield node
     for child in node.children:
-        yield from walk(child)
+        yield from iter_subtree(child)
 
 
-# -- what all cells share ----------------------------------------------------------------------
+# -- shared elements ---------------------------------------------------------------------------
 
 
-def shared() -> Part:
-    """Value types, the item that flows, interface blocks of the ports, and events."""
+def build_shared_part() -> Part:
+    """Return the item that flows, the interface blocks of the ports, signals and events."""
     pallet = Node("packagedElement", "Class", "@Pallet", "Pallet")
-    nodes = [pallet, *(_interface(name) for name in ("Material", "Order", "Status"))]
+    nodes = [pallet, *(_build_interface(name) for name in ("Material", "Order", "Status"))]
     signals = [Node("packagedElement", "Signal", f"@{name}", name) for name in _EVENTS]
     events = [
         Node("packagedElement", "SignalEvent", f"@on{e}", f"on{e}", refs=(("signal", (f"@{e}",)),))
         for e in _EVENTS
     ]
-    applications = [_block("@Pallet")]
+    applications = [_apply_block("@Pallet")]
     for name in ("Material", "Order", "Status"):
-        applications.append(_apply("PortsAndFlows:InterfaceBlock", f"@{name}", "base_Class"))
-        flow = _apply("PortsAndFlows:FlowProperty", f"@{name}.flow", "base_Property")
+        applications.append(
+            _apply_stereotype("PortsAndFlows:InterfaceBlock", f"@{name}", "base_Class")
+        )
+        flow = _apply_stereotype("PortsAndFlows:FlowProperty", f"@{name}.flow", "base_Property")
         direction = "inout" if name == "Status" else "out"
         applications.append(replace(flow, tags=(("direction", direction),)))
     return Part((*nodes, *signals, *events), tuple(applications))
 
 
-def _interface(name: str) -> Node:
+def _build_interface(name: str) -> Node:
     flow = Node(
         "ownedAttribute", "Property", f"@{name}.flow", "item", refs=(("type", ("@Pallet",)),)
     )
@@ -99,54 +101,56 @@ def _interface(name: str) -> Node:
 # -- a cell ------------------------------------------------------------------------------------
 
 
-def cell(chance: Random) -> Part:
-    """One line with its machines, flows and requirements; ``chance`` chooses words and numbers."""
-    machines = [_machine(kind, chance) for kind in _MACHINES]
-    flows = [_flow(number) for number in range(len(_MACHINES) - 1)]
-    requirements = [_requirement(number) for number in range(4)]
-    satisfactions = [_satisfaction(number) for number in range(4)]
-    content = (*machines, _line(), *flows, *requirements, *satisfactions)
+def build_cell(random: Random) -> Part:
+    """Return a line with its machines, flows and requirements; words and numbers are random."""
+    machines = [_build_machine(kind, random) for kind in _MACHINES]
+    flows = [_build_item_flow(number) for number in range(len(_MACHINES) - 1)]
+    requirements = [_build_requirement(number) for number in range(4)]
+    satisfactions = [_build_satisfaction(number) for number in range(4)]
+    content = (*machines, _build_line(), *flows, *requirements, *satisfactions)
     package = Node("packagedElement", "Package", "cell", "Cell <n>", children=content)
-    return Part((package,), tuple(_applications()))
+    return Part((package,), tuple(_iter_applications()))
 
 
-def _applications() -> Iterator[Application]:
+def _iter_applications() -> Iterator[Application]:
     for kind in (*_MACHINES, "Line"):
-        yield _block(kind)
+        yield _apply_block(kind)
     for kind in _MACHINES:
         for port in _PORTS:
-            yield _apply("PortsAndFlows:ProxyPort", f"{kind}.{port}", "base_Port")
+            yield _apply_stereotype("PortsAndFlows:ProxyPort", f"{kind}.{port}", "base_Port")
     for number in range(len(_MACHINES) - 1):
         for side, part in (("from", number), ("to", number + 1)):
-            end = _apply(
+            end = _apply_stereotype(
                 "Blocks:NestedConnectorEnd", f"connector{number}.{side}", "base_ConnectorEnd"
             )
             yield replace(end, refs=(("propertyPath", (f"part{part}",)),))
-        yield _apply("PortsAndFlows:ItemFlow", f"flow{number}", "base_InformationFlow")
+        yield _apply_stereotype("PortsAndFlows:ItemFlow", f"flow{number}", "base_InformationFlow")
     for number in range(4):
         tags = (
             ("id", f"R-<n>-{number}"),
             ("text", f"Line <n> keeps limit {number} in every shift."),
         )
-        made = _apply("Requirements:Requirement", f"requirement{number}", "base_NamedElement")
-        yield replace(made, bases=("base_NamedElement", "base_Class"), tags=tags)
+        requirement = _apply_stereotype("Requirements:Requirement", f"requirement{number}", "")
+        yield replace(requirement, bases=("base_NamedElement", "base_Class"), tags=tags)
         bases = ("base_Abstraction", "base_DirectedRelationship")
-        yield replace(_apply("Requirements:Satisfy", f"satisfy{number}", ""), bases=bases)
+        yield replace(
+            _apply_stereotype("Requirements:Satisfy", f"satisfy{number}", ""), bases=bases
+        )
 
 
-def _apply(stereotype: str, base: str, feature: str) -> Application:
+def _apply_stereotype(stereotype: str, base: str, feature: str) -> Application:
     return Application(stereotype, f"{base}|{stereotype}", (feature,), base)
 
 
-def _block(key: str) -> Application:
-    return _apply("Blocks:Block", key, "base_Class")
+def _apply_block(key: str) -> Application:
+    return _apply_stereotype("Blocks:Block", key, "base_Class")
 
 
 _PORTS = {"infeed": "Material", "outfeed": "Material", "order": "Order", "status": "Status"}
 
 
-def _machine(kind: str, chance: Random) -> Node:
-    body = f"{kind} of line <n>: it can {chance.choice(_VERBS)} one pallet at a time."
+def _build_machine(kind: str, random: Random) -> Node:
+    body = f"{kind} of line <n>: it can {random.choice(_VERBS)} one pallet at a time."
     comment = Node(
         "ownedComment",
         "Comment",
@@ -156,17 +160,17 @@ def _machine(kind: str, chance: Random) -> Node:
     )
     children = (
         comment,
-        *(_value(kind, name, type_) for name, type_ in _VALUES),
-        *(_condition(f"{kind}.{name}.range", text) for name, text in _RANGES.items()),
-        *(_port(kind, name, type_) for name, type_ in _PORTS.items()),
-        _machine_states(kind, chance),
-        _activity(kind, chance),
+        *(_build_value(kind, name, type_) for name, type_ in _VALUES),
+        *(_build_condition(f"{kind}.{name}.range", text) for name, text in _RANGES.items()),
+        *(_build_port(kind, name, type_) for name, type_ in _PORTS.items()),
+        _build_state_machine(kind, random),
+        _build_activity(kind, random),
     )
     refs = (("classifierBehavior", (f"{kind}.states",)),)
     return Node("packagedElement", "Class", kind, f"{kind}<n>", refs=refs, children=children)
 
 
-def _value(kind: str, name: str, type_: str) -> Node:
+def _build_value(kind: str, name: str, type_: str) -> Node:
     metaclass, value = _DEFAULTS.get(type_, ("LiteralBoolean", ""))
     attrs = (("value", value),) if value else ()
     default = Node("defaultValue", metaclass, f"{kind}.{name}.default", attrs=attrs)
@@ -176,7 +180,7 @@ def _value(kind: str, name: str, type_: str) -> Node:
     )
 
 
-def _port(kind: str, name: str, type_: str) -> Node:
+def _build_port(kind: str, name: str, type_: str) -> Node:
     attrs = [("aggregation", "composite")]
     if name in ("infeed", "order"):
         attrs.append(("isConjugated", "true"))
@@ -198,30 +202,32 @@ _TRANSITIONS = (
 )
 
 
-def _machine_states(kind: str, chance: Random) -> Node:
-    at = f"{kind}.states"
-    numbers = {"<limit>": str(chance.randint(60, 99)), "<few>": str(chance.randint(2, 9))}
+def _build_state_machine(kind: str, random: Random) -> Node:
+    key = f"{kind}.states"
+    numbers = {"<limit>": str(random.randint(60, 99)), "<few>": str(random.randint(2, 9))}
     vertices = [
-        Node("subvertex", "Pseudostate", f"{at}.initial", "initial"),
-        *(Node("subvertex", "State", f"{at}.{name}", name) for name in _STATES),
+        Node("subvertex", "Pseudostate", f"{key}.initial", "initial"),
+        *(Node("subvertex", "State", f"{key}.{name}", name) for name in _STATES),
     ]
-    transitions = [_transition(at, number, row, numbers) for number, row in enumerate(_TRANSITIONS)]
-    region = Node("region", "Region", f"{at}.region", "main", children=(*transitions, *vertices))
-    return Node("ownedBehavior", "StateMachine", at, f"{kind}States", children=(region,))
+    transitions = [
+        _build_transition(key, number, row, numbers) for number, row in enumerate(_TRANSITIONS)
+    ]
+    region = Node("region", "Region", f"{key}.region", "main", children=(*transitions, *vertices))
+    return Node("ownedBehavior", "StateMachine", key, f"{kind}States", children=(region,))
 
 
-def _transition(
-    at: str, number: int, row: tuple[str, str, str, str], numbers: dict[str, str]
+def _build_transition(
+    behaviour: str, number: int, row: tuple[str, str, str, str], numbers: dict[str, str]
 ) -> Node:
     source, target, event, guard = row
-    key = f"{at}.{number}"
-    refs = [("source", (f"{at}.{source}",)), ("target", (f"{at}.{target}",))]
+    key = f"{behaviour}.{number}"
+    refs = [("source", (f"{behaviour}.{source}",)), ("target", (f"{behaviour}.{target}",))]
     children = []
     if guard:
         for word, value in numbers.items():
             guard = guard.replace(word, value)
         refs.append(("guard", (f"{key}.guard",)))
-        children.append(_condition(f"{key}.guard", guard))
+        children.append(_build_condition(f"{key}.guard", guard))
     if event:
         trigger = (("event", (f"@on{event}",)),)
         children.append(Node("trigger", "Trigger", f"{key}.trigger", event.lower(), refs=trigger))
@@ -230,10 +236,10 @@ def _transition(
     )
 
 
-def _condition(key: str, body: str) -> Node:
+def _build_condition(key: str, body: str) -> Node:
     texts = (("language", "OCL"), ("body", body))
-    said = Node("specification", "OpaqueExpression", f"{key}.text", texts=texts)
-    return Node("ownedRule", "Constraint", key, "guard", children=(said,))
+    expression = Node("specification", "OpaqueExpression", f"{key}.text", texts=texts)
+    return Node("ownedRule", "Constraint", key, "guard", children=(expression,))
 
 
 _NODES = {
@@ -262,84 +268,98 @@ _FLOWS = (
 _UPPER_LANE = ("start", "act1", "check", "act2", "act3", "meet")
 
 
-def _activity(kind: str, chance: Random) -> Node:
-    at = f"{kind}.work"
-    few = str(chance.randint(2, 9))
-    verbs = chance.sample(_VERBS, 6)
+def _build_activity(kind: str, random: Random) -> Node:
+    behaviour = f"{kind}.work"
+    few = str(random.randint(2, 9))
+    verbs = random.sample(_VERBS, 6)
     names = {f"act{number}": verb for number, verb in enumerate(verbs, 1)}
-    edges = [_edge(at, number, row, few) for number, row in enumerate(_FLOWS)]
-    edges.append(_object_flow(at))
-    nodes = [_node(at, key, name) for key, name in ({key: key for key in _NODES} | names).items()]
-    lanes = [_lane(at, "upper", _UPPER_LANE), _lane(at, "lower", _lower_lane())]
+    edges = [_build_control_flow(behaviour, number, row, few) for number, row in enumerate(_FLOWS)]
+    edges.append(_build_object_flow(behaviour))
+    nodes = [
+        _build_node(behaviour, key, name)
+        for key, name in ({key: key for key in _NODES} | names).items()
+    ]
+    lanes = [
+        _build_lane(behaviour, "upper", _UPPER_LANE),
+        _build_lane(behaviour, "lower", _list_lower_lane()),
+    ]
     children = (*edges, *lanes, *nodes)
-    return Node("ownedBehavior", "Activity", at, f"{kind}Work", children=children)
+    return Node("ownedBehavior", "Activity", behaviour, f"{kind}Work", children=children)
 
 
-def _edge(at: str, number: int, row: tuple[str, str, str], few: str) -> Node:
+def _build_control_flow(behaviour: str, number: int, row: tuple[str, str, str], few: str) -> Node:
     source, target, guard = row
-    refs = (("source", (f"{at}.{source}",)), ("target", (f"{at}.{target}",)))
-    key = f"{at}.edge{number}"
+    refs = (("source", (f"{behaviour}.{source}",)), ("target", (f"{behaviour}.{target}",)))
+    key = f"{behaviour}.edge{number}"
     texts = (("language", "OCL"), ("body", guard.replace("<few>", few)))
-    said = Node("guard", "OpaqueExpression", f"{key}.guard", texts=texts)
-    return Node("edge", "ControlFlow", key, refs=refs, children=(said,) if guard else ())
+    expression = Node("guard", "OpaqueExpression", f"{key}.guard", texts=texts)
+    return Node("edge", "ControlFlow", key, refs=refs, children=(expression,) if guard else ())
 
 
-def _object_flow(at: str) -> Node:
-    refs = (("source", (f"{at}.act1.out",)), ("target", (f"{at}.act6.in",)))
-    return Node("edge", "ObjectFlow", f"{at}.object", refs=refs)
+def _build_object_flow(behaviour: str) -> Node:
+    refs = (("source", (f"{behaviour}.act1.out",)), ("target", (f"{behaviour}.act6.in",)))
+    return Node("edge", "ObjectFlow", f"{behaviour}.object", refs=refs)
 
 
-def _node(at: str, key: str, name: str) -> Node:
+def _build_node(behaviour: str, key: str, name: str) -> Node:
     lane = "upper" if key in _UPPER_LANE else "lower"
     ends = {
         feature: tuple(
-            f"{at}.edge{number}" for number, row in enumerate(_FLOWS) if row[side] == key
+            f"{behaviour}.edge{number}" for number, row in enumerate(_FLOWS) if row[side] == key
         )
         for side, feature in ((1, "incoming"), (0, "outgoing"))
     }
     refs = [(feature, keys) for feature, keys in ends.items() if keys]
-    refs.append(("inPartition", (f"{at}.{lane}",)))
+    refs.append(("inPartition", (f"{behaviour}.{lane}",)))
     metaclass = _NODES.get(key, "OpaqueAction")
-    return Node("node", metaclass, f"{at}.{key}", name, (), tuple(refs), children=_pins(at, key))
+    return Node(
+        "node",
+        metaclass,
+        f"{behaviour}.{key}",
+        name,
+        (),
+        tuple(refs),
+        children=_build_pins(behaviour, key),
+    )
 
 
-def _pins(at: str, action: str) -> tuple[Node, ...]:
-    flow = (f"{at}.object",)
+def _build_pins(behaviour: str, action: str) -> tuple[Node, ...]:
+    flow = (f"{behaviour}.object",)
     type_ = ("type", ("@Pallet",))
-    made = []
+    pins = []
     if action == "act6":
         refs = (("incoming", flow), type_)
-        made.append(Node("inputValue", "InputPin", f"{at}.act6.in", "pallet", refs=refs))
+        pins.append(Node("inputValue", "InputPin", f"{behaviour}.act6.in", "pallet", refs=refs))
     elif action == "act1":
         refs = (("outgoing", flow), type_)
-        made.append(Node("outputValue", "OutputPin", f"{at}.act1.out", "pallet", refs=refs))
-    return tuple(made)
+        pins.append(Node("outputValue", "OutputPin", f"{behaviour}.act1.out", "pallet", refs=refs))
+    return tuple(pins)
 
 
-def _lower_lane() -> tuple[str, ...]:
+def _list_lower_lane() -> tuple[str, ...]:
     actions = [f"act{number}" for number in range(1, 7)]
     return tuple(key for key in (*_NODES, *actions) if key not in _UPPER_LANE)
 
 
-def _lane(at: str, name: str, keys: tuple[str, ...]) -> Node:
-    refs = (("node", tuple(f"{at}.{key}" for key in keys)),)
-    return Node("group", "ActivityPartition", f"{at}.{name}", name, refs=refs)
+def _build_lane(behaviour: str, name: str, keys: tuple[str, ...]) -> Node:
+    refs = (("node", tuple(f"{behaviour}.{key}" for key in keys)),)
+    return Node("group", "ActivityPartition", f"{behaviour}.{name}", name, refs=refs)
 
 
 # -- the line ----------------------------------------------------------------------------------
 
 
-def _line() -> Node:
+def _build_line() -> Node:
     attrs = (("aggregation", "composite"),)
     parts = [
         Node("ownedAttribute", "Property", f"part{n}", kind.lower(), attrs, (("type", (kind,)),))
         for n, kind in enumerate(_MACHINES)
     ]
-    connectors = [_connector(number) for number in range(len(_MACHINES) - 1)]
+    connectors = [_build_connector(number) for number in range(len(_MACHINES) - 1)]
     return Node("packagedElement", "Class", "Line", "Line<n>", children=(*parts, *connectors))
 
 
-def _connector(number: int) -> Node:
+def _build_connector(number: int) -> Node:
     sides = (("from", number, "outfeed"), ("to", number + 1, "infeed"))
     ends = [
         Node(
@@ -354,7 +374,7 @@ def _connector(number: int) -> Node:
     return Node("ownedConnector", "Connector", key, f"belt{number}", children=tuple(ends))
 
 
-def _flow(number: int) -> Node:
+def _build_item_flow(number: int) -> Node:
     refs = (
         ("conveyed", ("@Pallet",)),
         ("informationSource", (f"{_MACHINES[number]}.outfeed",)),
@@ -366,10 +386,10 @@ def _flow(number: int) -> Node:
     )
 
 
-def _requirement(number: int) -> Node:
+def _build_requirement(number: int) -> Node:
     return Node("packagedElement", "Class", f"requirement{number}", f"Limit<n>.{number}")
 
 
-def _satisfaction(number: int) -> Node:
+def _build_satisfaction(number: int) -> Node:
     refs = (("client", (_MACHINES[number],)), ("supplier", (f"requirement{number}",)))
     return Node("packagedElement", "Abstraction", f"satisfy{number}", refs=refs)

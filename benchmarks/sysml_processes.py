@@ -1,14 +1,12 @@
 """CPU seconds of whole processes that compile SysML v2 without a cache, start-up included."""
 
-import os
 import re
-import resource
 import shutil
-import subprocess
-import sysconfig
 from collections.abc import Callable
 from itertools import count
 from pathlib import Path
+
+from measuring import SYSMLC, measure_command
 
 _LEVELS = """\
 [recipe.levels]
@@ -32,6 +30,7 @@ package P {
 }
 """
 _number = count()
+"""Numbers that make every edit differ from the edits before."""
 _SERVICES = "services/conveyor.sysml"
 _VALUE = re.compile(r"(?<= := )\d+(?=;)")
 _STEP = re.compile(r"callReleasePallet\d*")
@@ -47,55 +46,47 @@ def _rename_step(text: str) -> str:
 
 
 def _add_part(text: str) -> str:
-    mark = "connect cell1"
-    return text.replace(mark, f"part spare{next(_number)} : WorkCell; {mark}", 1)
+    connection = "connect cell1"
+    part = f"part spare{next(_number)} : WorkCell;"
+    return text.replace(connection, f"{part} {connection}", 1)
 
 
-LABORATORY: dict[str, tuple[str, Edit]] = {
-    "a number": (_SERVICES, _change_number),
+EDITS: dict[str, tuple[str, Edit]] = {
+    "a number changed": (_SERVICES, _change_number),
     "a step renamed": (_SERVICES, _rename_step),
-    "a part more": ("plant/ice_lab.sysml", _add_part),
+    "a part added": ("plant/ice_lab.sysml", _add_part),
 }
-"""Edits of one line of the ICE laboratory: in which file, and how."""
+"""File and function of each edit of one line of the ICE laboratory."""
 
 
-def measure(arguments: list[str], rounds: int) -> float:
-    """CPU time, user and system, of one process; the least of ``rounds``."""
-    command = [str(Path(sysconfig.get_path("scripts")) / "sysmlc"), *arguments, "--no-cache"]
-    return min(_run(command) for _ in range(rounds))
+def measure_sysmlc(arguments: list[str], rounds: int) -> float:
+    """Return the least CPU time of several processes of ``sysmlc`` without a cache."""
+    command = [SYSMLC, *arguments, "--no-cache"]
+    return min(measure_command(command, is_checked=False) for _ in range(rounds))
 
 
-def _run(command: list[str]) -> float:
-    environment = {**os.environ}
-    environment.pop("PYTHONDONTWRITEBYTECODE", None)
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run(command, check=False, capture_output=True, env=environment)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-
-
-def text(folder: Path, content: str, rounds: int) -> float:
-    """``sysmlc check`` of one file with that content."""
+def measure_check(folder: Path, content: str, rounds: int) -> float:
+    """Return the CPU time of ``sysmlc check`` of one file with this content."""
     path = folder / "model.sysml"
     path.write_text(content, "utf-8")
-    return measure(["check", str(path)], rounds)
+    return measure_sysmlc(["check", str(path)], rounds)
 
 
-def copied(corpus: Path, unit: Path) -> Path:
-    """A copy of the ICE laboratory with the names of its levels."""
+def measure_laboratory(corpus: Path, folder: Path, rounds: int) -> float:
+    """Return the CPU time of ``sysmlc build`` of the ICE laboratory."""
+    unit = copy_laboratory(corpus, folder / "ice")
+    return measure_sysmlc(["build", str(unit), "-o", str(folder / "out")], rounds)
+
+
+def copy_laboratory(corpus: Path, unit: Path) -> Path:
+    """Copy the ICE laboratory, with a configuration of its recipe levels, and return the copy."""
     shutil.copytree(corpus / "sysml2" / "ice-lab", unit)
     (unit / "sysmlc.toml").write_text(_LEVELS, "utf-8")
     return unit
 
 
-def laboratory(corpus: Path, folder: Path, rounds: int) -> float:
-    """``sysmlc`` of a copy of the ICE laboratory."""
-    unit = copied(corpus, folder / "ice")
-    return measure(["build", str(unit), "-o", str(folder / "out")], rounds)
-
-
-def gather(corpus: Path, folder: Path) -> Path:
-    """A copy of all training and example files."""
+def copy_official_files(corpus: Path, folder: Path) -> Path:
+    """Copy all training and example files to one folder, and return it."""
     unit = folder / "official"
     for name in ("training", "examples"):
         shutil.copytree(corpus / "sysml2" / "omg-release" / name, unit / name)

@@ -1,103 +1,135 @@
-"""What ``sysml.py`` measures, each in a process of its own: ``sysml_work.py WORK FOLDER``."""
+"""The works that ``sysml.py`` measures: ``python sysml_work.py WORK FOLDER``."""
 
+import gc
 import sys
-from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 
-from work import Measured, Work, run
+from work import Measurement, Work, run_work
 
+# The script `sysml.py` in this folder would hide the package `sysml` of the toolkit.
 sys.path = [entry for entry in sys.path if entry != str(Path(__file__).parent)]
-"""Without the folder of the benchmarks, in which ``sysml`` is the name of a script."""
 
 _SUFFIXES = (".sysml", ".kerml")
 
 
-def files(folder: Path) -> list[Path]:
-    """The texts of a folder, in order."""
-    return sorted(path for path in folder.rglob("*.*ml") if path.suffix in _SUFFIXES)
+class _Text(NamedTuple):
+    """The content of a file and its name, with the language that the suffix of the name gives."""
+
+    content: str
+    name: str
+    language: str
 
 
-def _texts(folder: Path) -> Iterator[tuple[str, str, str]]:
-    for path in files(folder):
-        yield path.read_text("utf-8"), path.name, path.suffix.removeprefix(".")
+def _read_texts(folder: Path) -> list[_Text]:
+    """Return the texts of a folder, sorted by path."""
+    paths = sorted(path for path in folder.rglob("*.*ml") if path.suffix in _SUFFIXES)
+    return [_Text(path.read_text("utf-8"), path.name, path.suffix[1:]) for path in paths]
 
 
-def scan(folder: Path, *_arguments: str) -> tuple[Measured, int]:
-    """The scanner alone: the least that any parser in Python needs."""
+def _count_bytes(texts: list[_Text]) -> int:
+    return sum(len(text.content.encode()) for text in texts)
+
+
+def scan_texts(folder: Path, *_arguments: str) -> tuple[Measurement, int]:
+    """Split the texts into tokens; every parser in Python takes at least as long."""
     from sysmlc.language.text import lalr
-    from sysmlc.language.text.lexer import tokenize as tokens
+    from sysmlc.language.text.lexer import tokenize
 
     types = {name: lalr.load_tables(name).types for name in ("kerml", "sysml")}
-    texts = list(_texts(folder))
-    measured = Measured()
-    for text, _, language in texts:
-        tokens(text, types[language])
-    measured.lap("scan")
-    return measured, sum(len(text.encode()) for text, _, _ in texts)
+    texts = _read_texts(folder)
+    measurement = Measurement()
+    for text in texts:
+        tokenize(text.content, types[text.language])
+    measurement.end_lap("scan")
+    return measurement, _count_bytes(texts)
 
 
-def parse(folder: Path, *_arguments: str) -> tuple[Measured, int]:
-    """Text to tree, the loading of the tables included."""
+def parse_texts(folder: Path, *_arguments: str) -> tuple[Measurement, int]:
+    """Parse the texts to trees; the grammar tables are loaded within the measurement."""
     from sysmlc.diagnostics import Sink
-    from sysmlc.language.text import parse as tree
+    from sysmlc.language.text import parse
 
-    texts, sink = list(_texts(folder)), Sink()
-    measured = Measured()
-    for text, name, language in texts:
-        tree(text, name, language, sink)
-    measured.lap("parse")
+    texts, sink = _read_texts(folder), Sink()
+    measurement = Measurement()
+    for text in texts:
+        parse(*text, sink)
+    measurement.end_lap("parse")
     assert not len(sink)
-    return measured, sum(len(text.encode()) for text, _, _ in texts)
+    return measurement, _count_bytes(texts)
 
 
-def resolve(folder: Path, *_arguments: str) -> tuple[Measured, int]:
-    """Text to a tree whose names lead to elements."""
+def resolve_texts(folder: Path, *_arguments: str) -> tuple[Measurement, int]:
+    """Parse the texts and resolve their names in a process that has parsed the library files.
+
+    A process that stays alive, such as ``sysmlc watch``, parses each library file once.
+    """
+    texts = _read_texts(folder)
+    # This resolution parses the library files that the texts import; its measurement is dropped.
+    _resolve(texts)
+    # The compiler, too, freezes what it has read, so that no later collection visits it.
+    gc.collect()
+    gc.freeze()
+    return _resolve(texts), _count_bytes(texts)
+
+
+def resolve_on_demand(folder: Path, *_arguments: str) -> tuple[Measurement, int]:
+    """Parse the texts and resolve their names in a new process, which parses library files, too."""
+    texts = _read_texts(folder)
+    return _resolve(texts), _count_bytes(texts)
+
+
+def _resolve(texts: list[_Text]) -> Measurement:
+    """Parse the texts and resolve their names; return the measurement of both."""
     from sysmlc.diagnostics import Sink
     from sysmlc.language.library import find_library
-    from sysmlc.language.names import resolve as names
-    from sysmlc.language.text import parse as tree
+    from sysmlc.language.names import resolve
+    from sysmlc.language.text import parse
 
-    texts, sink = list(_texts(folder)), Sink()
-    measured = Measured()
-    documents = [tree(text, name, language, sink) for text, name, language in texts]
-    measured.lap("parse")
-    names(documents, find_library(), sink)
-    measured.lap("resolve")
-    return measured, sum(len(text.encode()) for text, _, _ in texts)
+    sink = Sink()
+    measurement = Measurement()
+    documents = [parse(*text, sink) for text in texts]
+    measurement.end_lap("parse")
+    # Every call within a process returns the same library, with the files that are parsed.
+    resolve(documents, find_library(), sink)
+    measurement.end_lap("resolve")
+    return measurement
 
 
-def tree_sitter(folder: Path, *_arguments: str) -> tuple[Measured, int]:
-    """tree-sitter-sysml: a parser in C for editors; no names, errors are nodes."""
+def parse_with_tree_sitter(folder: Path, *_arguments: str) -> tuple[Measurement, int]:
+    """Parse with tree-sitter-sysml, a parser in C for editors. It does not resolve names."""
     import tree_sitter_sysml
     from tree_sitter import Language, Parser
 
     parser = Parser(Language(tree_sitter_sysml.language()))
-    texts = [text.encode() for text, _, _ in _texts(folder)]
-    measured = Measured()
+    texts = [text.content.encode() for text in _read_texts(folder)]
+    measurement = Measurement()
     broken = sum(parser.parse(text).root_node.has_error for text in texts)
-    measured.lap(f"tree-sitter, {broken} of {len(texts)} files with errors")
-    return measured, sum(map(len, texts))
+    measurement.end_lap(f"tree-sitter, {broken} of {len(texts)} files with errors")
+    return measurement, sum(map(len, texts))
 
 
-def toolkit(folder: Path, *_arguments: str) -> tuple[Measured, int]:
-    """The OpenMBEE toolkit (distribution ``sysml``): parsed and linked in Rust."""
+def link_with_toolkit(folder: Path, *_arguments: str) -> tuple[Measurement, int]:
+    """Parse and link with the OpenMBEE toolkit (distribution ``sysml``), which is in Rust."""
     import sysml
 
-    sources = {f"{number}-{name}": text for number, (text, name, _) in enumerate(_texts(folder))}
+    texts = _read_texts(folder)
+    sources = {f"{number}-{text.name}": text.content for number, text in enumerate(texts)}
     library = sysml.standard_library()
-    measured = Measured()
+    measurement = Measurement()
     sysml.Model.from_toolkit(sources=sources, library_dir=library)
-    measured.lap("toolkit, its library included")
-    return measured, sum(len(text.encode()) for text in sources.values())
+    measurement.end_lap("toolkit with its library")
+    return measurement, _count_bytes(texts)
 
 
 WORKS: dict[str, Work] = {
-    "scan": scan,
-    "parse": parse,
-    "resolve": resolve,
-    "tree-sitter": tree_sitter,
-    "toolkit": toolkit,
+    "scan": scan_texts,
+    "parse": parse_texts,
+    "resolve": resolve_texts,
+    "resolve-on-demand": resolve_on_demand,
+    "tree-sitter": parse_with_tree_sitter,
+    "toolkit": link_with_toolkit,
 }
 
 if __name__ == "__main__":
-    sys.exit(run(WORKS))
+    sys.exit(run_work(WORKS))

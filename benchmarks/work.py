@@ -1,8 +1,8 @@
-"""What is measured in a process of its own: its CPU time, its memory, and the parsers beside it.
+"""Measurement of one work in a process of its own: its CPU time and its memory.
 
-A script of works is called ``python SCRIPT WORK FILE [ARGUMENT...]`` and prints CPU seconds
-(user and system) of the work itself, start-up aside, the growth of the resident memory to its
-peak in bytes, and the bytes of XML that were read, as JSON.
+A script of works is called ``python SCRIPT WORK PATH [ARGUMENT...]``. It prints JSON: the CPU
+seconds (user and system) of each lap without start-up, the growth of the resident memory to its
+peak in bytes, and the size of the input in bytes.
 """
 
 import json
@@ -16,62 +16,44 @@ from pathlib import Path
 _KILOBYTE = 1024
 
 
-class Measured:
-    """CPU time and memory from its making on."""
+class Measurement:
+    """CPU time and memory from the creation of the measurement on."""
 
     def __init__(self) -> None:
         self._start = time.process_time()
-        self._memory = _peak()
+        self._memory = _read_peak_memory()
         self.times: dict[str, float] = {}
 
-    def lap(self, name: str) -> None:
-        """Note the CPU time since the last lap."""
-        now = time.process_time()
-        self.times[name] = now - self._start
-        self._start = now
+    def end_lap(self, name: str) -> None:
+        """Store the CPU time since the end of the last lap."""
+        end = time.process_time()
+        self.times[name] = end - self._start
+        self._start = end
 
-    def memory(self) -> int:
-        """Growth of the peak of the resident memory so far."""
-        return _peak() - self._memory
-
-
-Work = Callable[..., tuple[Measured, int]]
-"""Does something with a file: what was measured, and the bytes of XML."""
+    def memory_growth(self) -> int:
+        """Return the growth of the peak of the resident memory so far."""
+        return _read_peak_memory() - self._memory
 
 
-def _peak() -> int:
-    """Peak of the resident memory of this program; ``getrusage`` begins with that of its parent."""
+Work = Callable[..., tuple[Measurement, int]]
+"""A function of a path and further arguments: returns the measurement and the size of the input."""
+
+
+def _read_peak_memory() -> int:
+    """Return the peak of the resident memory of this process in bytes."""
+    # The peak of `getrusage` is at least that of the parent process, from which this one is forked.
     with suppress(OSError):
         lines = Path("/proc/self/status").read_text().splitlines()
-        found = next((line for line in lines if line.startswith("VmHWM:")), "")
-        if found:
-            return int(found.split()[1]) * _KILOBYTE
+        peak = next((line for line in lines if line.startswith("VmHWM:")), "")
+        if peak:
+            return int(peak.split()[1]) * _KILOBYTE
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * _KILOBYTE
 
 
-def lxml(path: Path, *_arguments: str) -> tuple[Measured, int]:
-    """A tree of the whole file, and nothing done with it."""
-    from lxml import etree
-
-    measured = Measured()
-    tree = etree.parse(str(path), etree.XMLParser(huge_tree=True))
-    measured.lap("lxml")
-    return measured, path.stat().st_size if tree is not None else 0
-
-
-def expat(path: Path, *_arguments: str) -> tuple[Measured, int]:
-    """The parser below ours, without handlers: the least that any reader needs."""
-    from xml.parsers.expat import ParserCreate
-
-    measured = Measured()
-    ParserCreate(namespace_separator="}").Parse(path.read_bytes(), True)
-    measured.lap("expat")
-    return measured, path.stat().st_size
-
-
-def run(works: Mapping[str, Work]) -> int:
+def run_work(works: Mapping[str, Work]) -> int:
     """Do the work that the command line names, once."""
     name, path, *arguments = sys.argv[1:]
-    measured, size = works[name](Path(path), *arguments)
-    json.dump({"times": measured.times, "memory": measured.memory(), "size": size}, sys.stdout)
+    measurement, size = works[name](Path(path), *arguments)
+    memory = measurement.memory_growth()
+    json.dump({"times": measurement.times, "memory": memory, "size": size}, sys.stdout)
     return 0

@@ -1,8 +1,8 @@
-"""Loads a UML model with pyecore, the Python library nearest to Eclipse's own reader.
+"""Loading of UML models with pyecore, the Python library nearest to Eclipse's own reader.
 
-pyecore does not load UML models as it comes; four things are patched here: the operations of
-the metamodel hide its features, its types stay proxies, derived features refuse values, and
-packages of profiles are unknown.
+pyecore alone cannot load a UML model, for four reasons that this module works around: operations of
+the metamodel hide features of the same name, references to types remain proxies, derived features
+refuse values, and the packages of profiles are unknown.
 """
 
 import tempfile
@@ -24,20 +24,21 @@ _ECORE = "http://www.eclipse.org/emf/2002/Ecore#//"
 _FLAGS = ("derived", "changeable", "volatile", "transient", "unsettable")
 
 
-def prepare(model: Path, metamodel: Path) -> ResourceSet:
-    """Read the metamodel and make the packages that the model needs."""
+def prepare_resources(model: Path, metamodel: Path) -> ResourceSet:
+    """Return resources with the metamodel and the packages that the model refers to."""
     resources = ResourceSet()
-    _register(resources, _metamodel(resources, metamodel), model)
+    _register_packages(resources, _load_metamodel(resources, metamodel), model)
     return resources
 
 
-def load(resources: ResourceSet, model: Path) -> int:
+def load_model(resources: ResourceSet, model: Path) -> int:
     """Load the model; return the number of its elements."""
     resource = resources.get_resource(URI(str(model)))
     return sum(1 for root in resource.contents for _ in (root, *root.eAllContents()))
 
 
-def _metamodel(resources: ResourceSet, metamodel: Path) -> ecore.EPackage:
+def _load_metamodel(resources: ResourceSet, metamodel: Path) -> ecore.EPackage:
+    """Load a copy of the metamodel without operations, derived features and foreign types."""
     tree = etree.parse(str(metamodel))
     for operation in list(tree.iter("eOperations", "eAnnotations")):
         operation.getparent().remove(operation)
@@ -50,11 +51,11 @@ def _metamodel(resources: ResourceSet, metamodel: Path) -> ecore.EPackage:
             feature.set("eType", f"ecore:EClass {_ECORE}{name}")
         elif "types.ecore" in type_ and name in _TYPES:
             feature.set("eType", f"ecore:EDataType {_ECORE}{_TYPES[name]}")
-    for one in tree.iter("eClassifiers"):
-        above = one.get("eSuperTypes", "")
-        if "ecore.ecore" in above:
-            kept = [e for e in above.split() if e.startswith("#")]
-            one.set("eSuperTypes", " ".join(kept))
+    for classifier in tree.iter("eClassifiers"):
+        supertypes = classifier.get("eSuperTypes", "")
+        if "ecore.ecore" in supertypes:
+            local_supertypes = [type_ for type_ in supertypes.split() if type_.startswith("#")]
+            classifier.set("eSuperTypes", " ".join(local_supertypes))
     with tempfile.TemporaryDirectory() as folder:
         patched = Path(folder) / "uml.ecore"
         tree.write(str(patched))
@@ -63,8 +64,8 @@ def _metamodel(resources: ResourceSet, metamodel: Path) -> ecore.EPackage:
     return package
 
 
-def _register(resources: ResourceSet, uml: ecore.EPackage, model: Path) -> None:
-    """Make the packages that the model names: UML under its version, and its profiles."""
+def _register_packages(resources: ResourceSet, uml: ecore.EPackage, model: Path) -> None:
+    """Register UML under the version that the model names, and packages of its profiles."""
     root = etree.parse(str(model)).getroot()
     for uri in root.nsmap.values():
         if "/UML" in uri and "uml2" in uri:
@@ -72,28 +73,30 @@ def _register(resources: ResourceSet, uml: ecore.EPackage, model: Path) -> None:
     for application in root:
         name = etree.QName(application)
         if name.namespace not in resources.metamodel_registry:
-            made = ecore.EPackage(name.namespace.rpartition("/")[2], name.namespace, "p")
-            resources.metamodel_registry[name.namespace] = made
-        _stereotype(resources.metamodel_registry[name.namespace], uml, application)
+            profile = ecore.EPackage(name.namespace.rpartition("/")[2], name.namespace, "p")
+            resources.metamodel_registry[name.namespace] = profile
+        _define_stereotype(resources.metamodel_registry[name.namespace], uml, application)
 
 
-def _stereotype(
+def _define_stereotype(
     package: ecore.EPackage, uml: ecore.EPackage, application: "etree._Element"
 ) -> None:
+    """Add the class of a stereotype application to its package, with the features that it uses."""
     name = etree.QName(application).localname
     if package is uml:
         return
-    known = package.getEClassifier(name)
-    if known is None:
-        known = ecore.EClass(name)
-        package.eClassifiers.append(known)
+    stereotype = package.getEClassifier(name)
+    if stereotype is None:
+        stereotype = ecore.EClass(name)
+        package.eClassifiers.append(stereotype)
     for attribute in application.attrib:
-        local = str(attribute)
-        if "}" in local or known.findEStructuralFeature(local) is not None:
+        feature = str(attribute)
+        if "}" in feature or stereotype.findEStructuralFeature(feature) is not None:
             continue
-        if local.startswith("base_") or local == "propertyPath":
-            target = uml.getEClassifier(local[5:]) or uml.getEClassifier("Element")
-            many = -1 if local == "propertyPath" else 1
-            known.eStructuralFeatures.append(ecore.EReference(local, target, upper=many))
+        if feature.startswith("base_") or feature == "propertyPath":
+            target = uml.getEClassifier(feature[5:]) or uml.getEClassifier("Element")
+            upper_bound = -1 if feature == "propertyPath" else 1
+            reference = ecore.EReference(feature, target, upper=upper_bound)
+            stereotype.eStructuralFeatures.append(reference)
         else:
-            known.eStructuralFeatures.append(ecore.EAttribute(local, ecore.EString))
+            stereotype.eStructuralFeatures.append(ecore.EAttribute(feature, ecore.EString))

@@ -61,7 +61,7 @@ def write_program(folder, body):
 def test_the_verdict_is_read_from_the_output_of_the_program(
     peer_class, tmp_path, name, output, verdict
 ):
-    result = peer_class(name, write_program(tmp_path, f"print({output!r})"), 60).decided(
+    result = peer_class(name, write_program(tmp_path, f"print({output!r})"), 60).decide(
         "d.gr1.json", CONTRACT
     )
     seconds, unit, reported = result.removeprefix(f"{name} ").split(" ", 2)
@@ -72,15 +72,15 @@ def test_the_verdict_is_read_from_the_output_of_the_program(
 def test_a_program_gets_the_contract_in_its_own_format(peer_class, tmp_path, name):
     received = tmp_path / "received"
     body = f"open({str(received)!r}, 'w').write(repr(sys.argv[1:-1]) + open(sys.argv[-1]).read())"
-    peer_class(name, write_program(tmp_path, body), 60).decided("d.gr1.json", CONTRACT)
+    peer_class(name, write_program(tmp_path, body), 60).decide("d.gr1.json", CONTRACT)
     options, text = received.read_text().split("]", 1)
     assert options == ("['-r'" if name == "gr1c" else "[")
     assert FIRST_LINES[name] in text
 
 
 def test_a_missing_or_slow_program_is_reported(peer_class, tmp_path):
-    assert "does not run" in peer_class("gr1c", str(tmp_path / "none"), 60).decided(
+    assert "does not run" in peer_class("gr1c", str(tmp_path / "none"), 60).decide(
         "d.gr1.json", CONTRACT
     )
     slow = write_program(tmp_path, "import time; time.sleep(600)")
-    assert peer_class("slugs", slow, 0.2).decided("d.gr1.json", CONTRACT) == "slugs over 0.2 s"
+    assert peer_class("slugs", slow, 0.2).decide("d.gr1.json", CONTRACT) == "slugs over 0.2 s"

@@ -22,8 +22,8 @@ MAX_NODES = {3: 60_000, 4: 130_000}
 """Limits of nodes by the number of robots on five by five cells: a seventh above the need."""
 PROGRAM = """
 from test_gr1_grids import decide_grid
-from gr1_grid import holistic
-figures = decide_grid(holistic(5, 3), 3).figures
+from gr1_grid import build_contract
+figures = decide_grid(build_contract(5, 3), 3).figures
 print(figures.rounds, figures.steps, figures.nodes)
 """
 
@@ -36,17 +36,19 @@ def decide_grid(grid, robots):
 
 
 @pytest.fixture
-def holistic(monkeypatch):
+def build_grid(monkeypatch):
     monkeypatch.syspath_prepend(str(BENCHMARKS))
-    from gr1_grid import holistic
+    from gr1_grid import build_contract
 
-    return holistic
+    return build_contract
 
 
 @pytest.mark.parametrize(("robots", "reorder_at"), [(3, manager.REORDER_AT), (4, 1_000)])
-def test_a_grid_is_decided_in_the_initial_order_of_bits(holistic, monkeypatch, robots, reorder_at):
+def test_a_grid_is_decided_in_the_initial_order_of_bits(
+    build_grid, monkeypatch, robots, reorder_at
+):
     monkeypatch.setattr(manager, "REORDER_AT", reorder_at)
-    assert decide_grid(holistic(5, robots), robots).is_realizable is True
+    assert decide_grid(build_grid(5, robots), robots).is_realizable is True
 
 
 @pytest.mark.long
