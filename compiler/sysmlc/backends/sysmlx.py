@@ -13,6 +13,7 @@ from msgspec import Struct
 
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.sysml import BACKEND as TEXT
+from sysmlc.backends.sysml.author_texts import BYTE_ORDER_MARK, list_texts, path_of_text
 from sysmlc.diagnostics import Diagnostic, Severity, Sink, rule
 from sysmlc.ir import Element, Graph
 from sysmlc.language.interchange import InterchangeFiles, interchange_path, write
@@ -90,15 +91,20 @@ def _build_model(graph: Graph, sink: Sink, options: EmitOptions) -> Model | None
     """Return the graph as a SysML v2 model with resolved names; report the losses of the text.
 
     None, and a diagnostic, for a graph that is nested deeper than the parser allows, and for any
-    other syntax error in the text, which is a fault of the back end ``sysml``.
+    other syntax error in printed text, which is a fault of the back end ``sysml``. Syntax errors
+    in texts of authors were reported when they were read.
     """
     text_output = Output()
     TEXT.emit(graph, text_output, sink, options)
+    author_paths = {path_of_text(document) for document in list_texts(graph)}
     syntax_errors = Sink()
-    documents = [
-        parse(file.text, file.path.removeprefix("sysml/"), "sysml", syntax_errors)
-        for file in text_output.artefacts()
-    ]
+    documents = []
+    for file in text_output.artefacts():
+        path = file.path.removeprefix("sysml/")
+        language = "kerml" if path.lower().endswith(".kerml") else "sysml"
+        document_sink = Sink() if path in author_paths else syntax_errors
+        text = file.text.removeprefix(BYTE_ORDER_MARK)
+        documents.append(parse(text, path, language, document_sink))
     if syntax_errors.has_errors():
         first = next(iter(syntax_errors))
         if first.rule is DEEP:

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import re
 import stat
 from collections.abc import Iterable, Mapping
 from pathlib import Path, PureWindowsPath
@@ -68,6 +69,19 @@ def _read_mode(path: Path) -> int | None:
         return path.lstat().st_mode
     except FileNotFoundError:
         return None
+
+
+_REPOSITORY = re.compile(r"(^|/)\.(git(?:/|$))", re.IGNORECASE)
+
+
+def make_path_of_input(name: str) -> str:
+    """Return the output path for an input file, whose name is relative to the unit's root.
+
+    An archive becomes a folder. What an output path may not contain (backslashes, repositories of
+    git) is percent-encoded.
+    """
+    path = name.replace("!", "/").replace("\\", "%5C")
+    return _REPOSITORY.sub(r"\1%2E\2", path)
 
 
 class Output:

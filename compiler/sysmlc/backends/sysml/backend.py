@@ -1,10 +1,16 @@
-"""Back end ``sysml``: the compile unit as one text of SysML v2, with ``SysMLC.sysml`` if needed.
+"""Back end ``sysml``: the compile unit as text of SysML v2, with ``SysMLC.sysml`` if needed.
+
+Texts of SysML v2 remain as their authors wrote them; ``author_texts`` inserts what passes add. All
+other elements are printed from the graph.
 
 The text is written in steps: ``placement`` decides where members stand, ``naming`` names them,
 ``WRITERS`` write their lines, and ``rules`` counts the losses.
 """
 
+import posixpath
+
 from msgspec import Struct
+from msgspec.structs import replace
 
 from sysmlc.backends.base import EmitOptions, name_compile_unit
 from sysmlc.backends.sysml import (
@@ -23,6 +29,14 @@ from sysmlc.backends.sysml import (
     use_cases,
 )
 from sysmlc.backends.sysml.annotations import make_annotation
+from sysmlc.backends.sysml.author_texts import (
+    Insertions,
+    edit_text,
+    is_whole_model,
+    list_texts,
+    path_of_text,
+    write_insertions,
+)
 from sysmlc.backends.sysml.coverage import record_omissions
 from sysmlc.backends.sysml.naming import assign_names, rename_hiding_members
 from sysmlc.backends.sysml.placement import make_plan
@@ -49,32 +63,66 @@ class SysmlBackend(Struct, frozen=True):
     is_default: bool = False
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
-        """Add ``sysml/<unit>.sysml``; report what the text cannot express."""
-        unit = name_compile_unit(graph, options)
-        text, uses_library = print_document(graph, sink)
-        output.add(f"sysml/{assign_file_names([unit])[unit]}.sysml", text, (), self.name)
-        if uses_library:
-            library = resources.read_text("metamodels", LIBRARY)
-            output.add(f"sysml/{LIBRARY}", library, (), self.name)
+        """Add the texts of the authors and ``sysml/<unit>.sysml``; report what texts omit."""
+        documents = list_texts(graph)
+        author_files = frozenset(document.path for document in documents)
+        paths = {path_of_text(document) for document in documents}
+        insertions: Insertions = {}
+        if not documents or not is_whole_model(graph, author_files):
+            writer, lines = write_document(graph, author_files)
+            writer.losses.report(sink)
+            insertions = writer.insertions
+            if lines or not documents:
+                path = _name_file(graph, options, author_files, paths)
+                output.add(f"sysml/{path}", print_lines(lines), (), self.name)
+            if writer.uses_library and LIBRARY not in paths:
+                library = resources.read_text("metamodels", LIBRARY)
+                output.add(f"sysml/{LIBRARY}", library, (), self.name)
+        for document in documents:
+            text = edit_text(document, insertions)
+            output.add(f"sysml/{path_of_text(document)}", text, (), self.name)
+
+
+def _name_file(
+    graph: Graph, options: EmitOptions, author_files: frozenset[str], taken: set[str]
+) -> str:
+    """Return the path of the text that is printed from the graph.
+
+    It is named after the first input that is no text of an author: by its name without suffix,
+    or by the whole name if an author has a file of that name.
+    """
+    inputs = tuple(file for file in options.inputs if file.path not in author_files)
+    unit = name_compile_unit(graph, replace(options, inputs=inputs))
+    path = f"{assign_file_names([unit])[unit]}.sysml"
+    if path.lower() not in {text.lower() for text in taken}:
+        return path
+    whole_name = posixpath.basename(inputs[0].path) if inputs else f"{unit}.graph"
+    return f"{assign_file_names([whole_name])[whole_name]}.sysml"
 
 
 def print_document(graph: Graph, sink: Sink) -> tuple[str, bool]:
-    """Return the text of a graph, and whether it uses the library ``SysMLC``. Report the losses."""
+    """Return the text of a graph, and whether it uses the library ``SysMLC``. Report the losses.
+
+    The text contains all elements, also those of texts in SysML v2.
+    """
     writer, lines = write_document(graph)
     writer.losses.report(sink)
     return print_lines(lines), writer.uses_library
 
 
-def write_document(graph: Graph) -> tuple[Writer, list[Line]]:
+def write_document(
+    graph: Graph, author_files: frozenset[str] = frozenset()
+) -> tuple[Writer, list[Line]]:
     """Return the lines of the text, and the writer with the losses of each element.
 
+    The lines omit the elements of *author_files*; the writer has the insertions into these files.
     The text is written again until no reference leads to a private or a dropped element: whether
     the text refers to an element is known only after it is written.
     """
     public_ids: frozenset[str] = frozenset()
     dropped: dict[str, str] = {}
     while True:
-        writer, lines = _write_once(graph, public_ids, frozenset(dropped))
+        writer, lines = _write_once(graph, author_files, public_ids, frozenset(dropped))
         exposed = writer.plan.exposed
         if public_ids >= exposed and dropped.keys() >= writer.dropped.keys():
             break
@@ -84,9 +132,12 @@ def write_document(graph: Graph) -> tuple[Writer, list[Line]]:
 
 
 def _write_once(
-    graph: Graph, public_ids: frozenset[str], dropped: frozenset[str]
+    graph: Graph,
+    author_files: frozenset[str],
+    public_ids: frozenset[str],
+    dropped: frozenset[str],
 ) -> tuple[Writer, list[Line]]:
-    losses = Losses(graph)
+    losses = Losses(graph, author_files)
     plan = make_plan(graph, losses, dropped)
     plan.metadata_definitions = define_stereotypes(plan)
     assign_names(plan)
@@ -96,7 +147,10 @@ def _write_once(
     writer = Writer(graph, plan, losses, WRITERS, public_ids=public_ids, caex_files=caex_files)
     dependencies.prewrite_dependencies(writer)
     with allow_recursion(plan.depth):
-        return writer, [line for root in plan.roots for line in writer.write_member(root)]
+        roots = [root for root in plan.roots if not plan.is_author_member(root)]
+        lines = [line for root in roots for line in writer.write_member(root)]
+        write_insertions(writer)
+    return writer, lines
 
 
 def _write_added_member(writer: Writer, member: Member) -> list[Line]:

@@ -46,7 +46,9 @@ def prewrite_dependencies(writer: Writer) -> None:
     """Write the dependencies whose lines may stand inside other elements."""
     for element in writer.graph.of_kind(Kind.DEPENDENCY):
         member = writer.plan.find(element)
-        if member is not None and element.role in ("satisfy", "verify", "allocate"):
+        if member is None or writer.plan.is_author_member(member):
+            continue
+        if element.role in ("satisfy", "verify", "allocate"):
             member.prewritten = _BY_ROLE[element.role](writer, member)
 
 

@@ -41,11 +41,13 @@ def _assign_sibling_names(plan: Plan, members: list[Member], taken: set[str]) ->
     """Name the members of one namespace, return them by name, and add the names to *taken*."""
     by_name: dict[str, Member] = {}
     numbers: Counter[str] = Counter()
+    taken |= {member.name for member in members if plan.is_author_member(member)}
     nameless = [member for member in members if member.shape.needs_name and not member.name]
     for member in members:
         if member.name:
-            name = replace_control_characters(member.name)
-            member.name = _find_free_name(plan, member, name, taken, numbers)
+            if not plan.is_author_member(member):
+                name = replace_control_characters(member.name)
+                member.name = _find_free_name(plan, member, name, taken, numbers)
             taken.add(member.name)
             by_name[member.name] = member
     for member in nameless:
@@ -118,7 +120,7 @@ def rename_hiding_members(plan: Plan) -> None:
         taken = {member.name for member in namespace.members} | inherited.keys()
         for member in namespace.members:
             general_member = inherited.get(member.name)
-            if not member.name or general_member is None:
+            if not member.name or general_member is None or plan.is_author_member(member):
                 continue
             if _hides(plan, member, general_member):
                 _append_free_number(plan, member, taken)

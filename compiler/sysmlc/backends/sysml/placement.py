@@ -43,8 +43,8 @@ _WITHOUT_REFERENCES = (Kind.IMPORT, Kind.DATA_TYPE, Kind.APPLICATION, *_MEASURES
 
 def make_plan(graph: Graph, losses: Losses, dropped: frozenset[str]) -> Plan:
     """Return the plan for a graph, without the dropped elements. Members have their model names."""
-    plan = Plan(graph, losses, dropped=dropped)
-    used = _find_used_outside(graph)
+    plan = Plan(graph, losses, losses.author_files, dropped=dropped)
+    used = _find_used_outside(graph, losses.author_files)
     outside = _OutsidePlacement(plan)
     for root in graph.roots():
         if not root.attrs.get("external"):
@@ -142,10 +142,17 @@ def _find_operation(plan: Plan, element: Element) -> Member | None:
 # -- elements outside of the model ---------------------------------------------------------------
 
 
-def _find_used_outside(graph: Graph) -> set[str]:
-    """Return the ids of outside elements that the model uses, directly or through others."""
+def _find_used_outside(graph: Graph, author_files: frozenset[str]) -> set[str]:
+    """Return the ids of outside elements that the model uses, directly or through others.
+
+    What the authors' texts use is known to their readers.
+    """
     used: set[str] = set()
-    worklist = [element for element in graph if not element.attrs.get("external")]
+    worklist = [
+        element
+        for element in graph
+        if not element.attrs.get("external") and element.source not in author_files
+    ]
     while worklist:
         for target in _iter_used(graph, worklist.pop()):
             if target.attrs.get("external") and target.id not in used:

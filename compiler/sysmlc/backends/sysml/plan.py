@@ -62,6 +62,8 @@ class Plan:
 
     graph: Graph
     losses: Losses
+    author_files: frozenset[str] = frozenset()
+    """Files in SysML v2, whose text the output contains as its author wrote it."""
     roots: list[Member] = field(default_factory=list)
     members_by_id: dict[str, Member] = field(default_factory=dict)
     library_packages: list[Member] = field(default_factory=list)
@@ -88,6 +90,10 @@ class Plan:
     def find(self, element: Element | None) -> Member | None:
         """Return the member of the text that stands for *element*, or None."""
         return None if element is None else self.members_by_id.get(element.id)
+
+    def is_author_member(self, member: Member) -> bool:
+        """Whether the author of a file in SysML v2 wrote the member."""
+        return member.element is not None and member.element.source in self.author_files
 
     def expose(self, member: Member) -> None:
         """Mark a member as referred to from outside of its namespace."""

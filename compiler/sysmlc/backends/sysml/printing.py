@@ -31,7 +31,7 @@ _BASIC_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _ESCAPES = {"\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r", "\b": "\\b", "\f": "\\f"}
 _ESCAPED = re.compile(r"[\\\n\t\r\b\f'\"]")
 _CONTROL = re.compile("[\x00-\x07\x0b\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff\u2028\u2029]")
-_INDENT = "    "
+INDENT = "    "
 _WIDTH = 96
 
 
@@ -127,11 +127,11 @@ def print_lines(lines: Iterable[Line]) -> str:
     while stack:
         top, depth = stack.pop()
         if isinstance(top, str):
-            output.append(f"{_INDENT * depth}{top}" if top else "")
+            output.append(f"{INDENT * depth}{top}" if top else "")
             continue
-        inline = top.inline if len(_INDENT) * depth + len(top.head) < _WIDTH else None
-        if inline is not None and len(inline) + len(_INDENT) * depth <= _WIDTH:
-            output.append(f"{_INDENT * depth}{inline}")
+        inline = top.inline if len(INDENT) * depth + len(top.head) < _WIDTH else None
+        if inline is not None and len(inline) + len(INDENT) * depth <= _WIDTH:
+            output.append(f"{INDENT * depth}{inline}")
             continue
         end = "" if top.text else (" {" if top.body else ";")
         output += _format_head(top, depth, end)
@@ -149,14 +149,14 @@ def print_lines(lines: Iterable[Line]) -> str:
 
 def _format_head(line: Line, depth: int, end: str) -> list[str]:
     first, *rest = line.head.split("\n") if line.head else [""]
-    rows = [f"{_INDENT * depth}{first}", *(f"{_INDENT * (depth + 1)}{row}" for row in rest)]
+    rows = [f"{INDENT * depth}{first}", *(f"{INDENT * (depth + 1)}{row}" for row in rest)]
     if not line.text:
         rows[-1] += end
         return rows
     if len(line.text) == 1:
         rows[-1] += f" {line.text[0]}" if first else line.text[0]
         return rows
-    return [*rows, *(f"{_INDENT * depth}{row}" for row in line.text)]
+    return [*rows, *(f"{INDENT * depth}{row}" for row in line.text)]
 
 
 def _push(stack: list[tuple[Line | str, int]], lines: list[Line], depth: int) -> None:

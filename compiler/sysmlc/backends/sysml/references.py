@@ -254,11 +254,13 @@ def format_library_name(plan: Plan, scope: Member | None, name: str) -> str:
 
     The package of the text imports the library, so that the bare name suffices. If the model hides
     that name, the text is the qualified name, from the root if the model hides the library, too.
+    The text of an author has the imports of its author.
     """
     package, _, short = name.partition("::")
     if scope is not None and short in IMPORTS.get(package, ()):
         top = [scope, *scope.namespaces][-1]
-        if top.shape.keyword == "package" and look_up(plan, scope, short) is None:
+        can_import = top.shape.keyword == "package" and not plan.is_author_member(top)
+        if can_import and look_up(plan, scope, short) is None:
             if package not in top.imports:
                 top.imports.append(package)
             return quote_name(short)

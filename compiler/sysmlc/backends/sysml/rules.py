@@ -60,10 +60,17 @@ NAME_LEFT_OUT = rule(
 class Losses(LossCounter):
     """Counts what SysML v2 text does not express."""
 
+    author_files: frozenset[str] = frozenset()
+    """Files in SysML v2, whose text the output contains: nothing of it is lost."""
     by_element: dict[str, list[tuple[str, dict[str, str]]]] = field(default_factory=dict)
     """Code and facts of each loss by the id of the element."""
 
     def record(self, loss: Rule, element: Element, /, **facts: str) -> None:
-        """Count a loss of *element*; *facts* fill the placeholders of the message."""
+        """Count a loss of *element*, unless its author's text is preserved.
+
+        *facts* fill the placeholders of the message.
+        """
+        if element.source in self.author_files:
+            return
         self.by_element.setdefault(element.id, []).append((loss.code, facts))
         super().record(loss, element, **facts)

@@ -58,6 +58,8 @@ class Writer:
     """Ids of elements that are written as public because the text refers to them."""
     caex_files: frozenset[str] = frozenset()
     """Files in AutomationML: metadata preserves the ids of their elements."""
+    insertions: dict[Element, list[Line]] = field(default_factory=dict)
+    """Elements in authors' texts with the lines of the members that passes added to them."""
     uses_library: bool = False
     """Whether the text refers to the library ``SysMLC``, so that it is written, too."""
 

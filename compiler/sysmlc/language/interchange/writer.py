@@ -18,6 +18,7 @@ from sysmlc.language.interchange.unfolding import Element, Link, unfold, walk_el
 from sysmlc.language.library import SHIPPED
 from sysmlc.language.metaclasses import is_a
 from sysmlc.language.tree import AttributeValue, Document, Node, find_root, locate
+from sysmlc.support.output import make_path_of_input
 
 _MEMBERSHIPS = {"importedMembership"}
 """Features that refer to the membership of an element instead of the element."""
@@ -177,7 +178,6 @@ def _find_unwritable(element: Element) -> Iterator[str]:
             yield name
 
 
-_REPOSITORY = re.compile(r"(^|/)\.(git(?:/|$))", re.IGNORECASE)
 _SUFFIXES = {"sysml": ".sysmlx", "kerml": ".kermlx"}
 
 
@@ -200,12 +200,8 @@ def write(
 
 
 def interchange_path(document: Document) -> str:
-    """Return the path of the interchange file of a document: another suffix, archives as folders.
-
-    What an output path may not contain (backslashes, repositories of git) is percent-encoded.
-    """
-    path = document.path.removeprefix(SHIPPED).replace("!", "/").replace("\\", "%5C")
-    path = _REPOSITORY.sub(r"\1%2E\2", path)
+    """Return the path of the interchange file of a document: that of its text, another suffix."""
+    path = make_path_of_input(document.path.removeprefix(SHIPPED))
     return splitext(path)[0] + _SUFFIXES[document.language]
 
 
