@@ -9,6 +9,7 @@ from msgspec import Struct
 
 from sysmlc.diagnostics import Place, Sink
 from sysmlc.ir import Graph
+from sysmlc.support import resources
 from sysmlc.support.output import Output
 
 
@@ -56,9 +57,13 @@ class Backend(Protocol):
 
 
 def name_compile_unit(graph: Graph, options: EmitOptions) -> str:
-    """Return the name of the first input without its suffix, else the name of the first root."""
-    if options.inputs:
-        # The path of an input in an archive is ``archive!entry``.
-        file_name = posixpath.basename(options.inputs[0].path.partition("!")[0])
+    """Return the name of the first input without its suffix, else the name of the first root.
+
+    A library of sysmlc, which ``--emit sysml`` writes beside a model, names no model.
+    """
+    # The path of an input in an archive is ``archive!entry``.
+    files = [posixpath.basename(file.path.partition("!")[0]) for file in options.inputs]
+    models = [file for file in files if not resources.path("metamodels", file).is_file()]
+    for file_name in models or files:
         return file_name.partition(".")[0] or file_name
     return next((root.name for root in graph.roots() if root.name), "model")

@@ -13,6 +13,7 @@ RULES = (
     rules.APPROXIMATED,
     rules.ILLEGAL_CHARACTERS,
     rules.ADDED,
+    rules.EMPTY,
 )
 
 

@@ -8,7 +8,7 @@ from sysmlc.backends.aml import instances, libraries, links, omissions
 from sysmlc.backends.aml.context import Context, File, ObjectIds
 from sysmlc.backends.aml.header import write_header, write_source_document
 from sysmlc.backends.aml.node import Node, print_document
-from sysmlc.backends.aml.rules import ILLEGAL_CHARACTERS, Losses
+from sysmlc.backends.aml.rules import EMPTY, ILLEGAL_CHARACTERS, Losses
 from sysmlc.backends.base import EmitOptions, name_compile_unit
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Edge, Element, Graph, Kind
@@ -34,10 +34,13 @@ BACKEND = AmlBackend()
 
 
 def write_files(graph: Graph, unit: str, sink: Sink) -> dict[str, str]:
-    """Return the CAEX files of the graph, text by path; report what CAEX cannot express."""
+    """Return the CAEX files of the graph, text by path; report what CAEX cannot express.
+
+    There is no file if the plant would lose all its content.
+    """
     files = _create_files(graph, unit)
-    sources = frozenset(file.name for file in files if file.document is not None)
-    context = Context(graph, Losses(graph), files, ObjectIds(sources))
+    sources = frozenset(file.name for file in files if file.document is not None and file.name)
+    context = Context(graph, Losses(graph), files, ObjectIds(graph, sources))
     _write_file_headers(context)
     # All classes are placed before any content is written, because content refers to their paths.
     libraries.place_classes(context)
@@ -50,6 +53,10 @@ def write_files(graph: Graph, unit: str, sink: Sink) -> dict[str, str]:
     for file in context.files:
         write_source_document(context, file.document, file.root)
     omissions.note_omissions(context)
+    lost = omissions.find_lost_plant(context)
+    if lost is not None:
+        sink.report(EMPTY, graph.subject(lost[0]), reason=lost[1])
+        return {}
     texts, replaced = {}, 0
     for file in context.files:
         texts[file.path], count = print_document(file.root)
@@ -65,9 +72,14 @@ def write_files(graph: Graph, unit: str, sink: Sink) -> dict[str, str]:
 
 
 def _create_files(graph: Graph, unit: str) -> list[File]:
-    """Return a file for each AutomationML file of the unit, or one file named after the unit."""
+    """Return a file for each AutomationML file of the unit, or one file named after the unit.
+
+    A plant that is read from another language has a Document of its header, but no file of it.
+    """
     documents = [root for root in graph.roots() if _is_caex_file(root)]
-    sources = [document.id.removesuffix("#") for document in documents]
+    sources = [document.source for document in documents]
+    if not all(sources):
+        return [_create_file("", _choose_paths([unit])[unit], f"{unit}.aml", documents[0])]
     paths = _choose_paths(sources or [unit])
     if not documents:
         return [_create_file("", paths[unit], f"{unit}.aml", None)]

@@ -24,7 +24,7 @@ class ClassKind(StrEnum):
         return "RefAttributeType" if self is ClassKind.ATTRIBUTE else "RefBaseClassPath"
 
 
-HIERARCHY = "instance-hierarchy"
+_HIERARCHY = "instance-hierarchy"
 """Subkind of a package that was an instance hierarchy (docs/automationml.md)."""
 LIBRARIES = {
     "system-unit-class-lib": ClassKind.SYSTEM_UNIT,
@@ -46,6 +46,16 @@ _INLINE = frozenset({"internal-element", "external-interface", "attribute"})
 _CLASSES = frozenset({Kind.CLASS, Kind.COMPONENT, Kind.INTERFACE, Kind.DATA_TYPE, Kind.ENUMERATION})
 _BLOCKS = frozenset({"", "block"})
 _UNSUPPORTED = frozenset({"collaboration", "artifact"})
+
+
+def is_hierarchy(package: Element) -> bool:
+    """Whether a package was an instance hierarchy of AutomationML."""
+    return package.subkind == _HIERARCHY
+
+
+def is_caex_package(element: Element) -> bool:
+    """Whether the element is a library or an instance hierarchy of AutomationML."""
+    return element.kind is Kind.PACKAGE and (element.subkind in LIBRARIES or is_hierarchy(element))
 
 
 def find_class_kind(graph: Graph, element: Element) -> ClassKind | None:

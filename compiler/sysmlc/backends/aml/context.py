@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from msgspec import Struct
 
-from sysmlc.backends.aml.class_kinds import ClassKind
+from sysmlc.backends.aml.class_kinds import ClassKind, is_caex_package
 from sysmlc.backends.aml.node import Node
 from sysmlc.backends.aml.rules import Losses
 from sysmlc.ir import Edge, Element, Graph, Kind, list_items
@@ -44,17 +44,24 @@ class ClassEntry:
 class ObjectIds(Struct, frozen=True):
     """Finds the ``ID`` of an object: that of an AutomationML file unchanged, else a derived one."""
 
+    graph: Graph
     files: frozenset[str]
     """Names of the sources that are AutomationML."""
 
     def is_from_caex(self, element: Element) -> bool:
-        """Whether the element comes from an AutomationML file."""
-        return element.source in self.files
+        """Whether the element comes from an AutomationML file, if only by way of another language.
+
+        UML and SysML v2 preserve which packages were libraries and hierarchies of AutomationML.
+        """
+        if element.source in self.files:
+            return True
+        path = [element, *self.graph.ancestors(element)]
+        return is_caex_package(path[-1]) and not path[-1].attrs.get("external")
 
     def find_original(self, element: Element) -> str:
         """Return the ID that the object has in its AutomationML file, or the empty string."""
         id = element.id
-        if not self.is_from_caex(element) or _ADDED_ID.search(id):
+        if element.source not in self.files or _ADDED_ID.search(id):
             return ""
         # The front end made such an id: the object has no ID, or not the only one of its kind.
         if id.startswith((f"{element.source}#", f"{element.owner}/")):
@@ -76,7 +83,7 @@ class ObjectIds(Struct, frozen=True):
     def _find_in_class(self, element: Element) -> str:
         """Return the object's ID from the id of the inline class that the front end added."""
         id = element.id.removesuffix("#part")
-        if not id.endswith("#class") or not self.is_from_caex(element):
+        if not id.endswith("#class") or element.source not in self.files:
             return ""
         id = id.removesuffix("#class")
         return "" if "/" in id else id

@@ -5,7 +5,7 @@ then write the content, which refers to classes by their paths.
 """
 
 from sysmlc.backends.aml.attributes import fill_attribute_type, is_attribute, make_attribute
-from sysmlc.backends.aml.class_kinds import HIERARCHY, LIBRARIES, ClassKind, find_class_kind
+from sysmlc.backends.aml.class_kinds import LIBRARIES, ClassKind, find_class_kind, is_hierarchy
 from sysmlc.backends.aml.context import ClassEntry, Context, File, find_unresolved
 from sysmlc.backends.aml.elements import fill_class, fill_hierarchy, has_plant_objects
 from sysmlc.backends.aml.header import write_header
@@ -184,7 +184,7 @@ def write_hierarchies(context: Context) -> None:
     """Add an instance hierarchy for each one in the source and each package with instances."""
     for package in context.graph.of_kind(Kind.PACKAGE):
         file = context.find_file(package)
-        if package.subkind == HIERARCHY:
+        if is_hierarchy(package):
             node = file.root.add(Node("InstanceHierarchy", {"Name": package.name}))
             context.copy_id(package, node)
             context.register(package, node)

@@ -1,6 +1,6 @@
 """Reports every element, edge and attribute that the files do not express."""
 
-from sysmlc.backends.aml.class_kinds import is_measured_type
+from sysmlc.backends.aml.class_kinds import is_hierarchy, is_measured_type
 from sysmlc.backends.aml.context import Context
 from sysmlc.backends.aml.rules import UNSUPPORTED_ATTRIBUTE, UNSUPPORTED_EDGE, UNSUPPORTED_KIND
 from sysmlc.ir import Edge, Element, Kind
@@ -52,6 +52,8 @@ _EXPRESSED_STEREOTYPES = frozenset(
 """Stereotypes of SysML that the kind of the CAEX object expresses."""
 _COVERED_EDGES = frozenset({Edge.OWNS, Edge.FEATURE, Edge.END, Edge.ROLE, Edge.PATH, Edge.METHOD})
 """Edges that are written with their source, or that passes add."""
+_CONTAINERS = frozenset({Kind.PACKAGE, Kind.DOCUMENT, Kind.IMPORT, Kind.METADATA, Kind.COMMENT})
+"""Kinds that are no content of a plant: a file with nothing else is empty."""
 _MEASURES = frozenset({Kind.UNIT, Kind.QUANTITY_KIND})
 _MEASURE_ROLES = ("unit", "quantity kind")
 
@@ -67,6 +69,26 @@ def note_omissions(context: Context) -> None:
     for edge in Edge:
         if edge not in _COVERED_EDGES:
             _note_edges(context, edge)
+
+
+def find_lost_plant(context: Context) -> tuple[Element, str] | None:
+    """Return an omitted element, and what the files lack, if they would be without content.
+
+    Return None for files with content, and for a model that has none itself.
+    """
+    graph, written = context.graph, context.written
+    hierarchies = [package for package in graph.of_kind(Kind.PACKAGE) if is_hierarchy(package)]
+    objects = [
+        member for member in context.list_owned(*hierarchies) if member.kind is Kind.INSTANCE
+    ]
+    if objects and not any(member.id in written for member in objects):
+        return objects[0], "AutomationML would lose all internal elements of the plant"
+    if any(element.id in written and element.kind not in _CONTAINERS for element in graph):
+        return None
+    for element in graph:
+        if element.id not in written and not _needs_no_object(context, element):
+            return element, "the model has no blocks, types or instances for AutomationML"
+    return None
 
 
 def _mark_documents(context: Context) -> None:

@@ -50,6 +50,13 @@ ADDED = rule(
     Severity.INFO,
     "'{element}' has no {what}, which the schema of CAEX 3.0 requires: '{value}' is written",
 )
+EMPTY = rule(
+    "SM764",
+    "caex-empty-plant",
+    Severity.ERROR,
+    "no file is written: {reason}",
+    help="--emit uml, sysml, ir or ecore saves the model",
+)
 
 
 class Losses(LossCounter):
