@@ -146,6 +146,34 @@ def test_a_flow_port_has_the_direction_of_its_stereotype_or_its_specification(
     assert graph["port"].attrs["direction"] == expected
 
 
+# -- stereotypes of vendors --------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("namespace", "stereotype", "tags", "expected"),
+    [
+        ("http://www.eclipse.org/papyrus/GCM/1", "FlowPort", 'tag.direction="in"', "in"),
+        ("http://Papyrus/RobotML/1", "DataFlowPort", 'tag.direction="out"', "out"),
+        ("http://www.eclipse.org/papyrus/FMIProfile", "Port", 'tag.direction="out"', "out"),
+        # The default of the tag is in the vendor's profile, which is not at hand.
+        ("http://Papyrus/RobotML/1", "DataFlowPort", "", None),
+        ("http://Papyrus/RobotML/1", "DataFlowPort", 'tag.direction="upwards"', None),
+        ("http://plant/drawings", "Arrow", 'tag.direction="out"', None),
+    ],
+)
+def test_a_stereotype_of_a_vendor_states_the_direction_of_a_port(
+    namespace, stereotype, tags, expected
+):
+    text = (
+        'Class t "T"\nClass gate "Gate"\n  Port port "port"\n    -> typed-by t\n'
+        f'    Application a stereotype="{stereotype}" namespace="{namespace}" {tags}\n'
+        "      -> subject port\n"
+    )
+    graph, sink = run_until(text, "ports")
+    assert graph["port"].attrs.get("direction") == expected
+    assert ("SM300" in list_codes(sink)) is (expected is None)
+
+
 # -- conjugation -------------------------------------------------------------------------------
 
 

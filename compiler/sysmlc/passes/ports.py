@@ -12,6 +12,7 @@ from sysmlc.diagnostics import Rule, Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import (
     FLOW_DIRECTIONS,
+    applications,
     bounds,
     connectors_of,
     direction_of,
@@ -84,7 +85,7 @@ class Ports(Struct, frozen=True):
 
     Assumes effective features and roles. Guarantees: an untyped port has the type of the port that
     it redefines. The first of these that states a direction sets ``direction``: the source, the tag
-    of a flow port, the flow properties of the type, the parameters of operations of the type, item
+    of a flow port or of a vendor's stereotype for ports, the flow properties of the type, the parameters of operations of the type, item
     flows, the redefined port. A conjugated port has the opposite of the direction of its type.
     Ports without a direction are reported once for each block.
     """
@@ -133,18 +134,32 @@ def _find_direction(graph: Graph, port: Element) -> str | None:
 
 
 def _own_direction(graph: Graph, port: Element) -> str | None:
-    """Return the direction of a flow port (SysML 1.2 clause 9.3.2.3), or None for other ports.
+    """Return the direction of a flow port (SysML 1.2 clause 9.3.2.3) or vendor port, or None.
 
     The result is None, too, if the type gives the direction, as a flow specification does. Without
     a tag, the direction of an atomic flow port is inout.
     """
     if port.role != "flow port":
-        return None
+        return _vendor_direction(graph, port)
     stated = tag(graph, port, "direction")
     if stated in FLOW_DIRECTIONS:
         return str(stated)
     type_ = type_of(graph, port)
     return None if type_ is not None and _direction_by_type(graph, port) else "inout"
+
+
+def _vendor_direction(graph: Graph, port: Element) -> str | None:
+    """Return the direction in the tag of a vendor's stereotype for ports, or None.
+
+    Examples are FlowPort of MARTE, DataFlowPort of RobotML and Port of Papyrus' FMI profile. Their
+    names end in "Port", and their literals are those of SysML.
+    """
+    for application in applications(graph, port):
+        if str(application.attrs.get("stereotype", "")).endswith("Port"):
+            stated = application.attrs.get("tag.direction")
+            if stated in FLOW_DIRECTIONS:
+                return str(stated)
+    return None
 
 
 def _conjugate(port: Element, direction: str | None) -> str | None:

@@ -1,6 +1,6 @@
 """Structure: the same constructs in the dialects of Papyrus and of MagicDraw."""
 
-from reading_xmi import below_model, magicdraw, papyrus, read
+from reading_xmi import below_model, magicdraw, papyrus, read, source
 
 BLOCKS = """\
 Class gate "Gate"
@@ -230,3 +230,11 @@ Dependency d subkind="abstraction"
   ?> supplier u Class
 """
     )
+
+
+def test_magicdraw_17_writes_a_placeholder_for_the_namespace_of_uml():
+    model = "<packagedElement xmi:type='uml:Class' xmi:id='gate' name='Gate'/>"
+    file = magicdraw(model)
+    data = file.data.replace(b"http://www.omg.org/spec/UML/20131001'", b"uml_namespace'", 1)
+    assert b"xmlns:uml='uml_namespace'" in data
+    assert below_model(read(source(data, "m.mdxml"))) == below_model(read(file))

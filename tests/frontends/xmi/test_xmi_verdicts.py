@@ -134,6 +134,8 @@ NOTATION = (
         (PAPYRUS % "", 1.0),
         (MAGICDRAW % "", 1.0),
         ('<uml:Model xmlns:uml="http://www.eclipse.org/uml2/3.0.0/UML"/>', 1.0),
+        ('<uml:Model xmlns:uml="uml_namespace"/>', 1.0),
+        ('<uml:Model xmlns:uml="uml_namespaces"/>', 0.0),
         ('<xmi:XMI xmlns:xmi="https://www.omg.org/spec/XMI/20131001"/>', 0.5),
         (ECORE, 0.0),
         (NOTATION, 0.0),

@@ -9,6 +9,8 @@ _XMI = re.compile(r"https?://(www|schema)\.omg\.org/spec/XMI(/[\d.]+)?/?$|^omg\.
 _UML = re.compile(
     r"https?://www\.eclipse\.org/uml2/[\d.]+/UML/?$"
     r"|https?://(www|schema)\.omg\.org/spec/UML/[\d.]+/?$"
+    # MagicDraw 17 writes this placeholder into some of its files.
+    r"|uml_namespace$"
 )
 _SYSML = re.compile(
     r"https?://www\.eclipse\.org/papyrus/(0\.7\.0/SysML|sysml/[\d.]+/SysML)/\w"
