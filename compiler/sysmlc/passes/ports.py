@@ -85,9 +85,10 @@ class Ports(Struct, frozen=True):
 
     Assumes effective features and roles. Guarantees: an untyped port has the type of the port that
     it redefines. The first of these that states a direction sets ``direction``: the source, the tag
-    of a flow port or of a vendor's stereotype for ports, the flow properties of the type, the parameters of operations of the type, item
-    flows, the redefined port. A conjugated port has the opposite of the direction of its type.
-    Ports without a direction are reported once for each block.
+    of a flow port or of a vendor's stereotype for ports, the flow properties of the type, the
+    parameters of operations of the type, item flows, the redefined port. A conjugated port has the
+    opposite of the direction of its type. Ports without a direction are reported once for each
+    block.
     """
 
     name: ClassVar[str] = "ports"

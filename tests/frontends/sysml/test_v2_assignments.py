@@ -298,10 +298,7 @@ def test_each_of_several_assignments_stops_at_the_bound_for_itself():
 
 def test_an_assignment_to_a_constant_is_reported():
     messages, becomes = compile_body("assign full := true;")
-    assert messages[0] == (
-        "SM415 warning: 'full := true' assigns to 'full', which is not a changeable property "
-        "of Cell with finitely many values"
-    )
+    assert messages[0] == ("SM415 warning: 'full := true' assigns to 'full', which is constant")
     assert becomes == []
 
 

@@ -206,8 +206,8 @@ def test_what_has_no_finite_values_is_an_opaque_effect_with_a_warning():
     assert [(diagnostic.severity, diagnostic.message) for diagnostic in diagnostics] == [
         (
             Severity.WARNING,
-            "'machine.age := 1.5' assigns to 'machine.age', which is not a changeable "
-            "property of Cell with finitely many values",
+            "'machine.age := 1.5' assigns to 'machine.age', which has no finite type; the contract "
+            "shows the assignment as output 'machine_age_1_5'",
         )
     ]
 

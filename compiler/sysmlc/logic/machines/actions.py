@@ -1,6 +1,7 @@
 """Guards, effects and change conditions of a state machine, read in the context of its owner."""
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from msgspec import Struct
 
@@ -93,15 +94,28 @@ NOT_ASSIGNABLE = rule(
     "SM415",
     "not-assignable",
     Severity.ERROR,
-    "'{text}' assigns to '{name}', which is not a changeable property of "
-    "{context} with finitely many values",
-    help="correct the name, give the property a finite type, or make it changeable",
+    "'{text}' assigns to '{name}', which {reason}{consequence}",
+    help="{advice}",
+)
+
+
+class TargetFault(NamedTuple):
+    """Why no formula describes an assignment to a target, and what the modeller can do."""
+
+    reason: str
+    advice: str
+
+
+IS_CONSTANT = TargetFault("is constant", "make the property changeable, or assign another one")
+NOT_FINITE = TargetFault(
+    "has no finite type",
+    "type it by a Boolean, an enumeration or an Integer for a contract about it",
 )
 OPAQUE_EFFECT = rule(
     "SM416",
     "opaque-effect",
     Severity.INFO,
-    "'{text}' is not an assignment, call or send; the contract shows it as output '{variable}'",
+    "effect '{text}' is not understood: {reason}; the contract shows it as output '{variable}'",
 )
 RULE_OF_FAULT = {
     Fault.UNKNOWN: UNKNOWN_NAME,
@@ -253,17 +267,20 @@ def _read_behaviour(reading: ReadingContext, behaviour: Element, edge: Edge) -> 
     try:
         statements = parse_effect(body)
     except ExpressionError:
-        return [_read_opaque_effect(reading, body, behaviour)]
+        reason = "it is not an assignment, call or send"
+        return [_read_opaque_effect(reading, body, behaviour, reason)]
     texts = [body] if len(statements) == 1 else map(print_statement, statements)
     pairs = zip(statements, texts, strict=True)
     return [_read_statement(reading, statement, text, behaviour) for statement, text in pairs]
 
 
-def _read_opaque_effect(reading: ReadingContext, text: str, behaviour: Element) -> Raise:
-    """Report an effect that is not in the expression grammar and return its output."""
+def _read_opaque_effect(
+    reading: ReadingContext, text: str, behaviour: Element, reason: str
+) -> Raise:
+    """Report an effect that no formula can describe, and return its output."""
     output = _effect_output(reading, text, behaviour)
     subject = reading.graph.subject(behaviour)
-    reading.sink.report(OPAQUE_EFFECT, subject, text=text.strip(), variable=output)
+    reading.sink.report(OPAQUE_EFFECT, subject, text=text.strip(), reason=reason, variable=output)
     return Raise(output, behaviour.id)
 
 
@@ -309,13 +326,14 @@ def _read_statement(
 def _read_assignment(
     reading: ReadingContext, statement: Assignment, text: str, behaviour: Element
 ) -> Action:
+    """Return the action of an assignment; an output replaces one that no formula can describe.
+
+    The reason is reported once: where the target is at fault, the value is not read.
+    """
     name = name_of(statement.target) or print_expression(statement.target)
     feature = reading.context.features.get(name)
-    subject = reading.graph.subject(behaviour)
-    context = reading.context.name or "the context"
     if feature is None or feature.domain is None or feature.is_constant:
-        reading.sink.report(NOT_ASSIGNABLE, subject, text=text, name=name, context=context)
-        return _read_opaque_effect(reading, text, behaviour)
+        return _report_target(reading, text, name, feature, behaviour)
     if _has_other_writer(reading, feature, text, behaviour):
         return Raise(_effect_output(reading, text, behaviour), behaviour.id)
     try:
@@ -323,21 +341,45 @@ def _read_assignment(
         check_assignable(value.domain, feature.domain, statement.value)
     except ElaborationError as error:
         if error.fault is Fault.UNSUPPORTED:
-            return _read_opaque_effect(reading, text, behaviour)
+            return _read_opaque_effect(reading, text, behaviour, str(error))
         reading.sink.report(
             RULE_OF_FAULT[error.fault],
-            subject,
+            reading.graph.subject(behaviour),
             what="effect",
             text=text,
             reason=str(error),
             name=error.name,
-            context=context,
+            context=reading.context.name or "the context",
         )
-        return _read_opaque_effect(reading, text, behaviour)
+        return Raise(_effect_output(reading, text, behaviour), behaviour.id)
     reading.record_reads(statement.value)
     reading.assigned_variables[feature.variable] = None
     report_range(reading.graph, feature, reading.sink)
     return Assign(feature.variable, statement.value, behaviour.id)
+
+
+def _report_target(
+    reading: ReadingContext, text: str, name: str, feature: Feature | None, behaviour: Element
+) -> Raise:
+    """Report why the target of an assignment has no formula, and return the effect's output."""
+    if feature is None:
+        context = reading.context.name or "the context"
+        fault = TargetFault(
+            f"is not a known property of {context}", "correct the name, or add the property"
+        )
+    else:
+        fault = IS_CONSTANT if feature.is_constant else NOT_FINITE
+    output = _effect_output(reading, text, behaviour)
+    reading.sink.report(
+        NOT_ASSIGNABLE,
+        reading.graph.subject(behaviour),
+        text=text,
+        name=name,
+        consequence=f"; the contract shows the assignment as output '{output}'",
+        reason=fault.reason,
+        advice=fault.advice,
+    )
+    return Raise(output, behaviour.id)
 
 
 def check_assignable(value_domain: Domain, target_domain: Domain, value: Expression) -> None:

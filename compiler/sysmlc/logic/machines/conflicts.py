@@ -180,7 +180,7 @@ CROSSING = rule(
     "SM427",
     "exit-from-orthogonal-state",
     Severity.WARNING,
-    "'{first}' leaves an orthogonal state while '{second}' can be taken in another of its "
+    "'{first}' leaves an orthogonal state while {others} can be taken in another of its "
     "regions; the component gets no contract",
     help="draw the transition from the border of the orthogonal state, or use another event",
 )
@@ -275,12 +275,18 @@ def _report_crossings(
 
     Yield the ids of the exits.
     """
+    crossings: dict[str, tuple[Transition, list[str]]] = {}
     for left, right, state in _orthogonal_pairs(machine):
         for leaver, stayer in ((left, right), (right, left)):
             if _can_leave(machine, leaver, state) and comparison.are_compatible(left, right):
-                subject = graph.subject(graph[element_id(leaver.id)])
-                sink.report(CROSSING, subject, first=leaver.words, second=stayer.words)
-                yield leaver.id
+                _, stayers = crossings.setdefault(leaver.id, (leaver, []))
+                stayers.append(f"'{stayer.words}'")
+    for id, (leaver, stayers) in crossings.items():
+        names = " or ".join(dict.fromkeys(stayers))
+        sink.report(
+            CROSSING, graph.subject(graph[element_id(id)]), first=leaver.words, others=names
+        )
+        yield id
 
 
 def _can_leave(machine: Machine, transition: Transition, state: str) -> bool:

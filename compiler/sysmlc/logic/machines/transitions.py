@@ -94,9 +94,8 @@ OPAQUE_TIME = rule(
     "SM417",
     "opaque-time",
     Severity.WARNING,
-    "time '{text}' is not a constant relative time; the contract treats the event "
-    "as the input '{variable}'",
-    help="write a number, or a number with a unit (after 5 s), and mark the event as relative",
+    "time '{text}' {reason}; the contract treats the event as the input '{variable}'",
+    help="{advice}",
 )
 _SECONDS = {
     "ms": 0.001,
@@ -125,7 +124,7 @@ def _count_ticks(reading: ReadingContext, trigger: Element) -> int | None:
     unit, a step lasts ``tick_seconds``.
     """
     text = str(trigger.attrs.get("when", ""))
-    is_relative = trigger.attrs.get("relative") is True or text.strip().startswith("after")
+    is_relative = _is_relative(trigger, text)
     match = _TIME.match(text)
     if not is_relative or match is None or (match[2] and match[2].lower() not in _SECONDS):
         return None
@@ -134,6 +133,11 @@ def _count_ticks(reading: ReadingContext, trigger: Element) -> int | None:
         number = number * _SECONDS[match[2].lower()] / reading.tick_seconds
     # Rounded up, so that a time trigger never occurs early; a reaction takes at least one step.
     return max(1, ceil(number))
+
+
+def _is_relative(trigger: Element, text: str) -> bool:
+    """Whether the time counts from the entry of the source state."""
+    return trigger.attrs.get("relative") is True or text.strip().startswith("after")
 
 
 def parse_milliseconds(text: str) -> int | None:
@@ -148,8 +152,20 @@ def _make_time_input(reading: ReadingContext, trigger: Element) -> str:
     """Report a time that is not constant and return the Boolean input that replaces it."""
     text = str(trigger.attrs.get("when", "")) or trigger.name
     variable = reading.input_for(f"time {text}", f"time_{text}", trigger.id)
-    subject = reading.graph.subject(trigger)
-    reading.sink.report(OPAQUE_TIME, subject, text=text, variable=variable)
+    if _is_relative(trigger, text):
+        reason = "is not a number"
+        advice = "write a number, or a number with a unit (after 5 s), if the duration is constant"
+    else:
+        reason = "is absolute"
+        advice = "use a relative time (after 5 s) if it counts from the entry of the state"
+    reading.sink.report(
+        OPAQUE_TIME,
+        reading.graph.subject(trigger),
+        text=text,
+        reason=reason,
+        advice=advice,
+        variable=variable,
+    )
     return variable
 
 

@@ -104,7 +104,7 @@ class Activities(Struct, frozen=True):
         tokens = activity_checks.check_tokens(graph, tokens, self.max_markings, sink)
         report_untracked(graph, activity, unfollowed, sink)
         report_unknown_targets(graph, activity, written, writers, sink)
-        report_unassignable(graph, activity, written, scope, sink)
+        report_unassignable(graph, written, scope, sink)
         report_saturation(graph, tokens, sink)
         if len(tokens.edges) > self.collapse_over:
             tokens = activity_search.collapse_if_safe(tokens, self.max_markings)

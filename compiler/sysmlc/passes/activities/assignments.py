@@ -17,7 +17,12 @@ from sysmlc.logic.expressions.expression import Expression
 from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.expressions.named_elements import find_named_values
 from sysmlc.logic.feature_writes import FeatureWrite, WriterIndex, find_label, iter_writes
-from sysmlc.logic.machines.actions import NOT_ASSIGNABLE, RULE_OF_FAULT, check_assignable
+from sysmlc.logic.machines.actions import (
+    IS_CONSTANT,
+    NOT_ASSIGNABLE,
+    RULE_OF_FAULT,
+    check_assignable,
+)
 from sysmlc.logic.machines.moves import SATURATES
 from sysmlc.passes.activities.inputs import Scope
 from sysmlc.support.suggestions import did_you_mean
@@ -62,7 +67,6 @@ def _resolve_target(assignment: FeatureWrite, scope: Scope, writers: WriterIndex
 
 def report_unassignable(
     graph: Graph,
-    activity: Element,
     written: Iterable[list[ResolvedAssignment]],
     scope: Scope,
     sink: Sink,
@@ -78,18 +82,20 @@ def report_unassignable(
             continue
         subject, text = graph.subject(assignment.action), f"{assignment.name} := {assignment.text}"
         if feature.is_constant:
-            context = _owner_name(graph, activity, feature)
-            sink.report(NOT_ASSIGNABLE, subject, text=text, name=assignment.name, context=context)
+            sink.report(
+                NOT_ASSIGNABLE,
+                subject,
+                text=text,
+                name=assignment.name,
+                consequence="",
+                reason=IS_CONSTANT.reason,
+                advice=IS_CONSTANT.advice,
+            )
         elif fault := _find_fault(assignment.value, feature, scope):
             reason = str(fault)
             sink.report(
                 RULE_OF_FAULT[fault.fault], subject, what="assignment", text=text, reason=reason
             )
-
-
-def _owner_name(graph: Graph, activity: Element, feature: Feature) -> str:
-    owner = graph.owner(feature.element)
-    return activity.name if owner is None else owner.name
 
 
 def _find_fault(value: Expression, feature: Feature, scope: Scope) -> ElaborationError | None:
