@@ -147,6 +147,17 @@ class Refinement(Struct, frozen=True):
         return Subject(term.text, about, place_of(self.file, term.spot))
 
 
+class Change(Struct, frozen=True):
+    """A fact that an overlay states about an element of the model, without adding an element.
+
+    ``fact`` completes a sentence: "the direction 'in'".
+    """
+
+    element_id: str
+    fact: str
+    place: Place
+
+
 def place_of(file: str, spot: Spot) -> Place:
     """Return a position in a file as the place of a diagnostic."""
     return Place(file, line=spot.line, column=spot.column)

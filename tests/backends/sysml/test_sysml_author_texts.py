@@ -196,3 +196,44 @@ def test_interchange_files_of_a_unit_with_several_notations(folder):
         "sysmlx/kernel.kermlx",
         "sysmlx/plant.sysmlx",
     ]
+
+
+# -- facts of overlays about declarations of authors -------------------------------------------
+
+REFINED = """\
+overlay: 1
+items: {Plant/Tray: {domain: physical, specializes: [Plant/Empty]}}
+ports: {Plant/Belt/incoming: {direction: in, type: Plant/Track}}
+blocks: {Plant/Stop: {specializes: [Plant/Empty]}}
+"""
+
+
+def test_facts_of_an_overlay_that_would_change_a_declaration_are_reported(folder):
+    write_file(folder, "plant.sysml", PLANT)
+    write_file(folder, "plant.overlay.yaml", REFINED)
+    compilation = compile_folder(folder)
+    assert write_outputs(compilation, folder) == {"plant.sysml": PLANT}
+    reported = [d for d in compilation.diagnostics if d.rule.code == "SM738"]
+    assert [str(d.message) for d in reported] == [
+        f"the SysML v2 text of 'Plant::{name}' omits {fact}, which the overlay states"
+        for name, fact in (
+            ("Tray", "the domain 'physical'"),
+            ("Tray", "the general 'Empty'"),
+            ("Belt::incoming", "the direction 'in'"),
+            ("Belt::incoming", "the type 'Track'"),
+            ("Stop", "the general 'Empty'"),
+        )
+    ]
+    assert {d.subject.place.file for d in reported} == {"plant.overlay.yaml"}
+
+
+def test_facts_that_the_printed_text_states_are_not_reported(folder):
+    write_file(folder, "gate.ir", GATE)
+    write_file(
+        folder,
+        "gate.overlay.yaml",
+        "overlay: 1\nitems: {Tool: null}\nblocks: {Gates/Gate: {specializes: [Items/Tool]}}\n",
+    )
+    compilation = compile_folder(folder)
+    assert "part def Gate :> Items_2::Tool" in write_outputs(compilation, folder)["gate.sysml"]
+    assert "SM738" not in [d.rule.code for d in compilation.diagnostics]

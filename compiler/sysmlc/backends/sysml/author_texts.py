@@ -6,11 +6,14 @@ Members that passes add to an element of such a text stand at the end of its bod
 from collections.abc import Iterable, Iterator, Mapping
 
 from sysmlc.backends.sysml.printing import INDENT, Line, print_lines
+from sysmlc.backends.sysml.rules import UNCHANGED_TEXT
 from sysmlc.backends.sysml.writer import Writer
+from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Element, Graph
 from sysmlc.language.library import SHIPPED
 from sysmlc.language.names import Model
 from sysmlc.language.tree import Document, Node, byte_order_mark_length
+from sysmlc.overlay import Change
 from sysmlc.support.output import make_path_of_input
 
 BYTE_ORDER_MARK = "\ufeff"
@@ -58,6 +61,17 @@ def write_insertions(writer: Writer) -> None:
         if lines:
             writer.insertions[namespace.require_element()] = lines
         stack.extend(author_members)
+
+
+def report_changes(graph: Graph, author_files: frozenset[str], sink: Sink) -> None:
+    """Report the facts of overlays about elements of the texts: only members are inserted."""
+    for change in graph.derived(Change):
+        element = graph.get(change.element_id)
+        if element is not None and element.source in author_files:
+            name = graph.qualified_name(element)
+            subject = Subject(name, element.id, change.place)
+            file = element.source
+            sink.report(UNCHANGED_TEXT, subject, name=name, fact=change.fact, file=file)
 
 
 def edit_text(document: Document, insertions: Insertions) -> str:

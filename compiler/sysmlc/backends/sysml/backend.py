@@ -35,6 +35,7 @@ from sysmlc.backends.sysml.author_texts import (
     is_whole_model,
     list_texts,
     path_of_text,
+    report_changes,
     write_insertions,
 )
 from sysmlc.backends.sysml.coverage import record_omissions
@@ -78,6 +79,7 @@ class SysmlBackend(Struct, frozen=True):
             if writer.uses_library and LIBRARY not in paths:
                 library = resources.read_text("metamodels", LIBRARY)
                 output.add(f"sysml/{LIBRARY}", library, (), self.name)
+        report_changes(graph, author_files, sink)
         for document in documents:
             text = edit_text(document, insertions)
             output.add(f"sysml/{path_of_text(document)}", text, (), self.name)

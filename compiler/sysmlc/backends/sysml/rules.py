@@ -55,6 +55,14 @@ NAME_LEFT_OUT = rule(
     "{construct} has no name in SysML v2 ({count} names omitted)",
 )
 
+UNCHANGED_TEXT = rule(
+    "SM738",
+    "sysml-unchanged-text",
+    Severity.WARNING,
+    "the SysML v2 text of '{name}' omits {fact}, which the overlay states",
+    help="write it into '{file}': sysmlc does not change declarations of authors",
+)
+
 
 @dataclass
 class Losses(LossCounter):

@@ -107,6 +107,9 @@ def _refine_port(finder: Finder, entry: PortEntry) -> None:
             old=str(stated),
         )
     graph.set(port, direction=entry.direction or stated)
+    if entry.direction and stated != entry.direction:
+        finder.record_change(port, f"the direction '{entry.direction}'", entry.key)
     type_ = None if entry.type is None else finder.find_term(entry.type, TYPE)
     if type_ is not None:
         graph.replace_targets(Edge.TYPED_BY, port, [type_])
+        finder.record_change(port, f"the type '{type_.name}'", entry.key)

@@ -84,6 +84,7 @@ def _assign_behavior(
         return None
     graph.move(behavior, block)
     graph.connect(edge, holder, behavior)
+    finder.record_change(holder, f"the behavior '{behavior.name}'", term)
     return behavior
 
 
@@ -123,7 +124,7 @@ def resolve_calls(finder: Finder, entry: BlockEntry) -> None:
     stated = {name.text for name, _ in entry.calls}
     for action in calls:
         if action.name not in stated and finder.graph.target(action, Edge.CALLS) is None:
-            _resolve_by_name(finder, scope, block, action)
+            _resolve_by_name(finder, scope, block, action, entry)
 
 
 def _is_call(element: Element) -> bool:
@@ -171,14 +172,18 @@ def _resolve_stated(
     if operation is not None:
         for action in actions:
             finder.graph.replace_targets(Edge.CALLS, action, [operation])
+            finder.record_change(action, f"the called operation '{operation.name}'", called)
             _type_pins(finder, action, operation)
 
 
-def _resolve_by_name(finder: Finder, scope: _Scope, block: Element, action: Element) -> None:
+def _resolve_by_name(
+    finder: Finder, scope: _Scope, block: Element, action: Element, entry: BlockEntry
+) -> None:
     graph = finder.graph
     operations = list(dict.fromkeys(scope.get(action.name, ())))
     if len(operations) == 1:
         graph.connect(Edge.CALLS, action, operations[0])
+        finder.record_change(action, f"the called operation '{operations[0].name}'", entry.key)
         _type_pins(finder, action, operations[0])
         return
     listed = ", ".join(f"'{graph.qualified_name(operation)}'" for operation in operations)

@@ -21,6 +21,7 @@ def refine_block(finder: Finder, entry: BlockEntry) -> None:
         general_block = finder.find_term(general, BLOCK)
         if general_block is not None and general_block is not block:
             finder.graph.connect(Edge.SPECIALIZES, block, general_block)
+            finder.record_change(block, f"the general '{general_block.name}'", general)
     for value in entry.values:
         _add_value(finder, block, value)
     for operation in entry.operations:
@@ -255,6 +256,8 @@ def _describe_item(finder: Finder, entry: ItemEntry, item: Element) -> None:
             old=str(stated),
         )
     graph.set(item, domain=entry.domain or stated)
+    if entry.domain and stated != entry.domain:
+        finder.record_change(item, f"the domain '{entry.domain}'", entry.key)
     add_description(finder, item, entry.description, entry.key)
 
 
@@ -270,3 +273,4 @@ def _specialize(finder: Finder, item: Element, general: Term) -> None:
     general_item = finder.find_term(general, TYPE)
     if general_item is not None and general_item is not item:
         finder.graph.connect(Edge.SPECIALIZES, item, general_item)
+        finder.record_change(item, f"the general '{general_item.name}'", general)

@@ -10,7 +10,7 @@ from unicodedata import normalize
 from sysmlc.diagnostics import Rule, Sink
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, derived_id, list_items
 from sysmlc.ir.query import BEHAVIORS, CLASSIFIERS, generals, type_of
-from sysmlc.overlay.model import Key, Refinement, Spot, Term
+from sysmlc.overlay.model import Change, Key, Refinement, Spot, Term, place_of
 from sysmlc.passes.overlay import rules
 from sysmlc.passes.resolve.libraries import PRIMITIVE_TYPES
 from sysmlc.support.suggestions import did_you_mean
@@ -275,6 +275,14 @@ class Finder:
         """Return the path of an element in overlays, or its id if an owner has no name."""
         names = [element.name, *(ancestor.name for ancestor in self.graph.ancestors(element))]
         return join_path(reversed(names)) if all(names) else element.id
+
+    # -- changes -------------------------------------------------------------------------------
+
+    def record_change(self, element: Element, fact: str, term: Term | Key) -> None:
+        """Record a fact about an element of the model, for back ends that preserve its text."""
+        change = Change(element.id, fact, place_of(self.refinement.file, term.spot))
+        if change not in self.graph.derived(Change):
+            self.graph.store(Change, [*self.graph.derived(Change), change])
 
     # -- new elements --------------------------------------------------------------------------
 
