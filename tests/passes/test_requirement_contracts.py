@@ -122,6 +122,15 @@ def test_a_constraint_in_another_language_is_reported():
     ]
 
 
+def test_a_requirement_about_several_subjects_is_reported_once():
+    special = '  Class d "Silo" role="block"\n    -> specializes c\n'
+    sink = derive(build_tank('body="lid"', elements=special))[1]
+    assert list_messages(sink, "SM523") == [
+        "'never full' of requirement 'Safe' is in no contract: 'lid' is not a feature of 'Tank' "
+        "with finitely many values; the same holds for 1 more subject"
+    ]
+
+
 def test_in_sysml_v1_a_formula_over_inputs_only_is_an_assumption():
     text = build_tank('language="LTL" body="G F !filling"', assumption='body="level < 9"')
     text = text.replace("    -> subject c\n    -> assumes a\n", "")

@@ -1,7 +1,7 @@
 """Contracts of services: preconditions and postconditions of operations and actions."""
 
 import pytest
-from pass_runs import derive_contracts, list_codes, print_conjuncts
+from pass_runs import derive_contracts, list_codes, list_messages, print_conjuncts
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text
@@ -180,3 +180,43 @@ def test_a_structure_that_specialises_a_behaviour_is_no_service(kind, services):
     """In KerML, a structure may specialise a behaviour with conditions."""
     graph = parse_text(SPECIALIZED_ACTION.format(kind=kind))
     assert len(list(iter_services(graph, (0, 15), Sink()))) == services
+
+
+# -- conditions without formula ----------------------------------------------------------------
+
+
+def list_informal(text):
+    return list_messages(derive_contracts(text)[2], "SM505")
+
+
+def test_conditions_in_another_language_are_one_finding_for_each_language():
+    conditions = [("", "", text) for text in ("the lid is shut", "the tank is cold", "hot")]
+    text = build_tank(*conditions).replace('body="the', 'language="English" body="the')
+    assert list_informal(text) == [
+        "the constraint 'the lid is shut' of 'fill' is in no contract: it is written in English; "
+        "the same holds for 1 more condition",
+        "the constraint 'hot' of 'fill' is in no contract: 'hot' is not a parameter or feature "
+        "with finitely many values",
+    ]
+
+
+def test_a_condition_that_several_services_inherit_is_one_finding():
+    text = SPECIALIZED_ACTION.format(kind="Activity").replace('body="x"', 'body="y"')
+    assert list_informal(text) == [
+        "the precondition 'y' of 'A' is in no contract: 'y' is not a parameter or feature with "
+        "finitely many values; the same holds for 1 more service"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("body", "reason"),
+    [
+        ("level->size() > 0", "operations on collections ('->') are not supported"),
+        ("let low : Integer = 2 in level > low", "unexpected 'low'"),
+        ("level >", "the text ends too early"),
+    ],
+)
+def test_the_reason_names_the_token_that_is_not_read(body, reason):
+    assert list_informal(build_tank(("", "", body))) == [
+        f"the constraint '{body}' of 'fill' is in no contract: {reason}"
+    ]

@@ -31,7 +31,7 @@ _CACHE_SIZE = 4096
 """Texts whose trees are cached: every pass parses the same guards and ranges."""
 _SPELLING = {"&&": "and", "&": "and", "||": "or", "|": "or", "!": "not", "=": "==", "<>": "!="}
 _ESCAPE = {"n": "\n"}
-_SHOWN_CHARACTERS = 20
+_SHOWN_TOKEN = re.compile(r"\w{1,40}|[^\w\s]")
 
 
 @lru_cache(_CACHE_SIZE)
@@ -67,10 +67,13 @@ def _parse(text: str, start_rule: str) -> Any:  # noqa: ANN401 - the type depend
 
 
 def _explain(text: str, offset: int) -> str:
-    words = text[offset:].split()
-    if not words:
+    if not text[offset:].strip():
         return "the text ends too early"
-    return f"'{words[0][:_SHOWN_CHARACTERS]}' is not expected here"
+    # The arrow of OCL is read as a minus sign before a comparison.
+    if text[max(0, offset - 1) : offset + 1] == "->":
+        return "operations on collections ('->') are not supported"
+    token = _SHOWN_TOKEN.search(text, offset)
+    return f"unexpected '{token[0] if token else text[offset:].strip()}'"
 
 
 @cache

@@ -38,7 +38,7 @@ NOT_FORMAL = rule(
     "SM523",
     "requirement-not-formal",
     Severity.INFO,
-    "'{constraint}' of requirement '{requirement}' is in no contract: {reason}",
+    "'{constraint}' of requirement '{requirement}' is in no contract: {reason}{further}",
 )
 _EXPRESSION_LANGUAGES = ("", "kerml", "sysml", "ocl", "alf")
 
@@ -53,6 +53,7 @@ def derive(
     behaviour implements it. An Integer without a range gets *assumed_range*.
     """
     behaviour_by_component = {contract.component: contract for contract in behaviours}
+    informal = _InformalStatements()
     for subject, statements in collect_statements(graph):
         component = component_of(graph, subject)
         behaviour = behaviour_by_component.get(component)
@@ -66,7 +67,7 @@ def derive(
         assumptions: list[Conjunct] = []
         demands: list[Conjunct] = []
         for statement in statements:
-            formula = _read_statement(graph, scope, statement, sink)
+            formula = _read_statement(graph, scope, statement, informal, sink)
             if formula is not None:
                 is_assumed = _is_assumed(scope, statement, formula)
                 conjuncts = assumptions if is_assumed else demands
@@ -74,6 +75,7 @@ def derive(
         if demands:
             name = component if behaviour is None else f"{component}.requirements"
             yield _make_contract(name, subject, scope, assumptions, demands)
+    informal.report(graph, sink)
 
 
 def add_features(contract: Contract, scope: Scope, formula: Formula) -> Contract:
@@ -97,19 +99,51 @@ def add_features(contract: Contract, scope: Scope, formula: Formula) -> Contract
 # -- formulas of statements ----------------------------------------------------------------------
 
 
-def _read_statement(graph: Graph, scope: Scope, statement: Statement, sink: Sink) -> Formula | None:
-    """Return the formula of a statement, or report why it has none."""
+class _InformalStatements:
+    """The statements without formula, each with the reason and the number of its subjects.
+
+    A requirement about a general definition applies to all its specialisations, hundreds in a
+    library, and is reported once.
+    """
+
+    def __init__(self) -> None:
+        self._reasons: dict[str, tuple[Statement, list[str]]] = {}
+
+    def add(self, statement: Statement, reason: str) -> None:
+        """Record why *statement* has no formula about one of its subjects."""
+        self._reasons.setdefault(statement.constraint.id, (statement, []))[1].append(reason)
+
+    def report(self, graph: Graph, sink: Sink) -> None:
+        """Report each statement once, with the reason for its first subject."""
+        for statement, reasons in self._reasons.values():
+            others = len(reasons) - 1
+            further = (
+                f"; the same holds for {others} more subject{'s' * (others > 1)}" if others else ""
+            )
+            sink.report(
+                NOT_FORMAL,
+                graph.subject(statement.constraint),
+                constraint=_name_constraint(statement),
+                requirement=statement.requirement.name,
+                reason=reasons[0],
+                further=further,
+            )
+
+
+def _read_statement(
+    graph: Graph, scope: Scope, statement: Statement, informal: _InformalStatements, sink: Sink
+) -> Formula | None:
+    """Return the formula of a statement, or record why it has none."""
     constraint = statement.constraint
     # Tools append a version: "OCL2.0", "KerML 1.0".
     language = _language_of(constraint).rstrip("0123456789. ")
     if _is_temporal(constraint):
         formula = _read_temporal(graph, scope, statement, sink)
     elif language in _EXPRESSION_LANGUAGES:
-        formula = _read_condition(graph, scope, statement, sink)
+        formula = _read_condition(scope, statement, informal)
     else:
         formula = None
-        reason = f"it is written in {constraint.attrs['language']}"
-        _report_informal(graph, statement, sink, reason)
+        informal.add(statement, f"it is written in {constraint.attrs['language']}")
     if formula is not None:
         _report_ranges(graph, scope, formula, sink)
     return formula
@@ -145,12 +179,14 @@ def _read_temporal(graph: Graph, scope: Scope, statement: Statement, sink: Sink)
     return scope.substitute_constants(formula)
 
 
-def _read_condition(graph: Graph, scope: Scope, statement: Statement, sink: Sink) -> Formula | None:
+def _read_condition(
+    scope: Scope, statement: Statement, informal: _InformalStatements
+) -> Formula | None:
     try:
         expression = parse_expression(str(statement.constraint.attrs["body"]))
         return elaborate_condition(expression, scope.find_symbol)
     except (ExpressionError, ElaborationError) as error:
-        _report_informal(graph, statement, sink, _explain(scope, error))
+        informal.add(statement, _explain(scope, error))
         return None
 
 
@@ -160,12 +196,6 @@ def _explain(scope: Scope, error: Exception) -> str:
             f"'{error.name}' is not a feature of '{scope.context.name}' with finitely many values"
         )
     return str(error)
-
-
-def _report_informal(graph: Graph, statement: Statement, sink: Sink, reason: str) -> None:
-    name, requirement = _name_constraint(statement), statement.requirement.name
-    subject = graph.subject(statement.constraint)
-    sink.report(NOT_FORMAL, subject, constraint=name, requirement=requirement, reason=reason)
 
 
 def _name_constraint(statement: Statement) -> str:

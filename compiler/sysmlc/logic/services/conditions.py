@@ -27,10 +27,11 @@ NOT_FORMAL = rule(
     "SM505",
     "condition-not-formal",
     Severity.INFO,
-    "the {kind} '{text}' of '{service}' is in no contract: {reason}",
+    "the {kind} '{text}' of '{service}' is in no contract: {reason}{further}",
 )
 _ORDERS = frozenset(["<", "<=", ">", ">="])
 _KINDS = ("", "precondition", "postcondition", "body")
+_LANGUAGE_ADVICE = "choose OCL or no language for conditions that are expressions over features"
 _LANGUAGES = ("", "kerml", "sysml", "ocl", "alf")
 
 
@@ -62,6 +63,7 @@ def iter_services(graph: Graph, assumed: tuple[int, int], sink: Sink) -> Iterato
     *assumed* is the range of Integers without a stated one. A condition that is not an expression
     over parameters and features with finitely many values is reported.
     """
+    informal = _InformalConditions()
     constraints_by_service: dict[str, tuple[Element, list[Element]]] = {}
     for constraint in graph.of_kind(Kind.CONSTRAINT):
         owner = graph.owner(constraint)
@@ -69,9 +71,10 @@ def iter_services(graph: Graph, assumed: tuple[int, int], sink: Sink) -> Iterato
             for service in _performed_services(graph, owner):
                 constraints_by_service.setdefault(service.id, (service, []))[1].append(constraint)
     for service, constraints in constraints_by_service.values():
-        result = _read_service(graph, service, constraints, assumed, sink)
+        result = _read_service(graph, service, constraints, assumed, informal, sink)
         if result.conditions:
             yield result
+    informal.report(graph, sink)
 
 
 def _is_condition(constraint: Element) -> bool:
@@ -116,11 +119,12 @@ def _read_service(
     service: Element,
     constraints: list[Element],
     assumed: tuple[int, int],
+    informal: "_InformalConditions",
     sink: Sink,
 ) -> Service:
     context = _make_context(graph, service, assumed)
     read_conditions = [
-        _read_condition(graph, service, context, condition, sink) for condition in constraints
+        _read_condition(service, context, condition, informal) for condition in constraints
     ]
     conditions = tuple(part for part in read_conditions if part is not None)
     for name in {
@@ -146,21 +150,16 @@ def _has_parameters(graph: Graph, method: Element) -> bool:
 
 
 def _read_condition(
-    graph: Graph, service: Element, context: Context, constraint: Element, sink: Sink
+    service: Element, context: Context, constraint: Element, informal: "_InformalConditions"
 ) -> Condition | None:
     kind = constraint.subkind or "constraint"
+    if not _has_known_language(constraint):
+        informal.add_language(service, constraint)
+        return None
     try:
         formula = _read_formula(context, constraint)
     except (ExpressionError, ElaborationError) as error:
-        body = str(constraint.attrs["body"])
-        sink.report(
-            NOT_FORMAL,
-            graph.subject(constraint),
-            kind=kind,
-            text=body,
-            service=service.name,
-            reason=_explain(context, error),
-        )
+        informal.add(service, constraint, _explain(context, error))
         return None
     if formula == f.TRUE:
         return None
@@ -171,9 +170,6 @@ def _read_condition(
 
 
 def _read_formula(context: Context, constraint: Element) -> Formula:
-    language = str(constraint.attrs.get("language", "")).lower()
-    if language.rstrip("0123456789. ") not in _LANGUAGES:
-        raise ExpressionError(f"it is written in {constraint.attrs['language']}", 0)
     expression = _split_chain(parse_expression(str(constraint.attrs["body"])))
     formula = elaborate_condition(expression, lambda name: _find_symbol(context, name))
     domains: dict[str, Domain] = {
@@ -230,6 +226,54 @@ def is_input(feature: Feature) -> bool:
     """Whether the feature is an input parameter, whose value the caller decides."""
     direction = feature.direction or "in"
     return feature.element.kind is Kind.PARAMETER and direction == "in"
+
+
+def _has_known_language(constraint: Element) -> bool:
+    """Whether the language of the constraint may be that of expressions."""
+    language = str(constraint.attrs.get("language", "")).lower()
+    return language.rstrip("0123456789. ") in _LANGUAGES
+
+
+class _InformalConditions:
+    """The conditions without formula: one finding for a condition, and one for a language and file.
+
+    Special actions and operations inherit the conditions of general ones.
+    """
+
+    def __init__(self) -> None:
+        self._groups: dict[tuple[str, ...], list[tuple[Element, Element, str]]] = {}
+
+    def add(self, service: Element, constraint: Element, reason: str) -> None:
+        """Record why a condition of *service* has no formula."""
+        self._groups.setdefault((constraint.id,), []).append((service, constraint, reason))
+
+    def add_language(self, service: Element, constraint: Element) -> None:
+        """Record that a condition of *service* is written in a language that is not read."""
+        language = str(constraint.attrs["language"])
+        reason = f"it is written in {language}"
+        group = self._groups.setdefault((language, constraint.source), [])
+        group.append((service, constraint, reason))
+
+    def report(self, graph: Graph, sink: Sink) -> None:
+        """Report each group at its first condition, with the number of further ones."""
+        for key, conditions in self._groups.items():
+            is_language = len(key) > 1
+            service, constraint, reason = conditions[0]
+            others = len(conditions) - 1
+            noun = "condition" if is_language else "service"
+            further = (
+                f"; the same holds for {others} more {noun}{'s' * (others > 1)}" if others else ""
+            )
+            sink.report(
+                NOT_FORMAL,
+                graph.subject(constraint),
+                kind=constraint.subkind or "constraint",
+                text=str(constraint.attrs["body"]),
+                service=service.name,
+                reason=reason,
+                further=further,
+                help=_LANGUAGE_ADVICE if is_language else "",
+            )
 
 
 def _explain(context: Context, error: Exception) -> str:
