@@ -144,6 +144,38 @@ def test_lines_that_an_overlay_does_not_concern_are_unchanged(folder):
     assert removed == ["part def Stop { port outgoing : Track; }", "part def Empty;"]
 
 
+def test_insertions_stand_before_the_result_of_a_constraint(folder):
+    text = "package P {\n    constraint def Small {\n        in x; // mm\n        x < 3\n    }\n}\n"
+    write_file(folder, "p.sysml", text)
+    overlay = "overlay: 1\nblocks: {P/Small: {values: {y: {type: Boolean}}}}\n"
+    write_file(folder, "p.overlay.yaml", overlay)
+    assert write_outputs(compile_folder(folder), folder)["p.sysml"] == text.replace(
+        "x < 3", "attribute y : ScalarValues::Boolean;\n        x < 3"
+    )
+
+
+def test_metadata_of_a_text_is_not_defined_again(folder):
+    """The text has metadata without a definition; the printed text has nothing to do with it."""
+    text = "package P { part def Gate { @Unknown { speed = 2; } } }"
+    write_file(folder, "p.sysml", text)
+    write_file(folder, "gate.ir", GATE)
+    texts = write_outputs(compile_folder(folder), folder)
+    assert texts["p.sysml"] == text
+    assert "Unknown" not in texts["gate.sysml"]
+
+
+def test_behaviour_that_an_overlay_moves_to_a_printed_block_is_printed_there(folder):
+    text = "package P { action def Hold { @Unknown { speed = 2; } action wait; } }"
+    write_file(folder, "p.sysml", text)
+    write_file(folder, "gate.ir", GATE)
+    overlay = 'overlay: 1\nblocks: {Gates/Gate: {behavior: "p.sysml#P::Hold"}}\n'
+    write_file(folder, "gate.overlay.yaml", overlay)
+    texts = write_outputs(compile_folder(folder), folder)
+    assert texts["p.sysml"] == text
+    assert "perform action Hold {" in texts["gate.sysml"]
+    assert "@Stereotypes::Unknown" in texts["gate.sysml"]
+
+
 def test_insertions_have_the_line_ends_of_the_file(folder):
     text = "package Plant {\r\n\t// Prüfer\r\n\tpart def Empty { }\r\n}\r\n"
     write_file(folder, "plant.sysml", text)

@@ -18,6 +18,8 @@ from sysmlc.support.output import make_path_of_input
 
 BYTE_ORDER_MARK = "\ufeff"
 _BLANKS = " \t"
+_RESULT = "ResultExpressionMembership"
+"""Membership of an expression without a semicolon, which ends the body of a constraint."""
 
 Insertions = Mapping[Element, list[Line]]
 """Elements of texts with the lines of the members that passes added to them."""
@@ -95,6 +97,10 @@ def _make_edit(document: Document, owner: Element, lines: list[Line]) -> tuple[i
     indent = _read_indent(text, node.start)
     rows = print_lines(lines).rstrip("\n").split("\n")
     body = "".join(f"{indent}{INDENT}{row}\n" if row else "\n" for row in rows)
+    result = next((m for m in node.members if m.membership == _RESULT), None)
+    if result is not None:
+        replacement = f"{body}{indent}{INDENT}".lstrip(_BLANKS)
+        return _finish_edit(text, result.start, result.start, replacement)
     last = node.end - 1
     if text[last] != "}":
         return _finish_edit(text, last, node.end, f" {{\n{body}{indent}}}")

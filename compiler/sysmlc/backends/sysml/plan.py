@@ -95,6 +95,11 @@ class Plan:
         """Whether the author of a file in SysML v2 wrote the member."""
         return member.element is not None and member.element.source in self.author_files
 
+    def is_in_author_text(self, element: Element) -> bool:
+        """Whether an author's text contains the element, and no overlay moves it out of there."""
+        owners = (element, *self.graph.ancestors(element))
+        return all(owner.source in self.author_files for owner in owners)
+
     def expose(self, member: Member) -> None:
         """Mark a member as referred to from outside of its namespace."""
         if member.element is not None and "visibility" in member.element.attrs:

@@ -45,6 +45,8 @@ def define_stereotypes(plan: Plan) -> dict[str, Member]:
     for application in plan.graph.of_kind(Kind.APPLICATION):
         if application.attrs.get("external") or is_standard(application):
             continue
+        if plan.is_in_author_text(application):
+            continue
         definition = plan.find(plan.graph.target(application, Edge.INSTANCE_OF))
         definitions[application.id] = definition or _add_definition(plan, added, application)
     for id, definition in definitions.items():
