@@ -136,3 +136,20 @@ def test_the_example_of_the_documentation_is_the_output():
     page = (ROOT / "docs/format-sysml-v2.md").read_text(encoding="utf-8")
     before, after = (part.partition("```")[0] for part in page.split("```sysml\n")[1:])
     assert run_format("-", text=before).stdout == after
+
+
+def test_fix_writes_the_visibility_that_imports_lack(tmp_path):
+    old = tmp_path / "old.sysml"
+    old.write_text("package P { import Q::*; private import R::A; package Q; }\n")
+    result = run_format(tmp_path, "--fix")
+    assert (result.exit_code, result.stderr) == (0, "1 of 1 files reformatted\n")
+    assert old.read_text().splitlines()[1:3] == [
+        "    public import Q::*;",
+        "    private import R::A;",
+    ]
+
+
+def test_without_fix_imports_stay_as_they_are(tmp_path):
+    old = tmp_path / "old.sysml"
+    old.write_text("package P {\n    import Q::*;\n}\n")
+    assert run_format(old, "--check").exit_code == 0

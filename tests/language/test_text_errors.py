@@ -233,8 +233,8 @@ def test_sm196_prefixes_have_an_order_and_a_meaning():
 
 def test_sm197_every_import_needs_a_visibility():
     assert list_diagnostics("import A::*; public import B; package P { import C::**; }") == [
-        "1:1 SM197 the import has no visibility",
-        "1:43 SM197 the import has no visibility",
+        "1:1 SM197 the import has no visibility and is read as 'public import'",
+        "1:43 SM197 the import has no visibility and is read as 'public import'",
     ]
 
 

@@ -147,5 +147,25 @@ def test_an_expression_without_a_formula_is_rejected_with_the_reason(text, fault
     assert (caught.value.fault, caught.value.name) == (fault, name)
 
 
+COMPUTED = ' default="{}" default_language=""'
+
+
+def test_a_constant_expression_as_default_value_is_evaluated():
+    features = context(default=COMPUTED.format("2 + 1")).features
+    assert (features["bay"].default, features["bay"].invalid_default) == (3, "")
+    assert domain("bay", default=COMPUTED.format("4 * 5")) == IntegerDomain(0, 20)
+
+
+def test_a_default_value_that_depends_on_features_is_not_checked():
+    for text in ("bay2 + 1", "mode", "not mode"):
+        bay = context(default=COMPUTED.format(text)).features["bay"]
+        assert (bay.default, bay.invalid_default) == (None, "")
+
+
+def test_a_name_that_is_no_feature_is_no_default_value():
+    bay = context(default=COMPUTED.format("missing")).features["bay"]
+    assert bay.invalid_default == "missing"
+
+
 def test_a_bound_next_to_the_range_is_no_fault():
     assert print_formula(elaborate_condition(parse_expression("bay < 8"), SYMBOLS.get)) == "bay<8"

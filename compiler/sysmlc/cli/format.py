@@ -44,6 +44,7 @@ Examples:
   sysmlc format plant.sysml
   sysmlc format models/ --check     # for continuous integration: exit code 1 if a file would change
   sysmlc format models/ --diff      # shows the changes
+  sysmlc format models/ --fix       # also writes 'public' where an import has no visibility
   sysmlc format - < plant.sysml     # from standard input to standard output""",
 )
 @click.argument(
@@ -56,6 +57,9 @@ Examples:
 @click.option("--check", is_flag=True, help="Write nothing; list the files that would change.")
 @click.option("--diff", "shows_diff", is_flag=True, help="Write nothing; print the changes.")
 @click.option(
+    "--fix", is_flag=True, help="Write 'public' before imports without visibility (SM197), too."
+)
+@click.option(
     "--language",
     type=click.Choice(_LANGUAGES),
     help="Language of all files, if their suffixes do not show it.",
@@ -67,15 +71,16 @@ def command(
     files: tuple[Path, ...],
     check: bool,
     shows_diff: bool,
+    fix: bool,
     language: str | None,
 ) -> None:
     """Format FILE...: files, folders with .sysml and .kerml files, or - for standard input.
 
-    Only white space changes; tokens, comments and notes do not. Files with syntax errors are not
-    changed. Exit code 0: success; 1: a file has syntax errors or, with --check or --diff, would
-    change; 2: a file cannot be read or written.
+    Only white space changes, unless --fix is given; tokens, comments and notes do not. Files with
+    syntax errors are not changed. Exit code 0: success; 1: a file has syntax errors or, with
+    --check or --diff, would change; 2: a file cannot be read or written.
     """
-    texts = [_read(path, language) for path in _expand(files)]
+    texts = [_read(path, language, fix=fix) for path in _expand(files)]
     _show([finding for text in texts for finding in text.findings])
     changed = [text for text in texts if text.is_changed]
     if shows_diff:
@@ -112,7 +117,7 @@ def _list_folder(folder: Path) -> list[Path]:
     return inside or fail(f"{folder.as_posix()} holds no .sysml or .kerml file")
 
 
-def _read(path: Path, language: str | None) -> _Text:
+def _read(path: Path, language: str | None, *, fix: bool) -> _Text:
     from sysmlc.cli.session import fail
     from sysmlc.sources import DEFAULT_LIMITS, SourceError
     from sysmlc.sources.files import read_whole
@@ -127,10 +132,9 @@ def _read(path: Path, language: str | None) -> _Text:
             content = sys.stdin.buffer.read(limit + 1)
             if len(content) > limit:
                 fail(f"standard input has more than {limit} bytes")
-            return _format("-", None, content, language or "sysml")
-        return _format(
-            name, path, read_whole(path, name, DEFAULT_LIMITS), _find_language(path, language)
-        )
+            return _format("-", None, content, language or "sysml", fix=fix)
+        content = read_whole(path, name, DEFAULT_LIMITS)
+        return _format(name, path, content, _find_language(path, language), fix=fix)
     except SourceError as problem:
         fail(f"{name} {problem.message}")
     except UnicodeDecodeError as problem:
@@ -146,20 +150,24 @@ def _find_language(path: Path, language: str | None) -> str:
     return name
 
 
-def _format(name: str, path: Path | None, data: bytes, language: str) -> _Text:
-    """Format a text; the result has the findings of the parser if there are syntax errors."""
+def _format(name: str, path: Path | None, data: bytes, language: str, *, fix: bool) -> _Text:
+    """Format a text; the result has the findings of the parser if there are syntax errors.
+
+    With *fix*, imports get the visibility that they lack.
+    """
     from sysmlc.diagnostics import Sink
     from sysmlc.diagnostics.renderers import make_report
-    from sysmlc.language.formatter import format_text
+    from sysmlc.language.formatter import add_import_visibilities, format_text
     from sysmlc.language.text import parse
     from sysmlc.sources import Source
 
     before = data.decode("utf-8-sig")
     sink, source = Sink(), Source(name, data)
-    parse(before, name, language, sink, source)
+    document = parse(before, name, language, sink, source)
     if sink.has_errors():
         return _Text(name, path, before, None, tuple(make_report(sink, [source]).findings))
-    return _Text(name, path, before, format_text(before, language))
+    text = add_import_visibilities(document) if fix else before
+    return _Text(name, path, before, format_text(text, language))
 
 
 def _show(findings: "list[Finding]") -> None:

@@ -2,6 +2,8 @@
 
 from reading_v2 import read, read_classified
 
+from sysmlc.ir import Kind
+
 MODEL = """
 package P {
     part def Car { attribute mass : ScalarValues::Real; }
@@ -75,6 +77,58 @@ package P {
     satisfy requirement here : Quiet subsets quiet by pump;
 }""")
     assert reading.list_targets("P::pump", "satisfies") == ["P::quiet"]
+
+
+def test_the_subject_of_an_enclosing_requirement_satisfies_the_inner_one():
+    reading = read_classified("""
+package P {
+    part def Pump;
+    requirement def Quiet { subject pump : Pump; }
+    requirement site { subject pm : Pump; requirement quiet : Quiet; satisfy quiet by pm; }
+}""")
+    assert reading.list_targets("P::site", "satisfies") == ["P::site::quiet"]
+    assert [diagnostic.message for diagnostic in reading.sink] == [
+        "a satisfaction by a subject is read as one by the requirement with this subject "
+        "(1 in the unit)"
+    ]
+
+
+def test_the_subject_of_the_satisfied_requirement_cannot_satisfy_it():
+    reading = read_classified("""
+package P {
+    part def Pump;
+    requirement quiet { subject pump : Pump; }
+    part plant { satisfy quiet by pump; }
+}""")
+    assert reading.list_codes() == ["SM205"]
+
+
+def test_a_verification_after_a_satisfaction_leads_to_the_requirement():
+    reading = read_classified("""
+package P {
+    requirement quiet;
+    part pump;
+    part site {
+        satisfy quiet by pump;
+        verification weigh { objective { verify quiet; } }
+    }
+}""")
+    assert reading.list_targets("P::site::weigh", "verifies") == ["P::quiet"]
+
+
+def test_a_negated_satisfaction_is_no_satisfaction():
+    reading = read_classified("""
+package P {
+    requirement quiet;
+    requirement cheap;
+    part pump;
+    not satisfy quiet by pump;
+    satisfy cheap by pump;
+}""")
+    assert reading.list_targets("P::pump", "satisfies") == ["P::cheap"]
+    roles = [element.role for element in reading.graph.of_kind(Kind.DEPENDENCY)]
+    assert roles == ["not satisfy", "satisfy"]
+    assert reading.list_codes() == []
 
 
 def test_use_cases_have_subjects_inclusions_and_actors():

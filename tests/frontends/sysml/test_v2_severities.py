@@ -33,6 +33,11 @@ def test_rules_of_sysml_v1_are_silent_where_the_language_judges():
     assert SEVERITIES["SM202"] is None
 
 
+def test_a_cycle_of_specialisations_is_reported_once():
+    cycle = "package P { part def A :> B; part def B :> A; part def C :> A; }"
+    assert read(cycle, passes=ALL).list_codes() == ["SM206"]
+
+
 def test_the_project_has_the_last_word():
     graph, sink = Graph(), Sink({"SM214": Severity.WARNING})
     FRONTEND.read([Source("model.sysml", VALID.encode())], graph, sink, Coverage())

@@ -200,3 +200,20 @@ def test_an_end_of_an_association_has_the_multiplicity_with_which_it_is_crossed(
     assert reading.list_owned("R") == ["Property a", "Property b"]
     assert reading.find_element("R::b").attrs["multiplicity"] == "0..3"
     assert reading.list_targets("R::b", "typed-by") == ["B"]
+
+
+def test_an_import_without_visibility_passes_names_on_with_a_warning():
+    reading = read("""
+package Units { attribute def Mass; }
+package Old { import Units::*; }
+package Model { private import Old::*; part def Tank { attribute load : Mass; } }""")
+    assert reading.list_codes() == ["SM197"]
+    assert reading.list_targets("Model::Tank::load", "typed-by") == ["Units::Mass"]
+
+
+def test_a_private_import_passes_no_names_on():
+    reading = read("""
+package Units { attribute def Mass; }
+package New { private import Units::*; }
+package Model { private import New::*; part def Tank { attribute load : Mass; } }""")
+    assert reading.list_codes() == ["SM205"]

@@ -14,7 +14,9 @@ from sysmlc.support.plantuml_text import wrap_lines
 
 _SHAPES = {"composite": "*", "shared": "o"}
 _DEPENDENCY_WORDS = {"allocate": "allocate", "usage": "use", "abstraction": "abstraction"}
-REQUIREMENT_ROLES = frozenset(["satisfy", "derive", "verify", "refine", "trace", "copy"])
+REQUIREMENT_ROLES = frozenset(
+    ["satisfy", "not satisfy", "derive", "verify", "refine", "trace", "copy"]
+)
 
 
 class Relation(Struct, frozen=True):

@@ -41,6 +41,9 @@ _KEYWORDS_BY_SUBKIND = {
 _SATISFYING = frozenset({"part def", "item def", "action def", "state def", "occurrence def"})
 """Keywords of definitions that may state which requirements they satisfy."""
 
+_MAY_BE_INSIDE_CLIENT = frozenset({"satisfy", "not satisfy", "verify", "allocate"})
+"""Roles of dependencies that may be written inside their client."""
+
 
 def prewrite_dependencies(writer: Writer) -> None:
     """Write the dependencies whose lines may stand inside other elements."""
@@ -48,7 +51,7 @@ def prewrite_dependencies(writer: Writer) -> None:
         member = writer.plan.find(element)
         if member is None or writer.plan.is_author_member(member):
             continue
-        if element.role in ("satisfy", "verify", "allocate"):
+        if element.role in _MAY_BE_INSIDE_CLIENT:
             member.prewritten = _BY_ROLE[element.role](writer, member)
 
 
@@ -108,21 +111,25 @@ def _find_definition(usage: Member) -> Member | None:
 
 
 def _write_satisfaction(writer: Writer, member: Member) -> list[Line]:
-    """Write ``satisfy`` inside a definition, or ``satisfy ... by`` for a usage."""
+    """Write ``satisfy`` inside a definition, or ``satisfy ... by`` for a usage.
+
+    The role ``not satisfy`` is written in the same way, with these keywords.
+    """
+    keyword = member.require_element().role
     clients, suppliers = _find_ends(writer, member)
     are_requirements = all(end.shape.keyword == "requirement" for end in suppliers)
     if not are_requirements or len(clients) != 1 or not suppliers:
         return _write_plain(writer, member)
     client = clients[0]
     if client.shape.keyword in _SATISFYING:
-        lines = _write_requirement_references(writer, member, client, suppliers, "satisfy", "")
+        lines = _write_requirement_references(writer, member, client, suppliers, keyword, "")
         client.added_lines += lines
         return []
     if client.shape.is_usage and client.shape.keyword != "requirement":
         definition = _find_definition(client)
         scope = member.parent if definition is None else definition
         end = f" by {format_reference(writer.plan, scope, client)}"
-        lines = _write_requirement_references(writer, member, scope, suppliers, "satisfy", end)
+        lines = _write_requirement_references(writer, member, scope, suppliers, keyword, end)
         if definition is None:
             return lines
         definition.added_lines += lines
@@ -218,6 +225,7 @@ def _write_usage_allocation(writer: Writer, member: Member, ends: list[Member]) 
 
 _BY_ROLE: dict[str, Callable[[Writer, Member], list[Line]]] = {
     "satisfy": _write_satisfaction,
+    "not satisfy": _write_satisfaction,
     "verify": _write_verification,
     "derive": _write_derivation,
     "allocate": _write_allocation,

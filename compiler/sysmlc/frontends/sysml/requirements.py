@@ -27,6 +27,7 @@ _CONDITION_SUBKINDS = {
 """Subkinds of constraints by the keyword of our library."""
 _SATISFACTION_KIND = "SatisfyRequirementUsage"
 _SATISFACTION: dict[str, AttrValue] = {"role": "satisfy", "subkind": "abstraction"}
+_NEGATED_SATISFACTION: dict[str, AttrValue] = {"role": "not satisfy", "subkind": "abstraction"}
 _VERIFICATION: dict[str, AttrValue] = {"role": "verify", "subkind": "abstraction"}
 
 
@@ -178,9 +179,8 @@ def _defer_subject(lowering: "Lowering", element: Element, type_: Node) -> None:
 def lower_satisfaction(lowering: "Lowering", node: Node, owner: Element | None) -> None:
     """Lower a satisfaction by the feature that it names, else by the element that owns it."""
     package = _find_package(lowering, owner)
-    satisfaction = lowering.add_element(
-        node, Kind.DEPENDENCY, node.name or "", package, **_SATISFACTION
-    )
+    facts = _NEGATED_SATISFACTION if node.attributes.get("isNegated") else _SATISFACTION
+    satisfaction = lowering.add_element(node, Kind.DEPENDENCY, node.name or "", package, **facts)
     annotations.lower_only_annotations(lowering, node, satisfaction, "a satisfaction")
     requirement = (
         nodes.find_reference(node, "ReferenceSubsetting")
@@ -188,19 +188,27 @@ def lower_satisfaction(lowering: "Lowering", node: Node, owner: Element | None) 
         or nodes.find_reference(node, "FeatureTyping")
     )
     lowering.defer_until_elements(
-        lambda: lowering.connect_node(
-            Edge.SUPPLIER, satisfaction, _find_satisfied_requirement(requirement)
-        )
+        lambda: lowering.connect_node(Edge.SUPPLIER, satisfaction, _find_requirement(requirement))
     )
     subject = next(nodes.iter_by_membership(node, "SubjectMembership"), None)
     value = None if subject is None else nodes.value_of(subject)
-    lowering.defer_until_elements(lambda: _connect_satisfying(lowering, satisfaction, owner, value))
-    if node.attributes.get("isNegated"):
-        lowering.mark_approximated(node, "'not satisfy'", "'satisfy'")
+    path = None if value is None else nodes.path_of_expression(value)
+    satisfying = path[-1] if path else None
+    if satisfying is not None and satisfying.membership == "SubjectMembership":
+        # Subjects are edges of requirements and no elements that a relation could lead to.
+        substitute = "one by the requirement with this subject"
+        lowering.mark_approximated(node, "a satisfaction by a subject", substitute)
+        satisfying = satisfying.owner
+    if value is None and owner is not None:
+        lowering.graph.connect(Edge.CLIENT, satisfaction, owner)
+    else:
+        lowering.defer_until_elements(
+            lambda: lowering.connect_node(Edge.CLIENT, satisfaction, satisfying)
+        )
 
 
-def _find_satisfied_requirement(reference: Reference | None) -> Node | None:
-    """Return the requirement that a satisfaction names.
+def _find_requirement(reference: Reference | None) -> Node | None:
+    """Return the requirement that a satisfaction or verification names.
 
     A satisfaction has the name of its requirement, so that the name may lead to a satisfaction in
     the same namespace.
@@ -210,16 +218,6 @@ def _find_satisfied_requirement(reference: Reference | None) -> Node | None:
         visited.add(id(target))
         target = nodes.find_target(target, "ReferenceSubsetting") or target
     return target
-
-
-def _connect_satisfying(
-    lowering: "Lowering", satisfaction: Element, owner: Element | None, value: Node | None
-) -> None:
-    if value is not None:
-        path = nodes.path_of_expression(value)
-        lowering.connect_node(Edge.CLIENT, satisfaction, path[-1] if path else None)
-    elif owner is not None:
-        lowering.graph.connect(Edge.CLIENT, satisfaction, owner)
 
 
 def _find_package(lowering: "Lowering", owner: Element | None) -> Element | None:
@@ -252,5 +250,7 @@ def _lower_verification(lowering: "Lowering", node: Node, owner: Element | None)
     if owner is not None:
         lowering.graph.connect(Edge.CLIENT, verification, owner)
     requirement = nodes.find_reference(node, "ReferenceSubsetting", "FeatureTyping", "Subsetting")
-    lowering.connect_reference(Edge.SUPPLIER, verification, requirement)
+    lowering.defer_until_elements(
+        lambda: lowering.connect_node(Edge.SUPPLIER, verification, _find_requirement(requirement))
+    )
     annotations.lower_only_annotations(lowering, node, verification, "a verification")

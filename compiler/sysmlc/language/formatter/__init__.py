@@ -6,6 +6,7 @@ so both may be moved without changing the comment.
 """
 
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
 from sysmlc.language.formatter.statements import (
     Block,
@@ -20,6 +21,7 @@ from sysmlc.language.formatter.statements import (
     read_tokens,
 )
 from sysmlc.language.text.lalr import load_tables
+from sysmlc.language.tree import Document
 
 
 def format_text(text: str, language: str) -> str:
@@ -43,6 +45,20 @@ def format_text(text: str, language: str) -> str:
     if list(iter_meaning(read_tokens(formatted, types))) != list(iter_meaning(source_tokens)):
         raise ValueError("the layout would change the text")
     return formatted.replace("\n", line_end)
+
+
+def add_import_visibilities(document: Document) -> str:
+    """Return the text of the document with ``public`` before each import without visibility.
+
+    That is what such an import meant in older versions of the language, and how it is read.
+    """
+    starts = [
+        node.start
+        for node in document.root.walk()
+        if node.kind in ("MembershipImport", "NamespaceImport") and not node.visibility
+    ]
+    boundaries = [0, *starts, len(document.text)]
+    return "public ".join(document.text[start:end] for start, end in pairwise(boundaries))
 
 
 # -- printer -----------------------------------------------------------------------------------

@@ -71,8 +71,8 @@ class LookupContext(NamedTuple):
     - ``without``: this node is not found by its effective name, because the lookup computes it.
     - ``everything``: private members are visible, as for ``import all``.
     - ``reference``: the reference, if its first name is ``$``.
-    - ``past_subjects``: subjects are skipped. The element that satisfies a requirement is not the
-      requirement's subject, which may have the same name.
+    - ``past_subjects``: in ``scope`` itself subjects are skipped. The element that satisfies a
+      requirement is not the satisfaction's own subject, which may have the same name.
     - ``importing``: namespaces that the name is imported into. Their imports are searched last,
       because they may depend on the result.
     - ``is_metadata``: the lookup is for the type of metadata. Implied generals of the annotated

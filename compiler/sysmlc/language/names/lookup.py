@@ -74,7 +74,7 @@ class ImportLookup(MemberLookup):
     def _find_imported(self, scope: Node, imports: list[Node], name: str, inside: bool) -> Hits:
         hits: list[Node] = []
         for node in imports:
-            if inside or node.visibility == "public":
+            if inside or node.visibility in ("", "public"):
                 hits += [h for h in self._find_in_import(node, name) if h not in hits]
         if not hits:
             return NO_HITS
@@ -253,7 +253,7 @@ class Lookup(ImportLookup):
             return self.find_among(self._find_roots(names[1]), names, 1, kinds)
         while scope is not None:
             for hits in self._choose_stages(context, scope, first):
-                if context.past_subjects:
+                if context.past_subjects and scope is context.scope:
                     hits = tuple(hit for hit in hits if hit.membership != "SubjectMembership")
                 if hits:
                     member = self.find_among(hits, names, 0, kinds, context.everything)

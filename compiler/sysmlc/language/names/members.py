@@ -180,7 +180,7 @@ class MemberLookup(GeneralLookup):
         stated, implied = self._generals.get(general), self._implied_generals.get(general)
         if stated is None or implied is None or general in pending:
             return None
-        if any(imported.visibility == "public" for imported in self.imports(general)):
+        if any(imported.visibility in ("", "public") for imported in self.imports(general)):
             return None
         pending[general] = None
         collected = set(self.symbol_table(general))

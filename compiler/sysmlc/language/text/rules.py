@@ -54,10 +54,10 @@ PREFIX = rule(
 VISIBILITY = rule(
     "SM197",
     "v2-import-visibility",
-    Severity.ERROR,
-    "the import has no visibility",
-    help="write private import to use the names in this namespace only, or public import "
-    "to pass them on",
+    Severity.WARNING,
+    "the import has no visibility and is read as 'public import'",
+    help="write 'private import' to use the names in this namespace only, or let "
+    "'sysmlc format --fix' write 'public import'",
 )
 DEEP = rule(
     "SM198",

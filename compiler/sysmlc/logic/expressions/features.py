@@ -83,13 +83,15 @@ def make_feature(
     is_integer = bool(type_names & _INTEGER) or _has_untyped_default(element, type_, int)
     domain = _find_domain(graph, element, family, type_names, is_integer, constants, access)
     is_assumed = domain is None and is_integer
+    value = _evaluate_default(element, constants)
     if is_assumed:
-        domain = _assume_domain(element, type_names, assumed_range)
-    default = _find_default(graph, element, type_, domain)
+        domain = _assume_domain(value, type_names, assumed_range)
+    default = _find_default(graph, value, type_, domain)
     is_constant = element.attrs.get("readonly") is True and default is not None
-    text = element.attrs.get("default")
-    is_range = text is not None and ".." in str(text)
-    invalid_default = "" if text is None or default is not None or is_range else str(text)
+    is_range = ".." in str(value)
+    is_unknown = value is None or (isinstance(value, str) and _is_computed(graph, element))
+    is_unchecked = is_range or is_unknown
+    invalid_default = "" if default is not None or is_unchecked else str(element.attrs["default"])
     return Feature(element, variable, domain, default, is_constant, is_assumed, invalid_default)
 
 
@@ -122,7 +124,7 @@ def _has_untyped_default(element: Element, type_: Element | None, kind: type) ->
 
 
 def _assume_domain(
-    element: Element, type_names: set[str], assumed_range: tuple[int, int]
+    default: AttrValue, type_names: set[str], assumed_range: tuple[int, int]
 ) -> Domain:
     """Return the assumed range of a number.
 
@@ -130,7 +132,6 @@ def _assume_domain(
     """
     low, high = assumed_range
     low = max(low, 0) if type_names & _UNSIGNED else low
-    default = element.attrs.get("default")
     if isinstance(default, int) and not isinstance(default, bool):
         low, high = min(low, default), max(high, default)
     return IntegerDomain(low, high)
@@ -170,13 +171,41 @@ def read_constant(element: Element) -> int | None:
     return _parse_integer(element.attrs.get("default")) if element.attrs.get("readonly") else None
 
 
-def _find_default(
-    graph: Graph, element: Element, type_: Element | None, domain: Domain | None
-) -> Literal | None:
+def _evaluate_default(element: Element, constants: Mapping[str, int]) -> AttrValue:
+    """Return the default value of an element; the number if it is a constant expression."""
+    default = element.attrs.get("default")
+    expression = _parse_default(element)
+    number = None if expression is None else _evaluate(expression, constants)
+    return default if number is None else number
+
+
+def _parse_default(element: Element) -> Expression | None:
+    """Return the expression that computes the default value; None if there is none."""
     text = element.attrs.get("default")
-    if domain is None or text is None:
+    if not isinstance(text, str) or "default_language" not in element.attrs:
         return None
-    value = _parse_value(graph, str(text), type_, domain)
+    try:
+        return parse_expression(text)
+    except ExpressionError:
+        return None
+
+
+def _is_computed(graph: Graph, element: Element) -> bool:
+    """Whether an expression computes the default value, such as the name of another feature."""
+    expression = _parse_default(element)
+    if not isinstance(expression, Name):
+        return expression is not None and not isinstance(expression, LiteralExpression)
+    owner = graph.owner(element)
+    features = [] if owner is None else query.features(graph, owner)
+    return name_of(expression) in [feature.name for feature in features]
+
+
+def _find_default(
+    graph: Graph, default: AttrValue, type_: Element | None, domain: Domain | None
+) -> Literal | None:
+    if domain is None or default is None:
+        return None
+    value = _parse_value(graph, str(default), type_, domain)
     return value if value is not None and contains(domain, value) else None
 
 
