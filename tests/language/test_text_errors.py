@@ -231,6 +231,32 @@ def test_sm196_prefixes_have_an_order_and_a_meaning():
     assert list_diagnostics("const end feature a; abstract class B;", "kerml") == []
 
 
+@pytest.mark.parametrize(
+    ("text", "word", "keyword"),
+    [
+        ("prt def A { attribute x; } part a : A;", "prt", "part"),
+        ("prat a; part b = a;", "prat", "part"),
+        ("abstract prot p { in item x; }", "prot", "port"),
+        (
+            "requirment def R { subject s; require constraint { true } }",
+            "requirment",
+            "requirement",
+        ),
+        ("pakage P { part a; }", "pakage", "package"),
+    ],
+)
+def test_a_misspelt_keyword_is_one_error_and_is_read_as_the_keyword(text, word, keyword):
+    column = text.index(word) + 1
+    assert list_diagnostics(text) == [f"1:{column} SM190 unexpected '{word}'; expected '{keyword}'"]
+    assert list_diagnostics(text.replace(word, keyword)) == []
+
+
+def test_a_word_that_resembles_no_keyword_is_no_misspelt_one():
+    assert list_diagnostics("part def A { foo bar; }") == [
+        "1:18 SM190 unexpected 'bar'; expected ';', '{', '}', '::' or something else"
+    ]
+
+
 def test_sm197_every_import_needs_a_visibility():
     assert list_diagnostics("import A::*; public import B; package P { import C::**; }") == [
         "1:1 SM197 the import has no visibility and is read as 'public import'",

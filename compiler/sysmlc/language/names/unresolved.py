@@ -78,7 +78,7 @@ def _make_advice(
         candidates = [name for name in model.packages() if name not in scope_names]
         suggestion = did_you_mean(names[0], candidates) if candidates else ""
         return suggestion if suggestion.startswith("did you mean") else _NOT_GIVEN
-    known_names = _list_known_names(lookup, names, context, container)
+    known_names = _list_known_names(model, use, names, context, container)
     roots = model.packages() if len(names) > 1 else []
     return did_you_mean(names[-1], known_names or roots) if known_names or roots else _UNNAMED
 
@@ -177,21 +177,66 @@ def _search_regardless(
 
 
 def _list_known_names(
-    lookup: Lookup, names: tuple[str, ...], context: contexts.LookupContext, container: Node | None
+    model: Model,
+    use: tuple[Node, Relation],
+    names: tuple[str, ...],
+    context: contexts.LookupContext,
+    container: Node | None,
 ) -> list[str]:
-    """Return the names that are valid instead.
+    """Return the names of elements of the kind that is needed, else of all elements.
 
-    After a dot these are members of the element before it, else names in the scopes around.
+    After a dot these are members of the element before it, else names in the scopes around and in
+    the packages that they import. In the brackets of a quantity the units of SI are valid, too.
     """
+    node, relation = use
+    lookup = model.lookup
     if container is None and len(names) > 1:
         container = lookup.search(context, names[:-1], None)
     if container is None and context.inherited and context.scope is not None:
         scopes = lookup.known_ancestors(context.scope)
     elif container is not None:
         scopes = [container, *lookup.known_ancestors(container)]
+        scopes += _list_imported_namespaces(lookup, [container])
     else:
-        scopes = _list_scopes(context)
-    return [name for scope in scopes for name in lookup.symbol_table(scope) if name != names[-1]]
+        outward = _list_scopes(context)
+        scopes = [*outward, *_list_imported_namespaces(lookup, outward)]
+        if _is_unit(node):
+            scopes += filter(None, map(model.find, _UNITS_OF_LIBRARY))
+    is_last = names == relation.reference.chain[-1]
+    kinds = contexts.TARGET_KINDS.get(relation.kind) if is_last else None
+    hits_by_name = [
+        (name, hits)
+        for scope in scopes
+        for name, hits in lookup.symbol_table(scope).items()
+        if name != names[-1] and node not in hits
+    ]
+    suitable = [
+        name
+        for name, hits in hits_by_name
+        if kinds is not None and any(_is_of_kind(lookup, hit, kinds) for hit in hits)
+    ]
+    return suitable or [name for name, _ in hits_by_name]
+
+
+def _is_of_kind(lookup: Lookup, hit: Node, kinds: frozenset[str]) -> bool:
+    element = lookup.resolve_alias(hit)
+    return element is not None and element.kind in kinds
+
+
+def _list_imported_namespaces(lookup: Lookup, scopes: list[Node]) -> list[Node]:
+    """Return the namespaces that the scopes import, and those that these import publicly."""
+    namespaces: dict[Node, None] = {}
+    worklist = [import_ for scope in scopes for import_ in lookup.imports(scope)]
+    while worklist:
+        import_ = worklist.pop(0)
+        for relation in import_.relations:
+            target = lookup.target(import_, relation)
+            if relation.kind == "importedNamespace" and target and target not in namespaces:
+                namespaces[target] = None
+                worklist += [
+                    nested for nested in lookup.imports(target) if nested.visibility != "private"
+                ]
+    return list(namespaces)
 
 
 def _list_scopes(context: contexts.LookupContext) -> list[Node]:

@@ -103,6 +103,12 @@ class Errors:
         expected = f"'{substitute}'"
         self.report(rules.SYNTAX, start, found=f"'{word}'", expected=expected, advice=advice)
 
+    def report_misspelt_keyword(self, index: int, keyword: str) -> None:
+        """Report a word that is parsed as the keyword that it resembles."""
+        start, word = self._tokens.starts[index], self._tokens[index]
+        advice = f"'{word}' is not a keyword: did you mean '{keyword}'?"
+        self.report(rules.SYNTAX, start, found=f"'{word}'", expected=f"'{keyword}'", advice=advice)
+
     def report_missing(self, index: int, words: str) -> None:
         """Report a missing token before ``index``, where the token before it ends."""
         before = self._find_written_before(index)

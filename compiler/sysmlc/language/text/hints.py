@@ -1,6 +1,7 @@
 """Advice about a token that does not fit: common slips, words of drafts and of other languages."""
 
 from collections.abc import Callable, Collection
+from difflib import SequenceMatcher
 
 from sysmlc.language.text.lexer import Tokens
 from sysmlc.support.suggestions import did_you_mean
@@ -51,6 +52,9 @@ _DIRECTIONS = frozenset({"in", "out", "inout"})
 _SEPARATORS = ("", ";", "{", "}")
 _MIN_KEYWORD_LENGTH = 5
 """Length of the shortest word that is taken for a misspelt keyword; shorter ones are names."""
+_MIN_MISSPELT_LENGTH = 3
+_MIN_SIMILARITY = 0.7
+"""Ratio of ``difflib`` from which the first word of a member counts as a misspelt keyword."""
 _DOUBLED_OPERATORS = {"&": "'and'", "|": "'or'"}
 _ARROWS = ("-", "->", "=>", "~", ",")
 
@@ -103,8 +107,21 @@ def _advise_first_word(tokens: Tokens, index: int, beginnings: Collection[str]) 
         return ""
     if word in _FIRST_WORDS:
         return f"'{word}' is not a keyword: {_FIRST_WORDS[word]}"
-    suggestion = did_you_mean(word, [keyword for keyword in beginnings if keyword.isalpha()])
-    return f"'{word}' is not a keyword: {suggestion}" if suggestion.startswith("did") else ""
+    similar = list_similar_keywords(word, beginnings)
+    return f"'{word}' is not a keyword: did you mean '{similar[0]}'?" if similar else ""
+
+
+def list_similar_keywords(word: str, keywords: Collection[str]) -> list[str]:
+    """Return the keywords that *word* may misspell, most similar first."""
+    if len(word) < _MIN_MISSPELT_LENGTH or word in _FIRST_WORDS:
+        return []
+    candidates = sorted(keyword for keyword in keywords if keyword.isalpha())
+    ratios = {
+        keyword: SequenceMatcher(None, word.casefold(), keyword).ratio() for keyword in candidates
+    }
+    similar = [keyword for keyword in candidates if ratios[keyword] >= _MIN_SIMILARITY]
+    # Exchanged letters are the commonest slip: 'prat' is 'part' and not 'port'.
+    return sorted(similar, key=lambda key: (sorted(key) != sorted(word), -ratios[key]))
 
 
 def _advise_direction(tokens: Tokens, before: int, index: int, beginnings: Collection[str]) -> str:

@@ -65,7 +65,8 @@ class Tokens(Struct, frozen=True, eq=False):
     The last token is the end of the text. ``faults`` has the parts of the text that are no tokens.
     Builders collect nodes and faults in the other lists: ``ref_usages`` has usages with the keyword
     `ref`, which is redundant or not depending on their owners; ``restricted_nodes`` has members
-    that only some bodies may have; ``build_faults`` has other faults.
+    that only some bodies may have; ``build_faults`` has other faults. ``corrections`` has the
+    keywords that stand for misspelt words, by the offsets of the words.
     """
 
     text: str
@@ -76,9 +77,13 @@ class Tokens(Struct, frozen=True, eq=False):
     ref_usages: list[Node]
     restricted_nodes: list[Node]
     build_faults: list[BuildFault]
+    corrections: dict[int, str]
 
     def __getitem__(self, index: int) -> str:
-        return self.text[self.starts[index] : self.ends[index]]
+        start = self.starts[index]
+        if start in self.corrections:
+            return self.corrections[start]
+        return self.text[start : self.ends[index]]
 
     def insert(self, index: int, kind: int) -> None:
         """Insert an empty token that the text lacks."""
@@ -112,7 +117,7 @@ class TokenTypes(Struct, frozen=True):
 
 def tokenize(text: str, types: TokenTypes) -> Tokens:
     """Return all tokens of ``text``; never fails. A text that is not UTF-8 has no tokens."""
-    tokens = Tokens(text, bytearray(), [], [], [], [], [], [])
+    tokens = Tokens(text, bytearray(), [], [], [], [], [], [], {})
     position = 0
     # Decoded as UTF-8, such a file would give thousands of faults instead of one.
     if "\0" in text[:_PROBE_LENGTH]:

@@ -6,6 +6,7 @@ panic mode drops the stack down to where the rest of the member can be parsed.
 
 from collections.abc import Iterator
 
+from sysmlc.language.text import hints
 from sysmlc.language.text.errors import Errors
 from sysmlc.language.text.lalr import Rules, Stack, Tables
 from sysmlc.language.text.lexer import Tokens
@@ -46,6 +47,9 @@ class Recovery:
         # An error at the very next token follows from the mend, not from the text.
         is_quiet = index <= self._last_error + 1
         self._last_error = index
+        next_index = self._correct_keyword(stack, index, is_quiet)
+        if next_index >= 0:
+            return next_index
         for mend in _MENDS:
             next_index = mend(self, states, index, is_quiet)
             if next_index >= 0:
@@ -60,6 +64,34 @@ class Recovery:
         return [names[token_type] for token_type in names if self._accepts(states, token_type)]
 
     # -- mends that lose nothing -----------------------------------------------------------------
+
+    def _correct_keyword(self, stack: Stack, index: int, is_quiet: bool) -> int:
+        """Take the name before ``index`` for the misspelt keyword of the member, ``prt def A``."""
+        tokens, types = self._tokens, self._tables.types
+        word_index = index - 1
+        if is_quiet or word_index < 0 or tokens.types[word_index] != types.name:
+            return -1
+        start = self._find_member_start(word_index)
+        if types.name in tokens.types[start:word_index]:
+            return -1
+        body = self._find_body(stack[2::3])
+        states = stack[2 : 3 * body + 3 : 3]
+        for keyword in hints.list_similar_keywords(tokens[word_index], self._errors.beginnings):
+            prefixes, following = tokens.types[start:word_index], tokens.types[index : index + 1]
+            if self._accepts_all(states, (*prefixes, self._words[keyword], *following)):
+                self._errors.report_misspelt_keyword(word_index, keyword)
+                tokens.types[word_index] = self._words[keyword]
+                tokens.corrections[tokens.starts[word_index]] = keyword
+                del stack[3 * body + 3 :]
+                return start
+        return -1
+
+    def _find_member_start(self, index: int) -> int:
+        """Return the first token of the member that contains token ``index``."""
+        separators = {self._words[symbol] for symbol in ";{}"} | {self._tables.types.body}
+        while index > 0 and self._tokens.types[index - 1] not in separators:
+            index -= 1
+        return index
 
     def _drop_comment(self, _states: list[int], index: int, is_quiet: bool) -> int:
         if self._tokens.types[index] != self._tables.types.body:
