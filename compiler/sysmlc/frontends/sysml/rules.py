@@ -33,14 +33,16 @@ NO_LIBRARY = rule(
 )
 
 _CHECKED_BY_LANGUAGE = """
-    SM200 SM201 SM202 SM203 SM204 SM211 SM212 SM213 SM214 SM301 SM314 SM318 SM401 SM404 SM469
+    SM200 SM201 SM202 SM203 SM204 SM211 SM212 SM213 SM214 SM301 SM312 SM314 SM318 SM401 SM404 SM460
+    SM469
 """
 """Rules for SysML v1 that do not apply to SysML v2 text.
 
 The checks of the language report faults of names, specialisation, types and relations by rules of
 their own. Requirements need no short name, ports no type and flows no payload. An action without
 steps is complete. A usage has the parameters that it does not repeat; SM248 and SM249 report
-surplus arguments and parameters. A redefinition has all of its types.
+surplus arguments and parameters. A redefinition has all of its types. A flow need not state its
+ends, and SM482 reports the ends of successions that are not part of the graph.
 """
 _WEAKER_CONTRACT = "SM412 SM413 SM414 SM415 SM421"
 """Rules for constructs that are valid SysML v2 but lose part of the contract.

@@ -187,7 +187,8 @@ def _connect_ends(lowering: "Lowering", flow: Element, ends: tuple[End, End], bo
             is_target = edge is Edge.FLOW_TARGET
             node = _find_flow_node(lowering, body.owner, end, is_target=is_target)
         if node is None:
-            lowering.connect_node(edge, flow, None)
+            target = end.target if isinstance(end, Reference) else end
+            lowering.connect_node(edge, flow, target)
         else:
             lowering.graph.connect(edge, flow, node)
 
