@@ -106,8 +106,8 @@ def test_the_configured_severity_decides_the_exit_code(faulty):
 
 def test_a_suppressed_diagnostic_is_omitted_and_an_unused_suppression_is_reported(faulty):
     suppressions = (
-        Suppression("test-unnamed-port", "Plant::Gate::*", "old gate"),
-        Suppression("SM941", "Plant::Gone::*", "no longer there"),
+        Suppression("test-unnamed-port", "old gate", "Plant::Gate::*"),
+        Suppression("SM941", "no longer there", "Plant::Gone::*"),
     )
     compilation = compile_files(faulty, config=Config(suppress=suppressions))
     assert list_codes(compilation) == ["SM902", "SM941"]

@@ -7,6 +7,7 @@ from typing import TypeVar
 import click
 
 from sysmlc.cli.limits import check_amount, list_missing_limits
+from sysmlc.diagnostics import Severity
 from sysmlc.diagnostics.renderers import FORMATS
 
 _F = TypeVar("_F", bound=Callable[..., object])
@@ -145,6 +146,26 @@ def reporting(function: _F) -> _F:
                 help="Form of the findings; json, sarif and github go to standard output.",
             ),
             click.option("--strict", is_flag=True, help="Warnings make the exit code 1 too."),
+            click.option(
+                "--min-severity",
+                type=click.Choice([severity.value for severity in Severity]),
+                help="Report nothing below this severity.  [default: each error and warning, and"
+                " one line for each rule with infos]",
+            ),
+            click.option(
+                "--select",
+                multiple=True,
+                callback=split_names,
+                metavar="RULE,...",
+                help="Report only these rules (code, start of a code, or name), and errors.",
+            ),
+            click.option(
+                "--ignore",
+                multiple=True,
+                callback=split_names,
+                metavar="RULE,...",
+                help="Do not report these rules; errors are always reported.",
+            ),
             click.option(
                 "--max-diagnostics",
                 "max_diagnostics",

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from sysmlc.cli.session import Settings
     from sysmlc.cli.units import Unit
     from sysmlc.config import Config
+    from sysmlc.diagnostics import Diagnostic
     from sysmlc.diagnostics.renderers import Finding
     from sysmlc.driver import Compilation, Outcome, Publication
 
@@ -38,7 +39,7 @@ def report_outcomes(
     ]
     diagnostics = [d for publication in publications for d in publication.diagnostics]
     findings += localize(Path.cwd(), make_report(diagnostics, ()).findings)
-    print_findings(dict.fromkeys(findings), settings)
+    print_findings(dict.fromkeys(findings), settings, folds_infos=True)
 
 
 def list_findings(compilation: "Compilation", only_errors: bool = False) -> "list[Finding]":
@@ -70,13 +71,25 @@ def localize_name(root: Path, name: str) -> str:
     return escape_undecodable(path.relative_to(here).as_posix())
 
 
-def print_findings(findings: "Iterable[Finding]", settings: "Settings") -> None:
-    """Print findings in the form that the user selected."""
+def print_findings(
+    findings: "Iterable[Finding]", settings: "Settings", *, folds_infos: bool = False
+) -> None:
+    """Print the reported findings in the form that the user selected.
+
+    With *folds_infos*, the text has one line for each rule with infos, unless options ask for more.
+    """
+    from sysmlc.diagnostics import Severity
     from sysmlc.diagnostics.renderers import XPATH_FORMATS, render, shorten
 
     on_stdout = settings.form in _FORMS_ON_STDOUT
     stream = sys.stdout if on_stdout else sys.stderr
-    report = shorten(findings, _find_limit(settings))
+    reported = [finding for finding in findings if is_reported(finding.diagnostic, settings)]
+    is_short = folds_infos and settings.form == "text" and not settings.verbose
+    infos = [finding for finding in reported if finding.diagnostic.severity is Severity.INFO]
+    folded = infos if is_short and not settings.min_severity else []
+    shown = [f for f in reported if not (folded and f.diagnostic.severity is Severity.INFO)]
+    report = shorten(shown, _find_limit(settings))
+    report = replace(report, folded=tuple(folded))
     if settings.form not in XPATH_FORMATS and not settings.verbose:
         without_xpath = tuple(
             replace(finding, xpath="") if finding.xpath else finding for finding in report.findings
@@ -89,6 +102,25 @@ def print_findings(findings: "Iterable[Finding]", settings: "Settings") -> None:
         click.echo(
             f"{len(report.hidden)} more are not shown; --max-diagnostics 0 shows all", err=True
         )
+
+
+def is_reported(diagnostic: "Diagnostic", settings: "Settings") -> bool:
+    """Whether the options select a diagnostic; errors are always reported."""
+    from sysmlc.diagnostics import Severity
+
+    severities = [severity.value for severity in Severity]
+    limit = settings.min_severity or severities[-1]
+    if diagnostic.is_error:
+        return True
+    if severities.index(diagnostic.severity.value) > severities.index(limit):
+        return False
+    is_selected = not settings.select or _matches_rule(diagnostic, settings.select)
+    return is_selected and not _matches_rule(diagnostic, settings.ignore)
+
+
+def _matches_rule(diagnostic: "Diagnostic", names: Iterable[str]) -> bool:
+    rule = diagnostic.rule
+    return any(name == rule.name or rule.code.startswith(name) for name in names)
 
 
 def _find_limit(settings: "Settings") -> int:
@@ -104,8 +136,14 @@ def allows_sentences(settings: "Settings") -> bool:
 
 
 def exit_code_of(outcome: "Outcome | Compilation", config: "Config", settings: "Settings") -> int:
-    """Return the exit code of an outcome; ``--strict`` or the configuration may make it strict."""
-    return outcome.exit_code(settings.strict or config.strict)
+    """Return the exit code of an outcome.
+
+    ``--strict`` or the configuration may make it strict; then the reported warnings count.
+    """
+    from sysmlc.driver.faults import compute_exit_code
+
+    reported = (d for d in outcome.diagnostics if is_reported(d, settings))
+    return compute_exit_code(reported, settings.strict or config.strict)
 
 
 def exit_code_of_all(

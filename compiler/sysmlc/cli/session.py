@@ -37,6 +37,9 @@ class Settings(Struct, frozen=True):
     verbose: bool = False
     form: str = "text"
     max_diagnostics: int | None = None
+    min_severity: str | None = None
+    select: tuple[str, ...] = ()
+    ignore: tuple[str, ...] = ()
     strict: bool = False
     emit: tuple[str, ...] = ()
     templates: Path | None = None
@@ -79,8 +82,8 @@ def load_config(models: Sequence[Path], settings: Settings) -> "Config":
     An isolated command reads no configuration file.
     """
     from sysmlc import config
-    from sysmlc.support.suggestions import did_you_mean
 
+    _check_rule_names([*settings.select, *settings.ignore], "")
     if settings.isolated:
         if settings.config is not None:
             raise click.UsageError("--isolated and --config exclude each other")
@@ -90,15 +93,24 @@ def load_config(models: Sequence[Path], settings: Settings) -> "Config":
     except config.ConfigError as problem:
         fail(str(problem))
     chosen = [*loaded.rules, *(entry.rule for entry in loaded.suppress)]
-    # The catalogue imports every module that defines rules, so it is loaded only if needed.
-    if chosen:
-        rules = load_rules().values()
-        rule_names = {rule.code for rule in rules} | {rule.name for rule in rules}
-        for name in chosen:
-            if name not in rule_names:
-                fail(f"{loaded.file}: unknown rule '{name}'; {did_you_mean(name, rule_names)}")
+    _check_rule_names(chosen, f"{loaded.file}: ")
     LIMITS.lower(loaded.time_limit, loaded.memory_limit)
     return loaded
+
+
+def _check_rule_names(names: Sequence[str], where: str) -> None:
+    """Exit with code 2 if a name is neither that of a rule nor its code, or, without *where*, the
+    start of a code.
+    """
+    from sysmlc.support.suggestions import did_you_mean
+
+    # The catalogue imports every module that defines rules, so it is loaded only if needed.
+    rules = load_rules().values() if names else ()
+    rule_names = {rule.code for rule in rules} | {rule.name for rule in rules}
+    for name in names:
+        is_start = not where and any(rule.code.startswith(name) for rule in rules)
+        if name not in rule_names and not is_start:
+            fail(f"{where}unknown rule '{name}'; {did_you_mean(name, rule_names)}")
 
 
 def _find_start(models: Sequence[Path]) -> Path:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
+from pathlib import PurePosixPath
 
 from msgspec import Struct
 from msgspec.structs import replace
@@ -108,17 +109,22 @@ class Suppression(Struct, frozen=True):
     """An entry ``[[suppress]]`` of the configuration: diagnostics that the project accepts.
 
     The entry covers diagnostics of a rule (code or name) about elements whose qualified name
-    matches the pattern ``element``.
+    matches the pattern ``element``, in files whose path ends in a match of the pattern ``file``.
     """
 
     rule: str
-    element: str
     reason: str
+    element: str = "*"
+    file: str = "*"
 
     def covers(self, diagnostic: Diagnostic) -> bool:
         """Whether the project accepts the diagnostic."""
-        names = (diagnostic.rule.code, diagnostic.rule.name)
-        return self.rule in names and fnmatchcase(diagnostic.subject.name, self.element)
+        if self.rule not in (diagnostic.rule.code, diagnostic.rule.name):
+            return False
+        place = diagnostic.subject.place
+        file = "" if place is None else place.file
+        is_in_file = self.file == "*" or PurePosixPath(file).match(self.file)
+        return is_in_file and fnmatchcase(diagnostic.subject.name, self.element)
 
 
 def suppress(

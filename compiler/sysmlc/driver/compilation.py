@@ -14,6 +14,7 @@ from sysmlc.diagnostics import Coverage, Diagnostic, Place, Sink, Subject
 from sysmlc.diagnostics.locations import complete_places
 from sysmlc.diagnostics.sink import suppress
 from sysmlc.driver import faults, registry
+from sysmlc.driver.ignore_comments import drop_ignored
 from sysmlc.driver.inputs import find_unit_root
 from sysmlc.driver.reading import Reading, load_companions, read_unit, store_refinements
 from sysmlc.driver.validation import validate
@@ -327,7 +328,8 @@ class _CompilationRun:
         about_model = (
             diagnostic for diagnostic in remaining if not self._is_about_library(diagnostic)
         )
-        return tuple(sorted([*about_model, *configuration], key=_sort_key))
+        accepted = drop_ignored(about_model, self._graph, Sink(self._request.config.rules))
+        return tuple(sorted([*accepted, *configuration], key=_sort_key))
 
     def _is_about_library(self, diagnostic: Diagnostic) -> bool:
         """Whether a diagnostic is about a library, which its users cannot change."""

@@ -105,9 +105,14 @@ class Outcome(Struct, frozen=True):
     is_complete: bool = True
     """Whether every input was read. If not, files of earlier runs are not removed."""
 
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """The diagnostics of the findings."""
+        return tuple(finding.diagnostic for finding in self.findings)
+
     def exit_code(self, strict: bool = False) -> int:
         """Return 0 (clean), 1 (errors, with *strict* also warnings) or 2 (no result)."""
-        return faults.compute_exit_code((finding.diagnostic for finding in self.findings), strict)
+        return faults.compute_exit_code(self.diagnostics, strict)
 
 
 def summarize(compilation: Compilation, has_files: bool = True) -> Outcome:

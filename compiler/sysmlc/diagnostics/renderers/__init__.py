@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from sysmlc.diagnostics.renderers.json_documents import render_json, render_sarif
-from sysmlc.diagnostics.renderers.lines import render_concise, render_github
+from sysmlc.diagnostics.renderers.lines import render_concise, render_github, render_grouped
 from sysmlc.diagnostics.renderers.report import Finding, Report, make_report, shorten
 from sysmlc.diagnostics.renderers.text import render_text
 
@@ -11,6 +11,7 @@ __all__ = ["FORMATS", "XPATH_FORMATS", "Finding", "Report", "make_report", "rend
 
 _RENDERERS: dict[str, Callable[[Report], str]] = {
     "concise": render_concise,
+    "grouped": render_grouped,
     "json": render_json,
     "sarif": render_sarif,
     "github": render_github,

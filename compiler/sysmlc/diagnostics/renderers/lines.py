@@ -1,4 +1,9 @@
-"""Findings in one line each: ``concise`` for editors and grep, ``github`` for GitHub Actions."""
+"""Findings in one line each.
+
+``concise`` is for editors and grep, ``grouped`` for people, and ``github`` for GitHub Actions.
+"""
+
+from itertools import groupby
 
 from sysmlc.diagnostics.renderers.report import Finding, Report
 from sysmlc.diagnostics.renderers.text import format_summary
@@ -10,7 +15,20 @@ _COMMANDS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO
 
 def render_concise(report: Report) -> str:
     """Return one line for each finding, as compilers print them, and the summary."""
-    return _join_lines([_format_line(finding) for finding in report.findings], report)
+    return _join_lines(
+        [_format_line(finding, finding.where) for finding in report.findings], report
+    )
+
+
+def render_grouped(report: Report) -> str:
+    """Return the findings below the names of their files, and the summary."""
+    lines: list[str] = []
+    by_file = sorted(report.findings, key=lambda finding: finding.file)
+    for file, findings in groupby(by_file, key=lambda finding: finding.file):
+        lines.append(escape_invisible(file) or "without a file")
+        lines += [f"  {_format_line(finding, finding.position)}" for finding in findings]
+        lines.append("")
+    return _join_lines(lines, report)
 
 
 def render_github(report: Report) -> str:
@@ -25,9 +43,9 @@ def _join_lines(lines: list[str], report: Report) -> str:
     return "\n".join([*lines, format_summary(report)]) + "\n" if lines else ""
 
 
-def _format_line(finding: Finding) -> str:
+def _format_line(finding: Finding, where: str) -> str:
     diagnostic = finding.diagnostic
-    location = f"{finding.where}: " if finding.where else ""
+    location = f"{where}: " if where else ""
     rule = f"{diagnostic.rule.code} {diagnostic.rule.name}"
     element = f" ({diagnostic.subject.name})" if diagnostic.subject.name else ""
     return escape_invisible(

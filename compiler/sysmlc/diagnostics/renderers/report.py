@@ -30,6 +30,11 @@ class Finding(Struct, frozen=True):
         """``file:line:column`` as far as they are known, empty without a file."""
         return format_position(self.file, self.line, self.column) if self.file else ""
 
+    @property
+    def position(self) -> str:
+        """``line:column`` as far as they are known."""
+        return self.where.removeprefix(self.file).removeprefix(":")
+
 
 class Report(Struct, frozen=True):
     """The findings of one compilation, in order."""
@@ -37,10 +42,12 @@ class Report(Struct, frozen=True):
     findings: tuple[Finding, ...]
     hidden: tuple[Finding, ...] = ()
     """Findings that are counted but not shown."""
+    folded: tuple[Finding, ...] = ()
+    """Findings of which the text for people has one line for each rule."""
 
     def summary(self) -> dict[str, int]:
         """Return the number of findings of each severity, and of files with findings."""
-        findings = (*self.findings, *self.hidden)
+        findings = (*self.findings, *self.hidden, *self.folded)
         counts = Counter(finding.diagnostic.severity for finding in findings)
         files = {finding.file for finding in findings if finding.file}
         numbers = {f"{severity.value}s": counts[severity] for severity in Severity}

@@ -1,7 +1,7 @@
 """Findings as text for people: headline, excerpt with a caret, notes, help, and a summary."""
 
 import unicodedata
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 from sysmlc.diagnostics.renderers.report import Finding, Report
 from sysmlc.diagnostics.rule import Severity
@@ -21,11 +21,17 @@ _Paint = Callable[[str, str], str]
 def render_text(report: Report, *, color: bool = False) -> str:
     """Return one block for each finding, and the summary; nothing if there is no finding.
 
-    The XPath of a finding is shown if it has one; callers drop XPaths for short output.
+    Folded findings share one line for each rule. The XPath of a finding is shown if it has one;
+    callers drop XPaths for short output.
     """
     paint = paint_text if color else _paint_nothing
     blocks = ["\n".join(_format_block(finding, paint)) for finding in report.findings]
-    return "\n\n".join([*blocks, format_summary(report)]) + "\n" if blocks else ""
+    if report.folded:
+        blocks.append("\n".join(_format_folded(report.folded, paint)))
+    summary = format_summary(report)
+    if report.folded:
+        summary += "; --min-severity info shows each info"
+    return "\n\n".join([*blocks, summary]) + "\n" if blocks else ""
 
 
 def format_summary(report: Report) -> str:
@@ -54,9 +60,9 @@ def _format_count(number: int, noun: str) -> str:
 def _format_block(finding: Finding, paint: _Paint) -> Iterator[str]:
     """Yield the lines of a finding."""
     diagnostic = finding.diagnostic
-    severity, color = diagnostic.severity, _COLORS[diagnostic.severity]
-    head = paint(f"{severity.value}[{diagnostic.rule.code} {diagnostic.rule.name}]", f"1;{color}")
-    yield f"{head}: {paint(escape_invisible(diagnostic.message), '1')}"
+    color = _COLORS[diagnostic.severity]
+    message = paint(escape_invisible(diagnostic.message), "1")
+    yield f"{_format_head(finding, paint)}: {message}"
     element = f"({diagnostic.subject.name})" if diagnostic.subject.name else ""
     if finding.where or element:
         location = " ".join(escape_invisible(text) for text in (finding.where, element) if text)
@@ -68,6 +74,28 @@ def _format_block(finding: Finding, paint: _Paint) -> Iterator[str]:
         yield f"  note: {escape_invisible(note)}"
     if diagnostic.help:
         yield f"  help: {escape_invisible(diagnostic.help)}"
+
+
+def _format_folded(findings: Iterable[Finding], paint: _Paint) -> Iterator[str]:
+    """Yield a line for each rule: its first finding, and the number of the others."""
+    by_rule: dict[str, list[Finding]] = {}
+    for finding in findings:
+        by_rule.setdefault(finding.diagnostic.rule.code, []).append(finding)
+    for _, (first, *others) in sorted(by_rule.items()):
+        message = escape_invisible(first.diagnostic.message)
+        if len(message) > _MAX_WIDTH:
+            message = f"{message[: _MAX_WIDTH - 3]}..."
+        where = [escape_invisible(first.where)] if first.where else []
+        where += [f"{len(others)} more"] if others else []
+        suffix = f" ({' and '.join(where)})" if where else ""
+        yield f"{_format_head(first, paint)}: {message}{suffix}"
+
+
+def _format_head(finding: Finding, paint: _Paint) -> str:
+    diagnostic = finding.diagnostic
+    severity = diagnostic.severity
+    head = f"{severity.value}[{diagnostic.rule.code} {diagnostic.rule.name}]"
+    return paint(head, f"1;{_COLORS[severity]}")
 
 
 def _format_excerpt(finding: Finding, paint: _Paint, color: str) -> Iterator[str]:
