@@ -70,7 +70,7 @@ def test_the_text_has_one_line_for_each_rule_with_infos(check):
 
 def test_min_severity_shows_each_info_or_hides_them(check):
     assert list_heads(check("--min-severity", "info")[1]).count("info[SM410") == 2
-    exit_code, lines = check("--min-severity", "warning")
+    _, lines = check("--min-severity", "warning")
     assert list_heads(lines) == ["warning[SM197"]
     assert lines[-1] == "1 warning in 1 file"
     assert check("--min-severity", "error") == (0, [])
