@@ -151,19 +151,19 @@ COMPUTED = ' default="{}" default_language=""'
 
 
 def test_a_constant_expression_as_default_value_is_evaluated():
-    features = context(default=COMPUTED.format("2 + 1")).features
+    features = read_features(default=COMPUTED.format("2 + 1"))
     assert (features["bay"].default, features["bay"].invalid_default) == (3, "")
-    assert domain("bay", default=COMPUTED.format("4 * 5")) == IntegerDomain(0, 20)
+    assert read_features(default=COMPUTED.format("4 * 5"))["bay"].domain == IntegerDomain(0, 20)
 
 
 def test_a_default_value_that_depends_on_features_is_not_checked():
     for text in ("bay2 + 1", "mode", "not mode"):
-        bay = context(default=COMPUTED.format(text)).features["bay"]
+        bay = read_features(default=COMPUTED.format(text))["bay"]
         assert (bay.default, bay.invalid_default) == (None, "")
 
 
 def test_a_name_that_is_no_feature_is_no_default_value():
-    bay = context(default=COMPUTED.format("missing")).features["bay"]
+    bay = read_features(default=COMPUTED.format("missing"))["bay"]
     assert bay.invalid_default == "missing"
 
 
