@@ -94,11 +94,24 @@ def test_only_a_stereotype_that_specialises_the_profile_gives_a_level():
             'Class robot "Robot" level="machine"', f'Class robot "Robot"\n    {application}'
         )
 
-    specialised = 'Application x stereotype="Arm" namespace="urn:own" lineage=["Arm", "Machine"]'
-    foreign = 'Application x stereotype="Machine" namespace="urn:own"'
-    edge = "\n      -> subject robot"
-    assert list_recipe_codes(with_machine(specialised + edge)) == []
-    assert "SM601" in list_recipe_codes(with_machine(foreign + edge))
+    own_profile = """
+Profile own "Own" uri="urn:own"
+  Stereotype arm "Arm"
+    -> specializes machine
+  Stereotype foreign "Machine"
+    -> specializes resource
+  Stereotype resource "Resource"
+Stereotype machine "Machine" external=true href="pathmap://SYSMLC_PROFILES/sysmlc.profile.uml#m"
+"""
+
+    def list_codes_with(stereotype):
+        application = f'Application x stereotype="{stereotype}" namespace="urn:own"'
+        return list_recipe_codes(
+            with_machine(f"{application}\n      -> subject robot") + own_profile
+        )
+
+    assert list_codes_with("Arm") == []
+    assert "SM601" in list_codes_with("Machine")
 
 
 def test_an_activity_with_the_name_of_a_task_does_not_implement_the_task():

@@ -12,10 +12,9 @@ from msgspec.structs import replace
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.passes.recipe.profile import (
     Tags,
-    applied_stereotypes,
     find_followers,
+    find_profile_stereotypes,
     find_stated_levels,
-    find_subjects,
 )
 from sysmlc.recipe.model import FlowGraph, Parameter, ValueType
 
@@ -67,8 +66,10 @@ class Context(Struct, frozen=True):
     """Ids of elements that may have a level; most elements of a model have none."""
     derived: Mapping[str, str] = field(default_factory=dict)
     """Levels by id that ``derived_levels`` concludes; stated levels override them."""
+    stereotypes: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """Stereotypes of the shipped profile, and those with such generals, by application."""
     stereotyped: frozenset[str] = frozenset()
-    """Ids of elements to which a stereotype is applied."""
+    """Ids of elements to which one of ``stereotypes`` is applied."""
     _segments: dict[str, str] = field(default_factory=dict)
     _names: dict[str, str] = field(default_factory=dict)
     _levels: dict[str, str] = field(default_factory=dict)
@@ -93,10 +94,19 @@ class Context(Struct, frozen=True):
     def build(cls, graph: Graph, levels: Mapping[str, str]) -> "Context":
         """Return the context of a graph. *levels* by ids or qualified names override the model."""
         bare = cls(graph, levels)
-        stated = find_stated_levels(graph, levels, bare._segment)
-        candidates = frozenset(find_followers(graph, stated))
+        stereotypes = find_profile_stereotypes(graph)
+        stated = find_stated_levels(graph, stereotypes, levels, bare._segment)
+        applications = (graph[application] for application in stereotypes)
         return replace(
-            bare, stated=stated, candidates=candidates, stereotyped=frozenset(find_subjects(graph))
+            bare,
+            stated=stated,
+            candidates=frozenset(find_followers(graph, stated)),
+            stereotypes=stereotypes,
+            stereotyped=frozenset(
+                subject.id
+                for application in applications
+                for subject in graph.targets(application, Edge.SUBJECT)
+            ),
         )
 
     # -- levels --------------------------------------------------------------------------------
@@ -196,13 +206,13 @@ class Context(Struct, frozen=True):
             (
                 application
                 for application in applications
-                if stereotype in applied_stereotypes(application)
+                if stereotype in self.stereotypes.get(application.id, ())
             ),
             None,
         )
 
     def may_have_stereotype(self, element: Element) -> bool:
-        """Whether any stereotype is applied to the element; most elements have none."""
+        """Whether a stereotype of the profile is applied to the element; most have none."""
         return element.id in self.stereotyped
 
     def tags(self, element: Element, stereotype: str) -> Tags:

@@ -6,6 +6,8 @@ from msgspec import Struct
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.passes.classify import vocabulary
+from sysmlc.passes.classify.lineage import Profiles
+from sysmlc.passes.classify.vocabulary import Family
 from sysmlc.recipe.model import Range
 
 NAMESPACE = "urn:sysmlc:profile:1"
@@ -23,15 +25,38 @@ _LEVEL_EDGES = (Edge.SPECIALIZES, Edge.TYPED_BY, Edge.REDEFINES, Edge.CALLS, Edg
 """Edges whose source takes over the level of their target."""
 
 
+def find_profile_stereotypes(graph: Graph) -> dict[str, tuple[str, ...]]:
+    """Return the stereotypes of the shipped profile by the id of the application.
+
+    An application means the applied stereotype or its generals. Stereotypes of other profiles mean
+    nothing here, even if they have the same name (BPMN has a «Task»). An application without a
+    namespace, which only graphs in text form have, means what it names.
+    """
+    profiles = Profiles(graph)
+    stereotypes: dict[str, tuple[str, ...]] = {}
+    for application in graph.of_kind(Kind.APPLICATION):
+        names = query.lineage(application)
+        if "namespace" in application.attrs:
+            ancestors = profiles.lineage(application)
+            names = tuple(item.name for item in ancestors if item.family is Family.SYSMLC)
+        if names:
+            stereotypes[application.id] = names
+    return stereotypes
+
+
 def find_stated_levels(
-    graph: Graph, levels: Mapping[str, str], segment: Callable[[Element], str]
+    graph: Graph,
+    stereotypes: Mapping[str, tuple[str, ...]],
+    levels: Mapping[str, str],
+    segment: Callable[[Element], str],
 ) -> dict[str, str]:
     """Return the levels by id that options, ``classify`` or stereotypes give to elements.
 
-    *levels* are those of the options, by ids or qualified names, and take precedence. *segment*
-    returns the part of a qualified name that stands for an element.
+    *stereotypes* is the result of ``find_profile_stereotypes``. *levels* are those of the options,
+    by ids or qualified names, and take precedence. *segment* returns the part of a qualified name
+    that stands for an element.
     """
-    stated = _levels_of_stereotypes(graph)
+    stated = _levels_of_stereotypes(graph, stereotypes)
     names = frozenset(LEVELS.values())
     for element in graph:
         if "level" in element.attrs and (level := str(element.attrs["level"])) in names:
@@ -45,34 +70,20 @@ def find_stated_levels(
     return stated
 
 
-def _levels_of_stereotypes(graph: Graph) -> dict[str, str]:
+def _levels_of_stereotypes(
+    graph: Graph, stereotypes: Mapping[str, tuple[str, ...]]
+) -> dict[str, str]:
     """Return the levels by id that applied stereotypes give to elements."""
     names: dict[str, set[str]] = {}
-    for application in graph.of_kind(Kind.APPLICATION):
-        for subject in graph.targets(application, Edge.SUBJECT):
-            names.setdefault(subject.id, set()).update(applied_stereotypes(application))
+    for application, applied in stereotypes.items():
+        for subject in graph.targets(graph[application], Edge.SUBJECT):
+            names.setdefault(subject.id, set()).update(applied)
     levels = LEVELS.items()
     stated = (
-        (id, next((level for name, level in levels if name in stereotypes), ""))
-        for id, stereotypes in names.items()
+        (id, next((level for name, level in levels if name in applied), ""))
+        for id, applied in names.items()
     )
     return {id: level for id, level in stated if level}
-
-
-def find_subjects(graph: Graph) -> Iterator[str]:
-    """Yield the ids of elements to which stereotypes are applied."""
-    for application in graph.of_kind(Kind.APPLICATION):
-        yield from (subject.id for subject in graph.targets(application, Edge.SUBJECT))
-
-
-def applied_stereotypes(application: Element) -> tuple[str, ...]:
-    """Return the names of the applied stereotype and its generals.
-
-    A stereotype of another profile that shares a name with ours counts only through its generals.
-    """
-    names = query.lineage(application)
-    is_ours = application.attrs.get("namespace") in (NAMESPACE, None)
-    return names if is_ours or len(names) > 1 else ()
 
 
 def _find_named(
