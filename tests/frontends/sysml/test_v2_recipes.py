@@ -191,3 +191,30 @@ def test_the_first_value_of_an_output_is_no_result():
     graph = model.function_graphs[0]
     assert "assign" not in {node.kind for node in graph.nodes}
     assert {output.name: output.value for output in graph.outputs} == {"at": None, "list": ()}
+
+
+# -- levels that are missing -------------------------------------------------------------------
+
+_WITHOUT_LEVELS = """
+package P {
+    action def Task;
+    action def MachineService;
+    action def Pick :> MachineService;
+    action def Assemble :> Task { action pick : Pick; }
+    action def Build { action assemble : Assemble; }
+}"""
+
+
+def test_definitions_named_like_levels_are_reported_with_the_lines_to_add():
+    (diagnostic,) = Reading(_WITHOUT_LEVELS, passes=PASSES).sink
+    assert diagnostic.rule.code == "SM640"
+    assert diagnostic.notes == (
+        "[recipe.levels]",
+        'task = "P::Task"',
+        'machine-service = "P::MachineService"',
+    )
+
+
+def test_a_model_with_tasks_but_without_services_needs_no_levels():
+    without_services = _WITHOUT_LEVELS.replace("MachineService", "Skill")
+    assert list(Reading(without_services, passes=PASSES).sink) == []

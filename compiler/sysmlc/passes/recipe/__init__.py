@@ -8,7 +8,11 @@ from msgspec import Struct, field
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.passes.recipe.context import NODES, Context, is_inlined
-from sysmlc.passes.recipe.derived_levels import add_derived_levels, report_derived_levels
+from sysmlc.passes.recipe.derived_levels import (
+    add_derived_levels,
+    report_derived_levels,
+    report_missing_levels,
+)
 from sysmlc.passes.recipe.model import build_model
 from sysmlc.passes.recipe.reports import check_tags, report_decisions
 from sysmlc.recipe import validate
@@ -34,6 +38,8 @@ class Recipe(Struct, frozen=True):
         """Store the recipe models of the graph."""
         context = Context.build(graph, self.levels)
         activities = list(_find_recipes(context))
+        if not activities and not context.stated:
+            report_missing_levels(context, sink)
         if activities or graph.derived(Model):
             self._store(context, activities, sink)
 

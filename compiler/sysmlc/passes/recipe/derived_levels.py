@@ -4,6 +4,7 @@ A level is derived only if neither the model nor the options give it to any elem
 that state their levels do not change (docs/decisions/0029).
 """
 
+import json
 import re
 from collections.abc import Iterator
 
@@ -13,6 +14,7 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.ir.query.classifiers import quantity_kind_of
 from sysmlc.passes.recipe.context import Context
+from sysmlc.passes.recipe.profile import LEVELS
 
 DERIVED = rule(
     "SM483",
@@ -20,6 +22,14 @@ DERIVED = rule(
     Severity.INFO,
     "'{element}' is treated as {level}: {because}",
     help="to choose another level, set it in [recipe.levels] or apply a stereotype",
+)
+
+MISSING = rule(
+    "SM640",
+    "recipe-levels-missing",
+    Severity.WARNING,
+    "no recipe is written: definitions are named like the levels of recipes, but have no level",
+    help="add the lines of the notes to sysmlc.toml, or switch this rule off",
 )
 
 # The form of node ids in OPC 10000-6, clause 5.3.1.10: a namespace, then a typed identifier.
@@ -36,6 +46,10 @@ _LEVEL_TEXTS = {
     "opc ua variable": "a stereotype of OPC UA variables",
     "delay": "a pause",
 }
+
+
+_LEVELS_BY_WORD = {level.replace(" ", ""): level for level in LEVELS.values()}
+_BELOW_TASKS = frozenset(["machine service", "infrastructure service", "machine function"])
 
 
 class DerivedLevel(Struct, frozen=True):
@@ -65,6 +79,29 @@ def report_derived_levels(context: Context, derived: list[DerivedLevel], sink: S
             level=_LEVEL_TEXTS[entry.level],
             because=entry.because,
         )
+
+
+def report_missing_levels(context: Context, sink: Sink) -> None:
+    """Report definitions named like levels if there is a task and a service or function (SM640).
+
+    An equal name alone gives no level, because other profiles and models use the same words.
+    """
+    by_level: dict[str, Element] = {}
+    for element in context.graph.of_kind(*query.CLASSIFIERS):
+        level = _LEVELS_BY_WORD.get(re.sub(r"[\W_]", "", element.name).casefold())
+        uses = (Edge.SPECIALIZES, Edge.TYPED_BY, Edge.CALLS)
+        is_used = any(context.graph.sources(element, edge) for edge in uses)
+        if level and is_used and not element.attrs.get("external"):
+            by_level.setdefault(level, element)
+    if "task" not in by_level or by_level.keys().isdisjoint(_BELOW_TASKS):
+        return
+    lines = (
+        f"{level.replace(' ', '-')} = {json.dumps(context.name(by_level[level]))}"
+        for level in LEVELS.values()
+        if level in by_level
+    )
+    subject = context.graph.subject(by_level["task"])
+    sink.report(MISSING, subject, notes=("[recipe.levels]", *lines))
 
 
 def _derive_machines(context: Context) -> Iterator[DerivedLevel]:
