@@ -62,6 +62,26 @@ def test_the_literal_true_is_shown_after_a_decision_only():
     assert "[true]" in find_arrow("decision", "each")
 
 
+def test_names_of_flows_and_final_nodes_are_shown_unless_a_tool_made_them_up():
+    text = """
+Activity a "run"
+  Action x "x" subkind="opaque"
+  Control good "accepted" subkind="final"
+  Control bad "ActivityFinalNode2" subkind="final"
+  ControlFlow f1 "part is good"
+    -> flow-source x
+    -> flow-target good
+  ControlFlow f2 "ControlFlow7"
+    -> flow-source x
+    -> flow-target bad
+"""
+    lines = draw_lines(text)
+    assert "x_1 -[dashed]-> accepted_1 : part is good" in lines
+    assert "note right of accepted_1 : accepted" in lines
+    assert "x_1 -[dashed]-> activityfinalnode2_1" in lines
+    assert not any(line.startswith("note right of activityfinal") for line in lines)
+
+
 def test_the_default_weight_is_not_shown():
     assert "weight" not in find_arrow("try", "decision")
     assert "weight = 2}" in find_arrow("decision", "each")

@@ -14,6 +14,7 @@ from sysmlc.backends.plantuml.labels import make_notes
 from sysmlc.backends.plantuml.state_machine import draw_parts, format_guard
 from sysmlc.backends.plantuml.views import Aliases, Diagram, GraphView, Line, Node
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, list_items
+from sysmlc.ir.query import has_generated_name
 from sysmlc.support.plantuml_text import escape_line, format_label, join_rows, shrink
 
 TINTS = 6
@@ -224,9 +225,16 @@ class _ActivityDrawing:
             "«decisionInputFlow»" if target.attrs.get("decision_input_flow") == flow.id else "",
             " → ".join(dict.fromkeys(pins)),
             "" if _is_default_guard(flow, source) else format_guard(self.graph, flow),
+            _format_flow_name(flow),
             f"{{weight = {labels.literal(weight)}}}" if _is_weighted(weight) else "",
         ]
         return " ".join(part for part in parts if part)
+
+
+def _format_flow_name(flow: Element) -> str:
+    """Return the name of a flow, unless a tool made it up or the guard says the same."""
+    is_repeated = flow.name.strip() == str(flow.attrs.get("guard", ""))
+    return "" if is_repeated or has_generated_name(flow) else flow.name.strip()
 
 
 def _is_default_guard(flow: Element, source: Element) -> bool:

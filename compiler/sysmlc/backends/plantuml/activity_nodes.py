@@ -8,6 +8,7 @@ from sysmlc.backends.plantuml import labels
 from sysmlc.backends.plantuml.relations import list_node_allocations
 from sysmlc.backends.plantuml.state_machine import format_trigger
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, as_items, list_items
+from sysmlc.ir.query import has_generated_name
 from sysmlc.support.plantuml_text import format_label, wrap_lines
 
 _CONTROL_SHAPES = {
@@ -19,7 +20,6 @@ _CONTROL_SHAPES = {
     "fork": "fork",
     "join": "join",
 }
-_WITHOUT_NAME = frozenset(["initial", "final"])
 _WITHOUT_KEYWORD = frozenset(["call-behavior", "call-operation", "opaque", ""])
 _KEYWORDS = {
     "send": "send signal",
@@ -90,7 +90,7 @@ def _format_control_note(graph: Graph, node: Element) -> str:
     """Return the texts that PlantUML cannot print inside a diamond or a bar."""
     behaviour = graph.get(str(node.attrs.get("decision_input", "")))
     parts = [
-        "" if node.subkind in _WITHOUT_NAME else node.name,
+        "" if node.subkind == "initial" or has_generated_name(node) else node.name,
         f"«decisionInput» {labels.name(behaviour)}" if behaviour is not None else "",
         f"{{joinSpec = {node.attrs['join_spec']}}}" if node.attrs.get("join_spec") else "",
     ]

@@ -29,6 +29,7 @@ from sysmlc.ir.query.classifiers import (
 from sysmlc.ir.query.names import (
     bounds,
     component_name,
+    has_generated_name,
     ids_in,
     is_requirement,
 )
@@ -75,6 +76,7 @@ __all__ = [
     "flow_source",
     "flow_target",
     "generals",
+    "has_generated_name",
     "has_stereotype",
     "ids_in",
     "incoming",

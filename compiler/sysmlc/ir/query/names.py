@@ -1,11 +1,26 @@
-"""Names of components, ids in attributes, bounds of multiplicities."""
+"""Names of components and nodes, ids in attributes, bounds of multiplicities."""
 
+import re
 from collections.abc import Iterator
 
 from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
 from sysmlc.ir.query.classifiers import BEHAVIORS
+
+_GENERATED_NAME = re.compile(
+    r"((control|object)? ?flow|edge|(activity)? ?(initial|final)( ?node)?|flow ?final( ?node)?)"
+    r"[ _]?\d*",
+    re.IGNORECASE,
+)
+
+
+def has_generated_name(element: Element) -> bool:
+    """Return whether a flow or control node has no name, or one such as ``ControlFlow3``.
+
+    Papyrus and other tools give such names to new elements.
+    """
+    return not element.name.strip() or bool(_GENERATED_NAME.fullmatch(element.name.strip()))
 
 
 def component_name(graph: Graph, element: Element) -> str:

@@ -1,8 +1,9 @@
 """Pass ``activities``: derive the token graph of every activity, or report why there is none.
 
 The pass assumes resolved names and roles. It guarantees that each stored token graph is 1-safe and
-that every omitted node or flow has been reported. The model graph itself stays unchanged. An
-activity of a library gets one token graph for each operation whose method it is.
+that every omitted node or flow has been reported. The model graph itself stays unchanged, except
+that names of flows that mean guards become guards. An activity of a library gets one token graph
+for each operation whose method it is.
 """
 
 from collections.abc import Iterator
@@ -29,6 +30,7 @@ from sysmlc.passes.activities.assignments import (
     report_untracked,
 )
 from sysmlc.passes.activities.exception_analysis import Raising, find_raising
+from sysmlc.passes.activities.guard_names import read_guard_names
 from sysmlc.passes.activities.inputs import Inputs, Scope
 from sysmlc.passes.activities.stores import track_stores
 
@@ -60,6 +62,7 @@ class Activities(Struct, frozen=True):
 
     def run(self, graph: Graph, sink: Sink) -> None:
         """Store a TokenGraph for each activity that has a valid one."""
+        read_guard_names(graph, sink)
         graph.store(TokenGraph, self._derive_all(graph, sink))
 
     def _derive_all(self, graph: Graph, sink: Sink) -> Iterator[TokenGraph]:
