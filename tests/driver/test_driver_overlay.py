@@ -4,7 +4,7 @@ import json
 import os
 
 import pytest
-from driver_helpers import list_codes, list_inputs, list_published, run_sysmlc
+from driver_helpers import list_codes, list_inputs, run_sysmlc
 from jsonschema import Draft202012Validator
 
 from sysmlc.cli.watch import _is_input
@@ -164,13 +164,14 @@ def test_a_model_named_as_overlay_is_an_error(folder):
     assert "error[SM321 overlay-shape]" in errors
 
 
-def test_outputs_that_depend_on_a_wrong_entry_are_withheld(folder):
-    """The flow has no item, so only the diagram with its connector is withheld."""
+def test_a_diagram_marks_what_a_wrong_entry_concerns(folder):
+    """The flow has no item, so only the diagram with its connector has a mark."""
     write_file(folder, "line.overlay.yaml", FLOW.replace("item: Pallet", "item: Palette"))
     compilation = compile_paths(folder / "line.ir", emit=("plantuml",))
     assert list_codes(compilation) == ["SM300", "SM300", "SM324"]
-    assert [path.rpartition("/")[2] for path in compilation.withheld] == ["Plant.Line.ibd.puml"]
-    assert any(path.endswith("bdd.puml") for path in list_published(compilation))
+    assert compilation.withheld == {}
+    marked = [file.path for file in compilation.artefacts if "⚠" in file.text]
+    assert [path.rpartition("/")[2] for path in marked] == ["Plant.Line.ibd.puml"]
 
 
 def test_an_overlay_linked_from_outside_of_the_folder_is_not_read(folder):

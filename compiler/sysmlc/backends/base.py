@@ -43,6 +43,8 @@ class EmitOptions(Struct, frozen=True):
     inputs: tuple[InputFile, ...] = ()
     locate: Locate = _locate_nothing
     diagrams: str = DERIVED
+    faulty: frozenset[str] = frozenset()
+    """Ids of the elements with errors; a back end may mark them."""
 
 
 class Backend(Protocol):

@@ -264,7 +264,8 @@ class _CompilationRun:
     def _emit(self, inputs: tuple[InputFile, ...], reading: Reading) -> list[Artefact]:
         locate = partial(complete_places, self._list_sources(reading))
         request = self._request
-        options = EmitOptions(request.templates, inputs, locate, request.diagrams)
+        faulty = frozenset(d.subject.id for d in self._sink if d.is_error and d.subject.id)
+        options = EmitOptions(request.templates, inputs, locate, request.diagrams, faulty)
         failed: set[str] = set()
         for backend in self._request.backends:
             self._begin_step(f"emit {backend.name}")

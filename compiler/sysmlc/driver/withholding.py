@@ -15,14 +15,15 @@ def find_withheld_artefacts(
     """Return the path of each withheld artefact, with the errors that are the reason.
 
     An error concerns an artefact if its subject is a traced element, an owner or the origin of a
-    traced element, or the whole file of a traced element.
+    traced element, or the whole file of a traced element. Artefacts that mark elements with errors
+    are not withheld.
     """
     by_id, by_file = _index_errors(d for d in diagnostics if d.is_error)
     if not by_id and not by_file:
         return {}
     affected = _find_affected(graph, by_id, by_file)
     # Several files of one element often have one trace, and it can be long.
-    traces = {artefact.path: artefact.trace for artefact in artefacts}
+    traces = {a.path: a.trace for a in artefacts if not a.marks_faults}
     reasons = {
         trace: _list_reasons(trace, graph, by_id, by_file)
         for trace in dict.fromkeys(traces.values())

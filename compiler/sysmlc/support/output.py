@@ -15,13 +15,15 @@ class Artefact(Struct, frozen=True):
     """One file that a back end writes.
 
     ``path`` is relative to the output folder, with ``/``. ``trace`` contains the ids of the
-    elements from which the content is derived: the file is withheld if one of them has an error.
+    elements from which the content is derived: the file is withheld if one of them has an error,
+    unless it marks the elements with errors.
     """
 
     path: str
     text: str
     trace: tuple[str, ...] = ()
     backend: str = ""
+    marks_faults: bool = False
 
 
 class OutputPathError(ValueError):
@@ -91,15 +93,26 @@ class Output:
         self._artefacts: dict[str, Artefact] = {}
         self._last_trace: tuple[Iterable[str], tuple[str, ...]] = ((), ())
 
-    def add(self, path: str, text: str, trace: Iterable[str] = (), backend: str = "") -> None:
-        """Add a file. Raises ValueError if the path is taken or leads out of the folder."""
+    def add(
+        self,
+        path: str,
+        text: str,
+        trace: Iterable[str] = (),
+        backend: str = "",
+        *,
+        marks_faults: bool = False,
+    ) -> None:
+        """Add a file. Raises ValueError if the path is taken or leads out of the folder.
+
+        A file with *marks_faults* shows which elements have errors, and is not withheld for them.
+        """
         check_output_path(path)
         if path in self._artefacts:
             raise ValueError(f"output path {path!r} is written twice")
         if self._last_trace[0] is not trace or not isinstance(trace, tuple):
             # Files of one component share their trace, which can have thousands of ids.
             self._last_trace = (trace, tuple(dict.fromkeys(trace)))
-        self._artefacts[path] = Artefact(path, text, self._last_trace[1], backend)
+        self._artefacts[path] = Artefact(path, text, self._last_trace[1], backend, marks_faults)
 
     def artefacts(self) -> list[Artefact]:
         """Return all files, sorted by path."""

@@ -19,6 +19,7 @@ from sysmlc.backends.plantuml import (
     use_case,
 )
 from sysmlc.backends.plantuml.author_diagrams import FOLDER, draw_author_diagrams
+from sysmlc.backends.plantuml.fault_marks import mark_faults
 from sysmlc.backends.plantuml.undrawn import report_overtaken_messages
 from sysmlc.backends.plantuml.views import Diagram
 from sysmlc.backends.templates import TemplateError, Templates
@@ -102,8 +103,10 @@ def _write(
         for kind, group in groupby(traced, lambda item: item.diagram.kind):
             try:
                 for (diagram, trace), file in _assign_files(list(group)):
-                    text = _render(graph, diagram, templates)
-                    output.add(f"diagrams/{folder}{file}.{kind}.puml", text, trace, "plantuml")
+                    marked = mark_faults(graph, diagram, trace, options.faulty)
+                    text = _render(graph, marked, templates)
+                    path = f"diagrams/{folder}{file}.{kind}.puml"
+                    output.add(path, text, trace, "plantuml", marks_faults=True)
             except TemplateError as fault:
                 sink.report(BAD_TEMPLATE, Subject(f"{kind}.puml.j2"), kind=kind, fault=fault)
 
