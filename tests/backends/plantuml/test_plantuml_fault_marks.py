@@ -1,8 +1,8 @@
 """Marks on elements with errors."""
 
-import emitting
 import pytest
 
+import backend_runs
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.plantuml import BACKEND
 from sysmlc.ir.text import parse_text
@@ -27,7 +27,7 @@ Package p "P"
 def draw_with_errors(*faulty):
     """Return the lines with a mark, by diagram."""
     options = EmitOptions(faulty=frozenset(faulty))
-    files, _ = emitting.emit(BACKEND, parse_text(MODEL), options)
+    files, _ = backend_runs.emit(BACKEND, parse_text(MODEL), options)
     assert all(file.marks_faults for file in files.values())
     return {
         path.removeprefix("diagrams/"): [line for line in file.text.splitlines() if "⚠" in line]
