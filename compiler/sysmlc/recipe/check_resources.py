@@ -4,7 +4,11 @@ from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, rule
 from sysmlc.recipe.derivation import find_resource_modes, find_same_machine_groups, list_functions
-from sysmlc.recipe.durations import find_mode_duration, find_refined_duration
+from sysmlc.recipe.durations import (
+    find_full_duration,
+    find_mode_duration,
+    find_refined_duration,
+)
 from sysmlc.recipe.findings import Finding
 from sysmlc.recipe.flow import find_reachable
 from sysmlc.recipe.model import FlowGraph, Model, Provider, Range, Service, Task
@@ -46,7 +50,7 @@ UNRELEASED = rule(
 def check_task_times(model: Model, tables: Tables) -> Iterator[Finding]:
     """REC008: a task takes no longer than its bound, nor than the duration of each mode."""
     for task in model.recipe.tasks:
-        derived = None if task.derived is None else task.derived.duration
+        derived = None if task.derived is None else find_full_duration(task.derived)
         if derived is not None and _exceeds(derived, task.max_duration):
             yield _too_long(task, derived, f"at most {task.max_duration} ms are allowed")
         for mode in task.equipment:
@@ -57,7 +61,7 @@ def check_task_times(model: Model, tables: Tables) -> Iterator[Finding]:
 
 
 def _exceeds(duration: Range, limit: int | None) -> bool:
-    """Return whether the maximum, or without a maximum the minimum, is above the limit."""
+    """Whether the maximum, or without a maximum the minimum, is above the limit."""
     return limit is not None and (duration.min if duration.max is None else duration.max) > limit
 
 

@@ -1,18 +1,20 @@
 """Data derived from a recipe model: sub-tasks, same-machine groups, durations (thesis 6.5)."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 from msgspec.structs import replace
 
-from sysmlc.recipe.durations import compute_duration, find_node_duration
+from sysmlc.recipe.durations import find_task_timing
 from sysmlc.recipe.flow import find_reachable, list_forward_edges
 from sysmlc.recipe.model import (
+    Condition,
     Derived,
     FlowGraph,
     Function,
     Mode,
     Model,
     Node,
+    Range,
     SameMachine,
     SubTask,
     Task,
@@ -32,18 +34,22 @@ def _derive_task(task: Task, tables: Tables) -> Derived | None:
     graph = tables.service_graphs.get(task.implementation)
     if graph is None:
         return None
-    return Derived(
-        _list_sub_tasks(task, graph, tables),
-        find_same_machine_groups(graph, tables),
-        compute_duration(graph, lambda node: find_node_duration(node, tables)),
-    )
+    machines = tuple(machine for mode in task.equipment for machine in mode.machines)
+    timing = find_task_timing(task, tables, machines)
+    sub_tasks = _list_sub_tasks(task, graph, tables, {} if timing is None else timing.runs)
+    groups = find_same_machine_groups(graph, tables)
+    if timing is None:
+        return Derived(sub_tasks, groups)
+    return Derived(sub_tasks, groups, timing.duration, timing.expected, timing.because, timing.ends)
 
 
 # -- sub-tasks ---------------------------------------------------------------------------------
 
 
-def _list_sub_tasks(task: Task, graph: FlowGraph, tables: Tables) -> tuple[SubTask, ...]:
-    """Return a sub-task for each service node of the graph of a task."""
+def _list_sub_tasks(
+    task: Task, graph: FlowGraph, tables: Tables, runs: Mapping[str, Range]
+) -> tuple[SubTask, ...]:
+    """Return a sub-task for each service node of the graph of a task; *runs* counts executions."""
     allowed = {machine for mode in task.equipment for machine in mode.machines}
     edges = list_forward_edges(graph)
     nodes = [node for node in graph.nodes if tables.find_service(node) is not None]
@@ -53,8 +59,33 @@ def _list_sub_tasks(task: Task, graph: FlowGraph, tables: Tables) -> tuple[SubTa
             node.id,
             _list_alternatives(node, allowed, tables),
             _find_predecessors(node.id, steps, edges),
+            runs.get(node.id),
+            _list_conditions(node.id, graph, edges),
         )
         for node in nodes
+    )
+
+
+def _list_conditions(
+    node: str, graph: FlowGraph, edges: list[tuple[str, str]]
+) -> tuple[Condition, ...]:
+    """Return the branches after which *node* runs in any case, and not after their decision.
+
+    *edges* are the forward edges. An execution takes one branch of a decision, so that the node
+    runs in any case behind it if each path to an end contains the node.
+    """
+    ends = {n.id for n in graph.nodes if n.kind in ("final", "flowFinal")}
+    choices = {n.id for n in graph.nodes if n.kind in ("decision", "loop", "forEach")}
+    before = find_reachable([node], [(b, a) for a, b in edges])
+    around = [(a, b) for a, b in edges if node not in (a, b)]
+    avoiding = find_reachable(ends - {node}, [(b, a) for a, b in around])
+    return tuple(
+        Condition(edge.source, edge.guard, edge.text, edge.is_else)
+        for edge in graph.edges
+        if edge.source in choices & before & avoiding
+        and (edge.source, edge.target) in edges
+        and edge.target in before
+        and edge.target not in avoiding
     )
 
 

@@ -4,20 +4,38 @@ The duration of a graph is a range that follows from the durations of its steps.
 milliseconds; an unknown duration is None.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from functools import partial
+import operator
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial, reduce
 
 from msgspec import Struct
 
-from sysmlc.ir.algorithms import sort_topologically
-from sysmlc.logic.expressions.expression import Literal
-from sysmlc.recipe.flow import STEPS, find_cycles, find_reachable
-from sysmlc.recipe.model import FlowGraph, Mode, Node, Range, Service, Task
+from sysmlc.logic.expressions.expression import Expression, Literal
+from sysmlc.recipe.costs import Measures, NodeCost, to_maximum
+from sysmlc.recipe.executions import (
+    Exploration,
+    Precision,
+    Result,
+    TooManySituationsError,
+    UnstructuredError,
+)
+from sysmlc.recipe.flow import STEPS
+from sysmlc.recipe.loops import find_early_ends
+from sysmlc.recipe.model import (
+    Derived,
+    EndTime,
+    FlowGraph,
+    Mode,
+    Node,
+    Range,
+    Service,
+    Task,
+)
 from sysmlc.recipe.tables import Tables
+from sysmlc.recipe.valuation import Variables
 
 Cost = Callable[[Node], Range | None]
 """The duration of a node; None if it is unknown."""
-_Edges = list[tuple[str, str]]
 _NO_DURATION = Range(0, 0)
 
 
@@ -52,16 +70,71 @@ def find_refined_duration(service: Service, tables: Tables) -> Range | None:
     graph = tables.function_graphs.get(service.implementation)
     if graph is None:
         return None
-    compute = partial(compute_duration, graph, lambda node: find_node_duration(node, tables))
+    compute = partial(_compute_functions_duration, graph, tables, ())
     return tables.memoise_duration(("service", service.implementation), compute)
+
+
+def _compute_functions_duration(
+    graph: FlowGraph, tables: Tables, machines: tuple[str, ...]
+) -> Range | None:
+    timing = compute_timing(graph, lambda node: _find_function_cost(node, tables, machines))
+    return None if timing is None else timing.full_duration
+
+
+def _find_function_cost(node: Node, tables: Tables, machines: tuple[str, ...]) -> NodeCost | None:
+    duration = find_node_duration(node, tables, machines)
+    if duration is None:
+        return None
+    # A service may hold a resource for functions that run at the same time.
+    return NodeCost(duration, frozenset(_iter_resources(node, tables)), is_exclusive=False)
+
+
+def _iter_resources(node: Node, tables: Tables) -> Iterator[str]:
+    """Yield the resources that a function uses, directly or through the graph of a helper."""
+    function = tables.functions.get(node.ref)
+    if function is not None:
+        yield from (resource.id for resource in function.resources)
+    graph = tables.function_graphs.get(node.ref) if node.kind == "call" else None
+    if graph is not None:
+        rest = tables.without_graph(graph.id)
+        for inner in graph.nodes:
+            yield from _iter_resources(inner, rest)
 
 
 def find_mode_duration(task: Task, mode: Mode, tables: Tables) -> Range | None:
     """Return the duration of the service graph of a task on the machines of one mode."""
+    timing = find_task_timing(task, tables, mode.machines)
+    return None if timing is None else timing.full_duration
+
+
+def find_full_duration(derived: Derived) -> Range | None:
+    """Return the duration of all executions of a task, those that end early included."""
+    if derived.duration is None:
+        return None
+    return join_ranges([derived.duration, *(end.duration for end in derived.ends)])
+
+
+def find_task_timing(task: Task, tables: Tables, machines: tuple[str, ...]) -> "Timing | None":
+    """Return the times of the service graph of a task on *machines*, or on all if it is empty."""
     graph = tables.service_graphs.get(task.implementation)
     if graph is None:
         return None
-    return compute_duration(graph, lambda node: find_node_duration(node, tables, mode.machines))
+    resources = (r for function in tables.functions.values() for r in function.resources)
+    return compute_timing(
+        graph,
+        lambda node: _find_service_cost(node, tables, machines),
+        dict(task.bind),
+        holds=any(resource.mode != "use" for resource in resources),
+    )
+
+
+def _find_service_cost(node: Node, tables: Tables, machines: tuple[str, ...]) -> NodeCost | None:
+    duration = find_node_duration(node, tables, machines)
+    service = tables.find_service(node)
+    if duration is None or service is None or service.kind != "machine":
+        return None if duration is None else NodeCost(duration)
+    offering = frozenset(provider.machine for provider in service.providers)
+    return NodeCost(duration, (offering & frozenset(machines)) or offering)
 
 
 def _find_no_duration(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range | None:
@@ -84,7 +157,8 @@ def _find_helper_duration(node: Node, tables: Tables, machines: tuple[str, ...])
     """Return the duration of the function graph of a helper; without a graph it takes no time."""
     graph = tables.function_graphs.get(node.ref)
     if graph is None:
-        return _NO_DURATION
+        # Nothing bounds how often a helper calls itself.
+        return Range(0, None) if node.ref in tables.open_graphs else _NO_DURATION
     compute = partial(_compute_helper_duration, graph, tables, machines)
     return tables.memoise_duration(("call", node.ref, *machines), compute)
 
@@ -92,9 +166,7 @@ def _find_helper_duration(node: Node, tables: Tables, machines: tuple[str, ...])
 def _compute_helper_duration(
     graph: FlowGraph, tables: Tables, machines: tuple[str, ...]
 ) -> Range | None:
-    # A helper that calls itself would never end: inside it, it counts as a helper without a graph.
-    rest = tables.without_graph(graph.id)
-    return compute_duration(graph, lambda node: find_node_duration(node, rest, machines))
+    return _compute_functions_duration(graph, tables.without_graph(graph.id), machines)
 
 
 def _find_wait_duration(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range | None:
@@ -122,152 +194,131 @@ _DURATIONS_BY_KIND: dict[str, _NodeDuration] = {
 
 # -- graphs ------------------------------------------------------------------------------------
 
+_MOST_SITUATIONS = 10_000
+"""Most situations of one graph that are explored; about half a second."""
+_PRECISIONS = (
+    Precision(),
+    # The bound of a loop contradicts its guards.
+    Precision(has_strict_bounds=False),
+    # Too many situations: fewer distinctions.
+    Precision(has_values=False),
+    Precision(has_values=False, has_iterations=False),
+)
 
-class _Span(Struct, frozen=True):
-    """Earliest and latest time at which a node is done; ``latest`` None is unbounded."""
 
-    earliest: float
-    latest: float | None
+class Timing(Struct, frozen=True):
+    """The times of the executions of a graph, and how often each step runs.
 
-    def extend(self, cost: Range) -> "_Span":
-        return _Span(self.earliest + cost.min, _add(self.latest, cost.max))
+    ``duration`` has no maximum for the reason ``because``; ``ends`` has the times of the final
+    nodes if there are several.
+    """
+
+    duration: Range
+    expected: float | None = None
+    because: str = ""
+    ends: tuple[EndTime, ...] = ()
+    runs: Mapping[str, Range] = {}
+
+    @property
+    def full_duration(self) -> Range:
+        """The duration of all executions, those that end early included."""
+        return join_ranges([self.duration, *(end.duration for end in self.ends)])
+
+
+def join_ranges(ranges: list[Range]) -> Range:
+    """Return the smallest range that contains all of *ranges*."""
+    maxima = [span.max for span in ranges if span.max is not None]
+    highest = max(maxima) if len(maxima) == len(ranges) else None
+    return Range(min(span.min for span in ranges), highest)
 
 
 def compute_duration(graph: FlowGraph, cost: Cost) -> Range | None:
-    """Return the shortest and longest time from the initial node to a final one.
+    """Return the shortest and longest time of the executions of a graph without machines.
 
-    Decisions choose one branch, joins and steps wait for all incoming edges, and a cycle runs at
-    most ``max_iterations`` times. Return None for an unknown duration of a step, or if no final
-    node is reachable.
+    Return None for an unknown duration of a step, or if no final node is reachable.
     """
-    nodes = {node.id: node for node in graph.nodes}
-    costs: dict[str, Range] = {}
-    for id, node in nodes.items():
+    timing = compute_timing(graph, lambda node: _to_node_cost(cost(node)))
+    return None if timing is None else timing.duration
+
+
+def _to_node_cost(duration: Range | None) -> NodeCost | None:
+    return None if duration is None else NodeCost(duration)
+
+
+def compute_timing(
+    graph: FlowGraph,
+    find_cost: Callable[[Node], NodeCost | None],
+    arguments: Mapping[str, Expression] | None = None,
+    *,
+    holds: bool = False,
+) -> Timing | None:
+    """Return the times of the executions of a graph.
+
+    Decisions choose one branch by their guards, joins and steps wait for all incoming edges, and
+    loops run as often as their guards and bounds allow. Steps of parallel branches that need one
+    machine follow one another; *holds* states that branches retain machines between steps. Return
+    None for an unknown duration of a step, or if no final node is reachable.
+    """
+    costs: dict[str, NodeCost] = {}
+    for node in graph.nodes:
         if node.kind in STEPS:
-            node_cost = cost(node)
+            node_cost = find_cost(node)
             if node_cost is None:
                 return None
-            costs[id] = node_cost
-    edges = list(dict.fromkeys((e.source, e.target) for e in graph.edges))
-    starts = [node.id for node in graph.nodes if node.kind == "initial"]
-    spans = _Clock(nodes, costs).run(list(nodes), edges, starts[:1])
-    ends = [span for id, span in spans.items() if nodes[id].kind == "final"]
-    # A flow final node ends one branch only (UML 2.5.1, 15.3.3.2): it counts without a final node.
-    ends = ends or [span for id, span in spans.items() if nodes[id].kind == "flowFinal"]
-    if not ends:
-        return None
-    return _to_range(min(end.earliest for end in ends), _maximum(end.latest for end in ends))
-
-
-class _Clock(Struct, frozen=True):
-    """Computes when nodes are done; ``costs`` has the duration of each step by its id."""
-
-    nodes: Mapping[str, Node]
-    costs: Mapping[str, Range]
-
-    def run(self, ids: Iterable[str], edges: _Edges, starts: list[str]) -> dict[str, _Span]:
-        """Return the span of each node if the nodes *starts* begin at time 0."""
-        spans: dict[str, _Span] = {}
-        # A node that no start reaches has no span: it does not delay the nodes behind it.
-        for component, is_cycle in _iter_components(ids, edges):
-            inside = set(component)
-            incoming = [(a, b) for a, b in edges if b in inside and a not in inside and a in spans]
-            arrivals = [spans[a] for a, _ in incoming]
-            arrivals += [_Span(0, 0)] * (not inside.isdisjoint(starts))
-            if not arrivals:
-                continue
-            heads = [b for _, b in incoming] + [id for id in starts if id in inside]
-            start = _combine(self.nodes[heads[0]], arrivals)
-            if is_cycle:
-                spans.update(self._run_cycle(heads[0], component, edges, start))
-            else:
-                spans[component[0]] = start.extend(self.costs.get(component[0], Range(0, 0)))
-        return spans
-
-    def _run_cycle(
-        self, head: str, cycle: list[str], edges: _Edges, start: _Span
-    ) -> dict[str, _Span]:
-        """Return the spans of the nodes of a cycle that is entered at *head* in the span *start*.
-
-        A node is done earliest in the first round and latest in the last round.
-        """
-        inside = set(cycle)
-        inner = [(a, b) for a, b in edges if a in inside and b in inside and b != head]
-        one_round = self.run(cycle, inner, [head])
-        rounds = [
-            one_round[a].latest for a, b in edges if b == head and a in inside and a in one_round
-        ]
-        count = self._count_rounds(head, cycle, inner)
-        latest = _add(start.latest, _multiply(count, _maximum(rounds)))
-        return {
-            id: _Span(start.earliest + span.earliest, _add(latest, span.latest))
-            for id, span in one_round.items()
-        }
-
-    def _count_rounds(self, head: str, cycle: list[str], inner: _Edges) -> int | None:
-        """Return how often the edges back to *head* are taken at most, by the bounds of loop nodes.
-
-        Loop nodes of inner cycles do not count. None means that there is no bound.
-        """
-        nested = {id for inner_cycle in find_cycles(cycle, inner) for id in inner_cycle}
-        loops = [self.nodes[id] for id in cycle if id not in nested]
-        loops = [node for node in loops if node.kind in ("loop", "forEach")]
-        bounds = [node.max_iterations for node in loops if node.max_iterations is not None]
-        if not loops or len(bounds) < len(loops):
+            costs[node.id] = node_cost
+    measures = Measures(costs, holds=holds)
+    variables = Variables.from_graph(graph, arguments or {})
+    for precision in _PRECISIONS:
+        exploration = Exploration(graph, measures, variables, precision, _MOST_SITUATIONS)
+        try:
+            result = exploration.run()
+        except TooManySituationsError:
+            continue
+        except UnstructuredError:
             return None
-        # A loop that is tested first runs its body as often as the bound says, and is closed as
-        # often; a loop that is tested last is closed once less, because the last round leaves it.
-        is_tested_first = not any(self._has_step(head, loop.id, inner) for loop in loops)
-        return sum(bounds) - (0 if is_tested_first else len(loops))
-
-    def _has_step(self, head: str, loop: str, inner: _Edges) -> bool:
-        """Whether a step precedes the loop node in a round, which begins at *head*."""
-        after_head = find_reachable([head], [(a, b) for a, b in inner if a != loop])
-        before_loop = find_reachable([loop], [(b, a) for a, b in inner])
-        return any(self.nodes[id].kind in STEPS for id in after_head & before_loop)
+        if result.ends:
+            is_exact = precision.has_iterations and precision.has_values
+            return _make_timing(graph, result, costs, measures, is_exact=is_exact)
+    return None
 
 
-def _iter_components(ids: Iterable[str], edges: _Edges) -> Iterator[tuple[list[str], bool]]:
-    """Yield cycles and single nodes in topological order, each with whether it is a cycle."""
-    nodes = list(ids)
-    components = {f"cycle {n}": cycle for n, cycle in enumerate(find_cycles(nodes, edges))}
-    component_of = {id: name for name, cycle in components.items() for id in cycle}
-    components.update({f"node {id}": [id] for id in nodes if id not in component_of})
-    component_of.update({id: f"node {id}" for id in nodes if id not in component_of})
-    pairs = ((component_of[a], component_of[b]) for a, b in edges)
-    for name in sort_topologically(components, ((a, b) for a, b in pairs if a != b)):
-        yield components[name], name.startswith("cycle ")
+def _make_timing(
+    graph: FlowGraph,
+    result: Result,
+    costs: Mapping[str, NodeCost],
+    measures: Measures,
+    *,
+    is_exact: bool,
+) -> Timing:
+    early = find_early_ends(graph)
+    times = [
+        EndTime(id, Range(int(end.low[0]), to_maximum(end.high[0])), id in early)
+        for id, end in result.ends.items()
+    ]
+    times.sort(key=lambda end: end.node)
+    total = reduce(operator.or_, result.ends.values())
+    regular = [result.ends[end.node] for end in times if not end.is_early]
+    span = reduce(operator.or_, regular) if regular else total
+    duration = Range(int(span.low[0]), to_maximum(span.high[0]))
+    is_stated = any(edge.probability is not None for edge in graph.edges)
+    return Timing(
+        duration,
+        result.expected if is_stated and is_exact else None,
+        "" if duration.max is not None else _explain_unbounded(graph, result, costs, is_exact),
+        tuple(times) if len(times) > 1 else (),
+        measures.count_runs(total),
+    )
 
 
-def _combine(node: Node, arrivals: list[_Span]) -> _Span:
-    """Return the earliest and latest time at which a node begins, from the spans that precede it.
-
-    A join or a step waits for all of them, any other node for the first.
-    """
-    is_waiting = node.kind == "join" or node.kind in STEPS
-    choose = max if is_waiting else min
-    return _Span(choose(a.earliest for a in arrivals), _maximum(a.latest for a in arrivals))
-
-
-def _add(left: float | None, right: float | None) -> float | None:
-    return None if left is None or right is None else left + right
-
-
-def _multiply(count: int | None, value: float | None) -> float | None:
-    if count == 0:
-        return 0
-    return None if count is None or value is None else count * value
-
-
-def _maximum(values: Iterable[float | None]) -> float | None:
-    """Return the largest value, 0 for no values; None if one of them is None (unbounded)."""
-    largest: float = 0
-    for value in values:
-        if value is None:
-            return None
-        largest = max(largest, value)
-    return largest
-
-
-def _to_range(low: float, high: float | None) -> Range:
-    return Range(int(low), None if high is None else int(high))
+def _explain_unbounded(
+    graph: FlowGraph, result: Result, costs: Mapping[str, NodeCost], is_exact: bool
+) -> str:
+    """Return why executions of the graph have no longest time."""
+    if not is_exact:
+        return f"the executions reach more than {_MOST_SITUATIONS} situations"
+    nodes = [node for node in graph.nodes if node.id in result.endless]
+    loops = [node for node in nodes if node.kind in ("loop", "forEach")]
+    if nodes:
+        return f"the loop at '{(loops or nodes)[0].id}' has no bound"
+    unbounded = [id for id, cost in costs.items() if cost.duration.max is None]
+    return f"'{unbounded[0]}' has no longest duration" if unbounded else ""

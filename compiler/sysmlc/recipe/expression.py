@@ -192,14 +192,15 @@ def _evaluate(  # noqa: PLR0911 - one for each kind
         case Unary("not", operand):
             return not is_satisfied(operand, values)
         case Unary("-", operand):
-            return _calculate("-", 0, _evaluate(operand, values))
+            return apply_operator("-", 0, _evaluate(operand, values))
         case Binary(op, left, right):
-            return _calculate(op, _evaluate(left, values), _evaluate(right, values))
+            return apply_operator(op, _evaluate(left, values), _evaluate(right, values))
         case _:
             raise UndecidedError
 
 
-def _calculate(op: str, *values: Scalar) -> Scalar:
+def apply_operator(op: str, *values: Scalar) -> Scalar:
+    """Return the result of an arithmetic operator or a comparison. Raises UndecidedError."""
     try:
         return _OPERATIONS[op](*values)
     except (TypeError, ZeroDivisionError, KeyError):

@@ -123,12 +123,27 @@ class Mode(Struct, frozen=True):
     available: bool | None = None
 
 
+class Condition(Struct, frozen=True):
+    """A branch on which a sub-task depends: its decision and guard; ``is_else`` without a guard."""
+
+    decision: str
+    guard: Expression | None = None
+    text: str = ""
+    is_else: bool = False
+
+
 class SubTask(Struct, frozen=True):
-    """A service node of a task, as the scheduler sees it (thesis 6.5.1: ``st_ij`` and PA)."""
+    """A service node of a task, as the scheduler sees it (thesis 6.5.1: ``st_ij`` and PA).
+
+    ``runs`` is how often an execution of the task performs it; ``when`` has the branches that lead
+    to it, of which one is enough.
+    """
 
     node: str
     alternatives: tuple[Mode, ...]
     after: tuple[str, ...] = ()
+    runs: Range | None = None
+    when: tuple[Condition, ...] = ()
 
 
 class SameMachine(Struct, frozen=True):
@@ -138,12 +153,39 @@ class SameMachine(Struct, frozen=True):
     because: tuple[str, ...]
 
 
+class EndTime(Struct, frozen=True):
+    """The time of executions that end at one of several final nodes.
+
+    ``is_early`` states that they break off a loop.
+    """
+
+    node: str
+    duration: Range
+    is_early: bool = False
+
+
+class TimeLimit(Struct, frozen=True):
+    """A time that a requirement allows, in milliseconds; ``element`` is the requirement."""
+
+    requirement: str
+    least: Number | None = None
+    most: Number | None = None
+    element: str = ""
+
+
 class Derived(Struct, frozen=True):
-    """Data of a task that is computed from the rest of the model."""
+    """Data of a task that is computed from the rest of the model.
+
+    ``duration`` is that of executions that do not end early. ``because`` is the reason for a
+    duration without a maximum.
+    """
 
     sub_tasks: tuple[SubTask, ...] = ()
     same_machine: tuple[SameMachine, ...] = ()
     duration: Range | None = None
+    expected: Number | None = None
+    because: str = ""
+    ends: tuple[EndTime, ...] = ()
 
 
 class Task(Struct, frozen=True):
@@ -163,6 +205,7 @@ class Task(Struct, frozen=True):
     no_wait: bool = False
     derived: Derived | None = None
     element: str = ""
+    limits: tuple[TimeLimit, ...] = ()
 
 
 class Performance(Struct, frozen=True):
@@ -193,6 +236,8 @@ class Recipe(Struct, frozen=True):
     no_wait: bool = False
     element: str = ""
     performances: tuple[Performance, ...] = ()
+    limits: tuple[TimeLimit, ...] = ()
+    derived: Derived | None = None
 
 
 class Provider(Struct, frozen=True):
@@ -262,10 +307,14 @@ class Node(Struct, frozen=True):
     text: str = ""
     max_iterations: int | None = None
     element: str = ""
+    min_iterations: int = 0
 
 
 class FlowEdge(Struct, frozen=True):
-    """An edge of a graph. ``role`` is body or exit for the edges from a loop or for-each node."""
+    """An edge of a graph. ``role`` is body or exit for the edges from a loop or for-each node.
+
+    ``probability`` is that of the edge among the edges of its decision.
+    """
 
     source: str
     target: str
@@ -275,6 +324,7 @@ class FlowEdge(Struct, frozen=True):
     item: str = ""
     role: str = ""
     element: str = ""
+    probability: float | None = None
 
 
 class FlowGraph(Struct, frozen=True):

@@ -14,6 +14,8 @@ class Tables(Struct, frozen=True):
     functions: Mapping[str, Function]
     service_graphs: Mapping[str, FlowGraph]
     function_graphs: Mapping[str, FlowGraph]
+    open_graphs: frozenset[str] = frozenset()
+    """Function graphs whose calls are being followed."""
     _times: dict[tuple[str, ...], Range | None] = field(default_factory=dict)
 
     @classmethod
@@ -41,4 +43,5 @@ class Tables(Struct, frozen=True):
     def without_graph(self, id: str) -> "Tables":
         """Return the tables without one function graph, so that calls of it are not followed."""
         rest = {key: graph for key, graph in self.function_graphs.items() if key != id}
-        return Tables(self.services, self.functions, self.service_graphs, rest)
+        opened = self.open_graphs | {id}
+        return Tables(self.services, self.functions, self.service_graphs, rest, opened)

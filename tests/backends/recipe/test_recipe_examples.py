@@ -141,13 +141,32 @@ def test_assemble_is_a_retry_loop_inside_a_loop_over_the_pieces(lego):
     )
 
 
-def test_the_longest_duration_of_assemble_repeats_its_loops_to_their_bounds(lego):
-    reserve, pick, turn, place, check, remove, reject = 500, 2500, 2600, 2600, 800, 1300, 200
-    piece = pick + 3 * (turn + place + check) + 2 * remove
-    longest = reserve + 3 * piece + reject
-    shortest = reserve + 2400 + 2600 + 2500 + check
-    duration = list_tasks(lego)["assemble"]["derived"]["duration"]
-    assert duration == {"min": shortest, "max": longest}
+def test_assemble_places_three_pieces_and_repeats_at_most_two_attempts(lego):
+    reserve, check = 500, 800
+    pick, turn, place, remove = (2400, 2500), (2600, 2600), (2500, 2600), (1250, 1300)
+    attempts = [turn[n] + place[n] + check for n in (0, 1)]
+    derived = list_tasks(lego)["assemble"]["derived"]
+    # Nothing resets 'attempts' between pieces, so that all pieces together have two more attempts.
+    assert derived["duration"] == {
+        "min": reserve + 3 * (pick[0] + attempts[0]),
+        "max": reserve + 3 * (pick[1] + attempts[1]) + 2 * (remove[1] + attempts[1]),
+    }
+    assert derived["duration"]["min"] == 25400
+    runs = {
+        sub_task["node"]: (sub_task["runs"]["min"], sub_task["runs"]["max"])
+        for sub_task in derived["subTasks"]
+    }
+    assert runs["checkQuality"] == (3, 5)
+    assert runs["remove"] == (0, 2)
+
+
+def test_a_rejected_stack_ends_assemble_early(lego):
+    reserve, pick, attempt, remove, reject = 500, 2400, 2600 + 2500 + 800, 1250, 200
+    ends = {end["node"]: end for end in list_tasks(lego)["assemble"]["derived"]["ends"]}
+    assert "early" not in ends["assembled"]
+    assert ends["rejected"]["early"]
+    shortest = reserve + pick + 3 * attempt + 2 * remove + reject
+    assert ends["rejected"]["duration"]["min"] == shortest
 
 
 def test_the_actions_on_a_gripped_piece_need_the_same_robot(lego):

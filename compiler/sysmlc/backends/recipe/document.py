@@ -13,7 +13,9 @@ from sysmlc.backends.recipe.flow_graphs import (
 )
 from sysmlc.recipe.check_tasks import is_complete
 from sysmlc.recipe.model import (
+    Condition,
     Derived,
+    EndTime,
     Function,
     Machine,
     MachineVariable,
@@ -128,7 +130,13 @@ def _describe_derived_data(derived: Derived) -> Json:
         {
             "node": sub_task.node,
             "alternatives": _describe_each(_describe_mode, sub_task.alternatives),
-            **_drop_absent({"after": list(sub_task.after)}),
+            **_drop_absent(
+                {
+                    "after": list(sub_task.after),
+                    "runs": _describe_range(sub_task.runs),
+                    "when": _describe_each(_describe_condition, sub_task.when),
+                }
+            ),
         }
         for sub_task in derived.sub_tasks
     ]
@@ -137,7 +145,27 @@ def _describe_derived_data(derived: Derived) -> Json:
         for group in derived.same_machine
     ]
     duration = _describe_range(derived.duration)
-    return _drop_absent({"subTasks": sub_tasks, "sameMachine": groups, "duration": duration})
+    if duration is not None:
+        duration |= _drop_absent({"expected": derived.expected, "because": derived.because})
+    ends = _describe_each(_describe_end, derived.ends)
+    members = {
+        "subTasks": sub_tasks,
+        "sameMachine": groups,
+        "duration": duration,
+        "ends": ends,
+    }
+    return _drop_absent(members)
+
+
+def _describe_condition(condition: Condition) -> Json:
+    guard = describe_expression(condition.guard, condition.text)
+    members = {"decision": condition.decision, "guard": guard, "else": condition.is_else}
+    return _drop_absent(members)
+
+
+def _describe_end(end: EndTime) -> Json:
+    duration = _describe_range(end.duration)
+    return {"node": end.node, "duration": duration, **_drop_absent({"early": end.is_early})}
 
 
 def _describe_mode(mode: Mode) -> Json:

@@ -115,9 +115,11 @@ def _describe_for_each(node: Node, graph: FlowGraph) -> Json:
     variables = {variable.name: variable for variable in graph.variables}
     variable = variables.get(node.variable, Parameter(node.variable))
     limit = {} if node.max_iterations is None else {"maxIterations": node.max_iterations}
+    least = {"minIterations": node.min_iterations} if node.min_iterations else {}
     return {
         "variable": _describe_parameter(variable),
         "in": describe_expression(node.expression),
+        **least,
         **limit,
     }
 
@@ -162,6 +164,8 @@ def _describe_edge(edge: FlowEdge) -> Json:
         members["guard"] = describe_expression(edge.guard, edge.text)
     if edge.is_else:
         members["else"] = True
+    if edge.probability is not None:
+        members["probability"] = edge.probability
     if edge.role:
         members["role"] = edge.role
     if edge.item:

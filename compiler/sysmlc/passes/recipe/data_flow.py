@@ -102,12 +102,18 @@ class DataFlow(Struct, frozen=True, dict=True):
         name, action = self.context.label(pin), self.context.graph.owner(pin)
         return name if action is None else f"{self.context.label(action)}.{name}"
 
-    def max_size(self, collection: Expression) -> int | None:
-        """Return the largest size of a collection by its multiplicity, or None if unlimited."""
+    def find_sizes(self, collection: Expression) -> tuple[int, int | None]:
+        """Return the smallest and largest size of a collection by its multiplicity.
+
+        A largest size None is unlimited. Without a multiplicity nothing is known of the smallest.
+        """
         name = variable_name(collection)
         feature = None if name is None else find_feature(self.context, self.activity, name)
-        limits = None if feature is None else query.bounds(feature.attrs.get("multiplicity"))
-        return None if limits is None else limits[1]
+        multiplicity = None if feature is None else feature.attrs.get("multiplicity")
+        limits = None if feature is None else query.bounds(multiplicity)
+        if limits is None:
+            return 0, None
+        return 0 if multiplicity is None else limits[0], limits[1]
 
     def source_of(self, flow: Element) -> Expression | None:
         """Return the value that an object flow transports, or None.

@@ -26,6 +26,7 @@ from sysmlc.passes.recipe.nodes import (
     list_flows,
     step_kind,
 )
+from sysmlc.passes.recipe.profile import read_number
 from sysmlc.recipe.flow import find_reachable, sort_nodes
 from sysmlc.recipe.loops import add_loop_nodes
 from sysmlc.recipe.model import FlowEdge, FlowGraph, Node
@@ -310,7 +311,14 @@ def _build_edge(
         is_else=is_else,
         item=_find_item(context, flow) if flow.kind is Kind.OBJECT_FLOW else "",
         element=flow.id,
+        probability=_read_probability(flow),
     )
+
+
+def _read_probability(flow: Element) -> float | None:
+    """Return the probability of a flow («Probability», SysML 1.6, 11.3.2.6) from 0 to 1."""
+    probability = read_number(str(flow.attrs.get("probability", "")))
+    return probability if probability is not None and 0 <= probability <= 1 else None
 
 
 def _read_guard(

@@ -181,8 +181,16 @@ def _build_for_each(context: Context, node: Element, base: Node, data: DataFlow)
     )
     name = "" if variable is None else context.label(variable)
     collection = data.read(str(node.attrs.get("collection", "")))
-    limit = data.max_size(collection)
-    return [_change(base, variable=name, expression=collection, max_iterations=limit)]
+    least, most = data.find_sizes(collection)
+    return [
+        _change(
+            base,
+            variable=name,
+            expression=collection,
+            max_iterations=most,
+            min_iterations=least,
+        )
+    ]
 
 
 def _build_delay(context: Context, node: Element, base: Node, data: DataFlow) -> list[Node]:
