@@ -225,7 +225,7 @@ class _ActivityDrawing:
             "«decisionInputFlow»" if target.attrs.get("decision_input_flow") == flow.id else "",
             " → ".join(dict.fromkeys(pins)),
             "" if _is_default_guard(flow, source) else format_guard(self.graph, flow),
-            _format_flow_name(flow),
+            "" if pins else _format_flow_name(flow),
             f"{{weight = {labels.literal(weight)}}}" if _is_weighted(weight) else "",
         ]
         return " ".join(part for part in parts if part)

@@ -9,8 +9,8 @@ from sysmlc.ir.kinds import Edge, Kind
 from sysmlc.ir.query.classifiers import BEHAVIORS
 
 _GENERATED_NAME = re.compile(
-    r"((control|object)? ?flow|edge|(activity)? ?(initial|final)( ?node)?|flow ?final( ?node)?)"
-    r"[ _]?\d*",
+    r"((control|object)? ?flow|edge|(activity)? ?(initial|final)( ?node)?|flow ?final( ?node)?"
+    r"|start|end|done)[ _]?\d*",
     re.IGNORECASE,
 )
 
@@ -18,7 +18,7 @@ _GENERATED_NAME = re.compile(
 def has_generated_name(element: Element) -> bool:
     """Return whether a flow or control node has no name, or one such as ``ControlFlow3``.
 
-    Papyrus and other tools give such names to new elements.
+    Papyrus and other tools give such names to new elements; ``end`` says no more than the symbol.
     """
     return not element.name.strip() or bool(_GENERATED_NAME.fullmatch(element.name.strip()))
 
