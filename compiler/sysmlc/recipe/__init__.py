@@ -4,7 +4,7 @@ The checks are those of the thesis, REC001 to REC012 (SM601 to SM612), and more.
 """
 
 from sysmlc.diagnostics import Sink
-from sysmlc.recipe import check_data, check_graphs, check_resources, check_tasks
+from sysmlc.recipe import check_data, check_graphs, check_resources, check_tasks, recipe_times
 from sysmlc.recipe.findings import Check, Locate, report_findings
 from sysmlc.recipe.model import Model
 from sysmlc.recipe.tables import Tables
@@ -19,6 +19,7 @@ CHECKS: tuple[Check, ...] = (
     check_data.check_expressions,
     check_tasks.check_machines,
     check_resources.check_task_times,
+    recipe_times.check_time_limits,
     check_resources.check_groups,
     check_resources.check_releases,
     check_graphs.check_bounds,

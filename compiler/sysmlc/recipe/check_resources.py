@@ -8,6 +8,7 @@ from sysmlc.recipe.durations import (
     find_full_duration,
     find_mode_duration,
     find_refined_duration,
+    format_range,
 )
 from sysmlc.recipe.findings import Finding
 from sysmlc.recipe.flow import find_reachable
@@ -66,14 +67,8 @@ def _exceeds(duration: Range, limit: int | None) -> bool:
 
 
 def _too_long(task: Task, derived: Range, declared: str) -> Finding:
-    facts = {"task": task.id, "derived": _format_range(derived), "declared": declared}
+    facts = {"task": task.id, "derived": format_range(derived), "declared": declared}
     return Finding(TASK_TIME, task.element, facts)
-
-
-def _format_range(duration: Range) -> str:
-    if duration.max == duration.min:
-        return str(duration.min)
-    return f"{duration.min} to {'any number of' if duration.max is None else duration.max}"
 
 
 def check_service_times(model: Model, tables: Tables, tolerance: float) -> Iterator[Finding]:
@@ -97,7 +92,7 @@ def _differs(derived: Range, duration: int | None, tolerance: float) -> bool:
 def _make_time_finding(service: Service, provider: Provider, derived: Range) -> Finding:
     facts = {
         "service": service.id,
-        "derived": _format_range(derived),
+        "derived": format_range(derived),
         "declared": provider.duration,
         "machine": provider.machine,
     }

@@ -19,6 +19,7 @@ from sysmlc.recipe.model import (
     SubTask,
     Task,
 )
+from sysmlc.recipe.recipe_times import derive_recipe
 from sysmlc.recipe.tables import Tables
 
 
@@ -26,7 +27,8 @@ def derive(model: Model) -> Model:
     """Return the model with new derived data for every task."""
     tables = Tables.from_model(model)
     tasks = tuple(replace(task, derived=_derive_task(task, tables)) for task in model.recipe.tasks)
-    return replace(model, recipe=replace(model.recipe, tasks=tasks))
+    recipe = replace(model.recipe, tasks=tasks)
+    return replace(model, recipe=replace(recipe, derived=derive_recipe(recipe)))
 
 
 def _derive_task(task: Task, tables: Tables) -> Derived | None:

@@ -107,6 +107,13 @@ def find_mode_duration(task: Task, mode: Mode, tables: Tables) -> Range | None:
     return None if timing is None else timing.full_duration
 
 
+def format_range(duration: Range) -> str:
+    """Return a duration in the words of diagnostics: ``100`` or ``100 to 300``."""
+    if duration.max == duration.min:
+        return str(duration.min)
+    return f"{duration.min} to {'any number of' if duration.max is None else duration.max}"
+
+
 def find_full_duration(derived: Derived) -> Range | None:
     """Return the duration of all executions of a task, those that end early included."""
     if derived.duration is None:

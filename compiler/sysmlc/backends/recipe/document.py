@@ -30,7 +30,9 @@ from sysmlc.recipe.model import (
     Recipe,
     Service,
     Task,
+    TimeLimit,
 )
+from sysmlc.recipe.recipe_times import decide_limit
 
 Json = dict[str, object]
 _T = TypeVar("_T")
@@ -91,7 +93,13 @@ def _describe_recipe(recipe: Recipe) -> Json:
         **_drop_absent(head),
         "tasks": _describe_each(_describe_task, recipe.tasks),
         "precedence": [list(pair) for pair in recipe.precedence],
-        **_drop_absent({"performedBy": performances}),
+        **_drop_absent(
+            {
+                "performedBy": performances,
+                "timeLimits": _describe_limits(recipe.limits, recipe.derived),
+                "derived": None if recipe.derived is None else _describe_derived(recipe.derived),
+            }
+        ),
         **describe_trace(recipe.element),
     }
 
@@ -118,14 +126,27 @@ def _describe_task(task: Task) -> Json:
         "assign": dict(task.assign),
         "interruptible": task.interruptible,
         "noWait": task.no_wait,
-        "derived": None if task.derived is None else _describe_derived_data(task.derived),
+        "timeLimits": _describe_limits(task.limits, task.derived),
+        "derived": None if task.derived is None else _describe_derived(task.derived),
     }
     # The schema requires this member, even if it is empty.
     modes = {"equipment": _describe_each(_describe_mode, task.equipment)}
     return {**_drop_absent(members), **modes, **describe_trace(task.element)}
 
 
-def _describe_derived_data(derived: Derived) -> Json:
+def _describe_limits(limits: Iterable[TimeLimit], derived: Derived | None) -> list[Json]:
+    return [
+        {
+            "requirement": limit.requirement,
+            **_drop_absent({"min": limit.least, "max": limit.most}),
+            "verdict": decide_limit(limit, derived),
+            **describe_trace(limit.element),
+        }
+        for limit in limits
+    ]
+
+
+def _describe_derived(derived: Derived) -> Json:
     sub_tasks: list[Json] = [
         {
             "node": sub_task.node,

@@ -26,6 +26,7 @@ from sysmlc.passes.recipe.tasks import (
     find_precedence,
     list_steps,
 )
+from sysmlc.passes.recipe.time_limits import read_limits
 from sysmlc.recipe.derivation import derive
 from sysmlc.recipe.expression import iter_variables
 from sysmlc.recipe.model import (
@@ -109,6 +110,7 @@ def _build_recipe(
         bool(tags.flag("noWait")),
         activity.id,
         _build_performances(context, activity, [*closure.service_graphs, *closure.function_graphs]),
+        read_limits(context, [activity]),
     )
 
 

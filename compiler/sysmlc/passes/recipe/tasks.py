@@ -18,6 +18,7 @@ from sysmlc.passes.recipe.machines import (
 )
 from sysmlc.passes.recipe.nodes import find_flow_ends, find_refinement, list_flows
 from sysmlc.passes.recipe.profile import read_number
+from sysmlc.passes.recipe.time_limits import read_limits
 from sysmlc.recipe.model import MaterialUse, Task
 
 
@@ -61,6 +62,7 @@ def build_task(context: Context, recipe: Element, step: Step, data: DataFlow) ->
         bool(tags.flag("noWait")),
         None,
         step.node.id,
+        read_limits(context, [step.node, step.definition, step.refinement]),
     )
 
 

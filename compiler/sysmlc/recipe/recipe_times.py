@@ -1,0 +1,151 @@
+"""The time of a whole recipe, and verdicts on the times that requirements state."""
+
+from collections.abc import Iterator, Mapping
+from typing import Literal as OneOf
+
+from sysmlc.diagnostics import Severity, rule
+from sysmlc.ir.algorithms import sort_topologically
+from sysmlc.recipe.durations import find_full_duration, format_range
+from sysmlc.recipe.findings import Finding
+from sysmlc.recipe.flow import find_cycles, find_reachable
+from sysmlc.recipe.model import Derived, Model, Number, Range, Recipe, Task, TimeLimit
+from sysmlc.recipe.tables import Tables
+
+TIME_LIMIT = rule(
+    "SM641",
+    "recipe-breaks-time-limit",
+    Severity.WARNING,
+    "requirement '{requirement}' allows {limit}, but '{name}' takes {derived} ms",
+    help="correct the requirement, shorten a service or a loop, or let services run in parallel",
+)
+TIME_OPEN = rule(
+    "SM642",
+    "recipe-time-limit-undecided",
+    Severity.INFO,
+    "'{name}' may take longer than {limit}, which requirement '{requirement}' allows: {reason}",
+    help="apply «Loop» with maxIterations to the decision, or state the missing duration",
+)
+
+Verdict = OneOf["holds", "broken", "not-decided"]
+
+
+# -- recipes -----------------------------------------------------------------------------------
+
+
+def derive_recipe(recipe: Recipe) -> Derived | None:
+    """Return the duration of a recipe; None if the duration of a task is unknown.
+
+    Tasks that may run at the same time and need one machine follow one another.
+    """
+    durations = {task.id: _find_task_duration(task) for task in recipe.tasks}
+    known = {id: duration for id, duration in durations.items() if duration is not None}
+    is_cyclic = bool(find_cycles(durations, recipe.precedence))
+    if not known or len(known) < len(durations) or is_cyclic:
+        return None
+    shortest = _find_longest_path(recipe, {id: span.min for id, span in known.items()})
+    longest = {task.id: _find_longest_time(task, known[task.id]) for task in recipe.tasks}
+    maxima = {id: time for id, time in longest.items() if time is not None}
+    if len(maxima) < len(known):
+        endless = next(id for id, time in longest.items() if time is None)
+        reason = f"'{endless}' has no longest duration"
+        return Derived(duration=Range(shortest, None), because=reason)
+    if _has_conflict(recipe):
+        return Derived(duration=Range(shortest, sum(maxima.values())))
+    return Derived(duration=Range(shortest, _find_longest_path(recipe, maxima)))
+
+
+def _find_task_duration(task: Task) -> Range | None:
+    """Return the derived duration of a task, or without one the range of its stated durations."""
+    if task.derived is not None and task.derived.duration is not None:
+        return task.derived.duration
+    stated = [mode.duration for mode in task.equipment if mode.duration is not None]
+    is_complete = bool(stated) and len(stated) == len(task.equipment)
+    return Range(min(stated), max(stated)) if is_complete else None
+
+
+def _find_longest_time(task: Task, duration: Range) -> Number | None:
+    """Return the longest time of a task, executions that end early included."""
+    full = None if task.derived is None else find_full_duration(task.derived)
+    return (full or duration).max
+
+
+def _find_longest_path(recipe: Recipe, times: Mapping[str, Number]) -> Number:
+    ends: dict[str, Number] = {}
+    for id in sort_topologically(times, recipe.precedence):
+        before = (ends[a] for a, b in recipe.precedence if b == id)
+        ends[id] = max(before, default=0) + times[id]
+    return max(ends.values())
+
+
+def _has_conflict(recipe: Recipe) -> bool:
+    """Whether two tasks that no path orders may need the same machine."""
+    machines = {task.id: _list_machines(task) for task in recipe.tasks}
+    after = {task.id: find_reachable([task.id], recipe.precedence) for task in recipe.tasks}
+    ids = sorted(machines)
+    return any(
+        machines[a] & machines[b] and a not in after[b] and b not in after[a]
+        for n, a in enumerate(ids)
+        for b in ids[n + 1 :]
+    )
+
+
+def _list_machines(task: Task) -> set[str]:
+    sub_tasks = () if task.derived is None else task.derived.sub_tasks
+    modes = [*task.equipment, *(mode for entry in sub_tasks for mode in entry.alternatives)]
+    return {machine for mode in modes for machine in mode.machines}
+
+
+# -- requirements ------------------------------------------------------------------------------
+
+
+def decide_limit(limit: TimeLimit, derived: Derived | None) -> Verdict:
+    """Return whether all executions keep a limit by their derived duration.
+
+    It is not decided if only the longest executions may break it: the maximum is an upper bound.
+    """
+    duration = None if derived is None else find_full_duration(derived)
+    if duration is None:
+        return "not-decided"
+    is_too_long = limit.most is not None and duration.min > limit.most
+    is_too_short = limit.least is not None and _is_below(duration.max, limit.least)
+    if is_too_long or is_too_short:
+        return "broken"
+    keeps_most = limit.most is None or _is_at_most(duration.max, limit.most)
+    keeps_least = limit.least is None or duration.min >= limit.least
+    return "holds" if keeps_most and keeps_least else "not-decided"
+
+
+def _is_below(maximum: Number | None, limit: Number) -> bool:
+    return maximum is not None and maximum < limit
+
+
+def _is_at_most(maximum: Number | None, limit: Number) -> bool:
+    return maximum is not None and maximum <= limit
+
+
+def check_time_limits(model: Model, tables: Tables) -> Iterator[Finding]:
+    """SM641, SM642: tasks and the recipe keep the times that their requirements state."""
+    owners: tuple[Recipe | Task, ...] = (model.recipe, *model.recipe.tasks)
+    for owner in owners:
+        for limit in owner.limits:
+            verdict = decide_limit(limit, owner.derived)
+            if owner.derived is not None and verdict != "holds":
+                yield _make_finding(owner, limit, owner.derived)
+
+
+def _make_finding(owner: Recipe | Task, limit: TimeLimit, derived: Derived) -> Finding:
+    facts = {"requirement": limit.requirement, "limit": _format_limit(limit), "name": owner.id}
+    duration = find_full_duration(derived)
+    is_open = duration is None or (
+        duration.max is None and decide_limit(limit, derived) != "broken"
+    )
+    if duration is None or is_open:
+        reason = derived.because or "the duration of a step is unknown"
+        return Finding(TIME_OPEN, limit.element, {**facts, "reason": reason})
+    return Finding(TIME_LIMIT, limit.element, {**facts, "derived": format_range(duration)})
+
+
+def _format_limit(limit: TimeLimit) -> str:
+    least = [] if limit.least is None else [f"at least {limit.least} ms"]
+    most = [] if limit.most is None else [f"at most {limit.most} ms"]
+    return " and ".join([*least, *most])
