@@ -226,3 +226,10 @@ def test_two_flows_that_reach_the_merge_before_the_end_at_once_are_two_tokens():
     assert list_codes(sink) == []
     _, sink = derive_token_graphs(sketch(f"{start}\nx -> m\n{end}"))
     assert list_codes(sink) == ["SM454"]
+
+
+def test_an_activity_that_binds_a_template_needs_no_nodes():
+    text = 'Activity a "a"\n'
+    assert list_codes(derive_token_graphs(text)[1]) == ["SM469"]
+    binding = text + "  TemplateBinding b\n"
+    assert list_codes(derive_token_graphs(binding)[1]) == []

@@ -3,7 +3,7 @@
 from sysmlc.diagnostics.coverage import Coverage, FileCoverage, Verdict
 from sysmlc.diagnostics.diagnostic import Diagnostic, Place, Subject
 from sysmlc.diagnostics.rule import Rule, Severity, catalogue, rule
-from sysmlc.diagnostics.sink import Sink
+from sysmlc.diagnostics.sink import Sink, Wording
 
 __all__ = [
     "Coverage",
@@ -15,6 +15,7 @@ __all__ = [
     "Sink",
     "Subject",
     "Verdict",
+    "Wording",
     "catalogue",
     "rule",
 ]

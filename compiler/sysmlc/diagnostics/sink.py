@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 from pathlib import PurePosixPath
+from typing import NamedTuple
 
 from msgspec import Struct
 from msgspec.structs import replace
@@ -16,6 +17,16 @@ _MAX_FACT = 200
 """Characters of a fact in a message that would be longer than ``_MAX_TEXT``."""
 
 
+class Wording(NamedTuple):
+    """Message and advice of a rule in the words of one language.
+
+    An empty phrase stands for the phrase of the rule.
+    """
+
+    phrase: str
+    help: str
+
+
 class Sink:
     """Collects diagnostics; the same message about the same element is stored once.
 
@@ -26,6 +37,7 @@ class Sink:
     def __init__(self, severities: Mapping[str, Severity | None] | None = None) -> None:
         self._severities = dict(severities or {})
         self._file_severities: dict[str, Mapping[str, Severity | None]] = {}
+        self._file_wordings: dict[str, Mapping[str, Wording]] = {}
         self._diagnostics: dict[tuple[str, str, Subject], Diagnostic] = {}
 
     def set_file_severities(
@@ -37,6 +49,13 @@ class Sink:
         switches off rules that checks of the front end replace.
         """
         self._file_severities.update(dict.fromkeys(files, severities))
+
+    def set_file_wordings(self, files: Iterable[str], wordings: Mapping[str, Wording]) -> None:
+        """Set messages and advice by code for diagnostics in *files*, in the words of a language.
+
+        A front end calls this method for rules whose texts name constructs of another language.
+        """
+        self._file_wordings.update(dict.fromkeys(files, wordings))
 
     def report(
         self,
@@ -51,14 +70,15 @@ class Sink:
         severity = self._find_severity(rule, subject)
         if severity is None:
             return
-        message = rule.phrase.format(**facts)
+        wording = self._find_wording(rule, subject)
+        message = wording.phrase.format(**facts)
         if len(message) > _MAX_TEXT:
             facts = {
                 name: _shorten(fact, _MAX_FACT) if isinstance(fact, str) else fact
                 for name, fact in facts.items()
             }
-            message = rule.phrase.format(**facts)
-        advice = (help or rule.help).format(**facts)
+            message = wording.phrase.format(**facts)
+        advice = (help or wording.help).format(**facts)
         short_notes = tuple(_shorten(note, _MAX_TEXT) for note in notes)
         diagnostic = Diagnostic(rule, severity, message, subject, short_notes, advice)
         self._diagnostics.setdefault(_make_key(diagnostic), diagnostic)
@@ -82,6 +102,13 @@ class Sink:
             file_severities = self._file_severities.get(subject.place.file, {})
             return file_severities.get(rule.code, rule.severity)
         return rule.severity
+
+    def _find_wording(self, rule: Rule, subject: Subject) -> Wording:
+        if self._file_wordings and subject.place is not None:
+            wording = self._file_wordings.get(subject.place.file, {}).get(rule.code)
+            if wording is not None:
+                return Wording(wording.phrase or rule.phrase, wording.help)
+        return Wording(rule.phrase, rule.help)
 
     def __iter__(self) -> Iterator[Diagnostic]:
         return iter(self._diagnostics.values())

@@ -296,7 +296,7 @@ def _check_multiplicity(graph: Graph, sink: Sink, feature: Element) -> None:
 def _report_undirected(graph: Graph, sink: Sink, ports: list[Element]) -> None:
     blocks: dict[str, list[Element]] = {}
     for port in ports:
-        if port.owner is not None and "direction" not in port.attrs:
+        if port.owner is not None and _lacks_direction(port) and not _is_reported(graph, port):
             blocks.setdefault(port.owner, []).append(port)
     for id, undirected in blocks.items():
         names = [f"'{member.name or member.id}'" for member in undirected]
@@ -308,6 +308,18 @@ def _report_undirected(graph: Graph, sink: Sink, ports: list[Element]) -> None:
             count=len(names),
             ports=", ".join(names[:_MAX_LISTED]) + more,
         )
+
+
+def _lacks_direction(port: Element) -> bool:
+    return "direction" not in port.attrs
+
+
+def _is_reported(graph: Graph, port: Element) -> bool:
+    """Whether the port redefines a port of the unit that lacks a direction itself."""
+    return any(
+        former.kind is Kind.PORT and _lacks_direction(former) and not former.attrs.get("external")
+        for former in redefined_features(graph, port)
+    )
 
 
 # -- AutomationML ------------------------------------------------------------------------------

@@ -109,3 +109,121 @@ def test_an_exit_that_competes_with_several_transitions_has_one_finding():
         "SM427: 'calm to halted' leaves an orthogonal state while 'turning to slow' or 'slow to "
         "turning' can be taken in another of its regions; the component gets no contract"
     ]
+
+
+# -- words of SysML v2 -------------------------------------------------------------------------
+
+
+PORTS = """
+package Plant {
+    port def Plug;
+    port def Pipe { out attribute amount; }
+    part def Pump { port plug : Plug; port pipe : Pipe; }
+    part pump : Pump { port redefines plug; }
+}
+"""
+
+
+def test_a_port_that_redefines_an_undirected_one_is_reported_there_only():
+    assert list_messages(PORTS) == ["SM300: ports of 'Plant::Pump' without a direction (1): 'plug'"]
+    (diagnostic,) = read(PORTS, passes=PASSES).sink
+    assert diagnostic.help == (
+        "give the features of the port definition a direction: in, out or inout"
+    )
+
+
+STARTS = """
+action def Pack {
+    action close;
+    action label;
+    first close then done;
+    STEP
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("step", "messages"),
+    [
+        (
+            "first label then done;",
+            ["SM451: action 'Pack' starts with several actions at once: action 'close', "
+             "action 'label'"],
+        ),
+        ("first label then close;", []),
+    ],
+)  # fmt: skip
+def test_only_several_actions_without_predecessor_are_reported(step, messages):
+    assert list_messages(STARTS.replace("STEP", step)) == messages
+
+
+DECISION = """
+action def Charge {
+    attribute charge : ScalarValues::Real;
+    first start;
+    then decide;
+        if charge < 100.5 then fill;
+        if charge >= 100.5 then stop;
+    action fill;
+    action stop;
+}
+"""
+
+
+def test_branches_are_not_compared_where_a_guard_is_not_understood():
+    text = DECISION.replace(":>>", "")
+    codes = [message.partition(":")[0] for message in list_messages(text)]
+    assert codes == ["SM458", "SM458"]
+
+
+def test_branches_that_both_lack_a_guard_are_compared():
+    text = DECISION.replace("if charge < 100.5 then fill", "if fast then fill")
+    text = text.replace("if charge >= 100.5 then stop", "if slow then stop")
+    text = text.replace(
+        "charge : ScalarValues::Real",
+        "fast : ScalarValues::Boolean; attribute slow : ScalarValues::Boolean",
+    )
+    codes = [message.partition(":")[0] for message in list_messages(text)]
+    assert codes == ["SM456", "SM457"]
+
+
+FLOW = """
+package Plant {
+    item def Job;
+    port def Orders { in ref job : Job; }
+    part def Cell {
+        port orders : Orders;
+        FLOW
+        perform action work {
+            action pack { in ref job : Job[1]; }
+        }
+    }
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("flow", "messages"),
+    [
+        ("flow from orders.job to work.pack.job;", []),
+        ("", ["SM464: parameter 'job' of action 'pack' gets no value; it is taken as available"]),
+    ],
+)
+def test_a_flow_of_the_part_fills_a_parameter_of_its_action(flow, messages):
+    assert list_messages(FLOW.replace("FLOW", flow)) == messages
+
+
+def test_a_flow_from_a_port_to_another_part_runs_against_the_direction_of_the_port():
+    text = FLOW.replace("FLOW", "").replace("in ref job : Job[1]", "in ref job : Job")
+    text = text.replace(
+        "part def Cell {", "part cell : Cell; part lab : Cell;\n"
+        "    flow from cell.orders.job to lab.orders.job;\n    part def Cell {"
+    )  # fmt: skip
+    assert "SM310" in {message.partition(":")[0] for message in list_messages(text)}
+
+
+def test_a_state_without_entry_transition_is_reported_in_the_words_of_the_language():
+    text = "part def Lamp { exhibit state light { state dim; } }"
+    assert list_messages(text, "contracts") == [
+        "SM421: state 'light' has substates, but no entry transition to the first of them"
+    ]

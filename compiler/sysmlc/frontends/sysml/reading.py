@@ -7,7 +7,7 @@ from sysmlc.diagnostics import Coverage, Sink, Subject, Verdict
 from sysmlc.frontends.base import FileNames
 from sysmlc.frontends.sysml.detection import is_description, is_xml, language_of
 from sysmlc.frontends.sysml.libraries import FILES, LOWERED
-from sysmlc.frontends.sysml.rules import NO_LIBRARY, apply_severities
+from sysmlc.frontends.sysml.rules import NO_LIBRARY, adapt_shared_rules
 from sysmlc.frontends.sysml.unit import lower_unit
 from sysmlc.ir import Graph
 from sysmlc.language import interchange
@@ -48,14 +48,14 @@ def read(
     user_documents = [document for document in model.documents if document not in shipped]
     resolve_all(model, sink)
     check(model, sink)
-    apply_severities(user_documents, sink)
+    adapt_shared_rules(user_documents, sink)
     graph.store(Model, [*graph.derived(Model), model])
     lowered = [
         document
         for document in shipped
         if document.root.members[0].name in LOWERED and _is_mentioned(document, models)
     ]
-    apply_severities(lowered, sink)
+    adapt_shared_rules(lowered, sink)
     lower_unit([*user_documents, *lowered], model, graph, sink, coverage)
     _mark_external(graph, lowered)
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.diagnostics import Severity, Sink, Wording, rule
 from sysmlc.language.tree import Document
 
 UNSUPPORTED = rule(
@@ -57,6 +57,31 @@ SEVERITIES: dict[str, Severity | None] = {
 }
 
 
-def apply_severities(documents: Sequence[Document], sink: Sink) -> None:
-    """Give the shared rules the severities of SysML v2 in these documents."""
-    sink.set_file_severities((document.path for document in documents), SEVERITIES)
+WORDINGS = {
+    "SM300": Wording("", "give the features of the port definition a direction: in, out or inout"),
+    "SM310": Wording("", "reverse the flow, or conjugate the type of the port (~)"),
+    "SM421": Wording(
+        "state '{owner}' has substates, but no entry transition to the first of them",
+        "write 'entry; then <substate>;' into the state",
+    ),
+    "SM451": Wording(
+        "action '{activity}' starts with several actions at once: {actions}",
+        "write 'first <action> then <action>;' if only one of them is meant to start",
+    ),
+    "SM464": Wording(
+        "parameter '{pin}' of {node} gets no value; it is taken as available",
+        "bind the parameter, or let a flow lead to it",
+    ),
+    "SM466": Wording(
+        "action '{activity}' never finishes",
+        "let a succession lead to 'done' if it is meant to end",
+    ),
+}
+"""Texts of shared rules in the words of SysML v2, which has no initial nodes, pins and regions."""
+
+
+def adapt_shared_rules(documents: Sequence[Document], sink: Sink) -> None:
+    """Give the shared rules the severities and texts of SysML v2 in these documents."""
+    paths = [document.path for document in documents]
+    sink.set_file_severities(paths, SEVERITIES)
+    sink.set_file_wordings(paths, WORDINGS)

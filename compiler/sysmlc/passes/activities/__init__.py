@@ -95,7 +95,9 @@ class Activities(Struct, frozen=True):
         self._check_depth(graph, activity, sink)
         drawing = activity_drawing.read_drawing(graph, activity, sink)
         if not drawing.nodes:
-            sink.report(rules.EMPTY, graph.subject(activity), activity=activity.name)
+            # An activity that binds a template has the nodes of the template.
+            if not any(part.kind is Kind.TEMPLATE_BINDING for part in graph.owned(activity)):
+                sink.report(rules.EMPTY, graph.subject(activity), activity=activity.name)
             raise activity_drawing.CannotPlayError
         # The order matters: the stores need the nodes, and the checks of guards need the stores.
         scope = Scope(graph, activity, self.assumed_range, sink)

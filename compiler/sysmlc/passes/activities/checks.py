@@ -1,5 +1,6 @@
 """Checks of a token graph: starts, reachability, guards, and at most one token on a flow."""
 
+import re
 from collections.abc import Iterator
 
 from msgspec.structs import replace
@@ -24,6 +25,9 @@ from sysmlc.passes.activities.drawing import CannotPlayError
 
 _MAX_VALUATIONS = 20_000
 """Limit of enumeration: above it, guards count as neither exclusive nor exhaustive."""
+_NAME = re.compile(r"\s*[\w.:]+\s*")
+_MAX_LISTED = 8
+"""Actions that a message names."""
 
 
 def check_tokens(graph: Graph, tokens: TokenGraph, limit: int, sink: Sink) -> TokenGraph:
@@ -54,8 +58,11 @@ class _Checker:
             self.sink.report(rules.NO_START, self.graph.subject(self.activity), activity=name)
             raise CannotPlayError
         implied = [self.tokens.node(e.target) for e in starts if self._is_implied(e)]
-        if len(implied) == len(starts):
-            actions = ", ".join(node.label for node in implied)
+        # A single action without incoming flows is the only possible start.
+        if len(implied) == len(starts) > 1:
+            labels = [node.label for node in implied]
+            more = f" and {len(labels) - _MAX_LISTED} more" if len(labels) > _MAX_LISTED else ""
+            actions = ", ".join(labels[:_MAX_LISTED]) + more
             subject = self.graph.subject(self.activity)
             self.sink.report(rules.STARTED_BY_ACTIONS, subject, activity=name, actions=actions)
 
@@ -80,10 +87,13 @@ class _Checker:
         is_trivial = has_else and len(guarded) == 1
         open_sets = None if is_trivial else self._list_open_branches(guarded)
         is_exhaustive = has_else or (open_sets is not None and all(open_sets))
-        if not is_exhaustive:
+        # Texts that became inputs as a whole (SM458) may exclude each other, as 'x < 1.5' and
+        # 'x >= 1.5' do.
+        is_judged = not any(_is_replaced(edge) for edge in guarded)
+        if not is_exhaustive and is_judged:
             self._report_missing_branch(node, guarded)
         overlap = _find_overlap(open_sets, guarded) or _find_repeated_else(branches)
-        if overlap:
+        if overlap and (is_judged or not any(_is_replaced(edge) for edge in overlap)):
             names = " and ".join(self._describe_branch(edge) for edge in overlap)
             subject = self.graph.subject(self.graph[node.origin])
             self.sink.report(rules.OVERLAP, subject, node=node.label, branches=names)
@@ -210,6 +220,15 @@ class _Checker:
 def _guard_condition(edge: TokenEdge) -> Formula:
     condition = edge.guard.condition if edge.guard else None
     return f.TRUE if condition is None else condition
+
+
+def _is_replaced(edge: TokenEdge) -> bool:
+    """Whether the guard is a text that is not understood, so that an input replaces it."""
+    guard = edge.guard
+    if guard is None or guard.condition is None or _NAME.fullmatch(guard.text):
+        return False
+    names = [variable.name for variable in variables(guard.condition)]
+    return len(names) == 1 and guard.condition == f.var(names[0])
 
 
 def _find_overlap(

@@ -246,7 +246,9 @@ def _check_pins(draft: Draft, node: Element) -> None:
         return
     for pin in draft.graph.owned(node):
         is_input = pin.kind is Kind.PIN and pin.attrs.get("direction") == "in"
-        is_open = is_input and "value" not in pin.attrs and lower_bound(pin) != 0
+        # In SysML v2 a flow of the part that performs the activity may lead to a parameter.
+        is_filled = "value" in pin.attrs or bool(draft.graph.sources(pin, Edge.FLOW_TARGET))
+        is_open = is_input and not is_filled and lower_bound(pin) != 0
         if is_open and pin.id not in connected:
             subject = draft.graph.subject(pin)
             label = draft.drawing.labels[node.id]

@@ -51,7 +51,7 @@ def _check_usage(graph: Graph, sink: Sink, usage: Element) -> None:
         unbound = [
             feature
             for feature in type_features
-            if _is_parameter(feature) and not _is_bound(graph, usage, feature)
+            if _is_parameter(feature) and feature.name and not _is_bound(graph, usage, feature)
         ]
         if unbound:
             names = ", ".join(f"'{feature.name}'" for feature in unbound)

@@ -166,7 +166,15 @@ def _list_port_ends(graph: Graph, flow: Element) -> Iterator[tuple[Element, str,
 
 
 def _runs_inside(graph: Graph, flow: Element, port: Element) -> bool:
-    """Whether a delegation connector leads the flow from the port to the inside of its block."""
+    """Whether the flow runs between the port and the inside of its block.
+
+    A delegation connector leads it there, or the element at its other end is in the block.
+    """
+    block = graph.owner(port)
+    flow_ends = (*graph.targets(flow, Edge.FLOW_SOURCE), *graph.targets(flow, Edge.FLOW_TARGET))
+    # Another port of the block is outside, too.
+    if any(graph.owner(end) is not block and block in graph.ancestors(end) for end in flow_ends):
+        return True
     for connector in graph.targets(flow, Edge.REALIZING):
         connector_ends = ends(graph, connector)
         outer = [end for end in connector_ends if is_boundary(graph, end)]
