@@ -3,6 +3,7 @@
 import pytest
 from task_graphs import build_task_graph, derive_times
 
+from sysmlc.recipe.durations import find_unbounded_loops
 from sysmlc.recipe.model import Range
 
 ARM = {"a": "arm:1000", "b": "arm:2000", "c": "arm:300"}
@@ -122,6 +123,12 @@ def test_a_bound_of_the_model_gives_this_loop_a_maximum():
 
 def test_a_bound_that_the_guards_contradict_does_not_shorten_the_loop():
     assert derive_range(COUNTED_LOOP, ARM, {"n": 0}, D=2) == (4000, 4000)
+
+
+def test_only_loops_whose_rounds_nothing_limits_are_unbounded():
+    waiting = build_task_graph(WAITING_LOOP, {"ok": False})
+    assert [node.id for node in find_unbounded_loops(waiting)] == ["D"]
+    assert find_unbounded_loops(build_task_graph(COUNTED_LOOP, {"n": 0})) == []
 
 
 def test_a_list_of_unknown_length_may_be_empty_and_has_no_maximum():

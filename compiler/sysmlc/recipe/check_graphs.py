@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, rule
 from sysmlc.ir.algorithms import sort_topologically
+from sysmlc.recipe.durations import find_unbounded_loops
 from sysmlc.recipe.findings import Finding
 from sysmlc.recipe.flow import STEPS, find_cycles, find_reachable, list_forward_edges
 from sysmlc.recipe.model import FlowGraph, Model, Node
@@ -152,8 +153,7 @@ UNBOUNDED = rule(
 
 
 def check_bounds(model: Model, tables: Tables) -> Iterator[Finding]:
-    """SM620: each loop has a bound."""
+    """SM620: each loop has a bound, or the values of variables limit its rounds."""
     for graph in model.graphs:
-        for node in graph.nodes:
-            if node.kind == "loop" and node.max_iterations is None:
-                yield Finding(UNBOUNDED, node.element, {"loop": node.id})
+        for node in find_unbounded_loops(graph):
+            yield Finding(UNBOUNDED, node.element, {"loop": node.id})

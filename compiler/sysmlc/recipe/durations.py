@@ -217,7 +217,8 @@ class Timing(Struct, frozen=True):
     """The times of the executions of a graph, and how often each step runs.
 
     ``duration`` has no maximum for the reason ``because``; ``ends`` has the times of the final
-    nodes if there are several.
+    nodes if there are several. ``endless`` has the nodes that executions may repeat without a
+    bound, None if there are too many situations to find them.
     """
 
     duration: Range
@@ -225,6 +226,7 @@ class Timing(Struct, frozen=True):
     because: str = ""
     ends: tuple[EndTime, ...] = ()
     runs: Mapping[str, Range] = {}
+    endless: tuple[str, ...] | None = ()
 
     @property
     def full_duration(self) -> Range:
@@ -314,7 +316,18 @@ def _make_timing(
         "" if duration.max is not None else _explain_unbounded(graph, result, costs, is_exact),
         tuple(times) if len(times) > 1 else (),
         measures.count_runs(total),
+        result.endless if is_exact else None,
     )
+
+
+def find_unbounded_loops(graph: FlowGraph) -> list[Node]:
+    """Return the loop nodes whose rounds neither a bound nor the values of variables limit."""
+    loops = [node for node in graph.nodes if node.kind == "loop" and node.max_iterations is None]
+    if not loops:
+        return []
+    timing = compute_timing(graph, lambda node: NodeCost(Range(1, 1)))
+    endless = None if timing is None else timing.endless
+    return loops if endless is None else [node for node in loops if node.id in endless]
 
 
 def _explain_unbounded(
