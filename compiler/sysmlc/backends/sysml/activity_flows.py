@@ -4,10 +4,11 @@ A control node of SysML v2 has no pins. An object flow that passes a control nod
 a succession, for the order, and flows from its source to all targets behind the node.
 """
 
+import re
 from collections.abc import Iterator
 
 from sysmlc.backends.sysml.annotations import make_annotation
-from sysmlc.backends.sysml.conditions import format_condition
+from sysmlc.backends.sysml.conditions import declare_condition, format_condition
 from sysmlc.backends.sysml.declarations import list_visibility
 from sysmlc.backends.sysml.definitions import write_contents
 from sysmlc.backends.sysml.elided_elements import find_step_after_merge
@@ -21,6 +22,7 @@ from sysmlc.ir import AttrValue, Edge, Element, Kind
 
 _WAITING = "a step that waits for several flows, one of them with a guard,"
 _PAST_CONTROL = "an object flow between a store and a control node"
+_NUMBER = re.compile(r"-?\d+(\.\d+)?")
 _STORES = (Kind.OBJECT_NODE, Kind.DATA_STORE, Kind.ACTIVITY_PARAMETER)
 
 
@@ -146,6 +148,8 @@ def _format_guard(writer: Writer, member: Member, flow: Element) -> str | None:
         decision_input = _format_decision_input(writer, member, member.element)
         if decision_input is not None:
             return f"{decision_input} == {_format_guard_literal(writer, member, guard)}"
+    if isinstance(guard, str) and _NUMBER.fullmatch(guard.strip()):
+        return declare_condition(writer, member.parent, flow, guard)
     if not isinstance(guard, str):
         return _format_guard_literal(writer, member, guard)
     return format_condition(writer, member.parent, flow, guard)

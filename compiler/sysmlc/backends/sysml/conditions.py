@@ -59,6 +59,16 @@ def _format(writer: Writer, scope: Member | None, element: Element, text: str, t
     expression = format_expression(writer, scope, text)
     if expression is not None:
         return expression
+    return _declare(writer, scope, element, text, type_)
+
+
+def declare_condition(writer: Writer, scope: Member | None, element: Element, text: str) -> str:
+    """Return the name of a Boolean attribute for a condition that is no Boolean expression."""
+    return _declare(writer, scope, element, text, "ScalarValues::Boolean")
+
+
+def _declare(writer: Writer, scope: Member | None, element: Element, text: str, type_: str) -> str:
+    """Return the name of an attribute with this type for a text."""
     name = " ".join(text.split()) or "undefined"
     writer.losses.record(TEXT_AS_NAME, element, text=name)
     namespace = scope

@@ -10,7 +10,11 @@ from sysmlc.backends.sysml.declarations import list_visibility
 from sysmlc.backends.sysml.definitions import write_contents
 from sysmlc.backends.sysml.plan import Member
 from sysmlc.backends.sysml.printing import Line, quote_name
-from sysmlc.backends.sysml.references import format_qualified_name, format_reference
+from sysmlc.backends.sysml.references import (
+    format_qualified_name,
+    format_reference,
+    is_path_accessible,
+)
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import Edge, Kind
 
@@ -191,13 +195,19 @@ def _write_derivation(writer: Writer, member: Member) -> list[Line]:
 
 
 def _write_allocation(writer: Writer, member: Member) -> list[Line]:
-    """Write an allocation between two usages, or an allocation definition for two definitions."""
+    """Write an allocation between two usages, or an allocation definition for two definitions.
+
+    An end of an allocation, unlike that of a dependency, is a feature that is accessible.
+    """
     clients, suppliers = _find_ends(writer, member)
     ends = [*clients, *suppliers]
     if not len(clients) == len(suppliers) == 1:
         return _write_plain(writer, member)
     if all(end.shape.is_usage for end in ends):
-        return _write_usage_allocation(writer, member, ends)
+        scope = _find_allocation_scope(member, ends)
+        if all(is_path_accessible(writer.plan, scope, end) for end in ends):
+            return _write_usage_allocation(writer, member, ends, scope)
+        return _write_plain(writer, member)
     if all(end.shape.is_definition for end in ends):
         names = [format_reference(writer.plan, member, end) for end in ends]
         roles = zip(("allocated", "allocatedTo"), names, strict=True)
@@ -208,13 +218,19 @@ def _write_allocation(writer: Writer, member: Member) -> list[Line]:
     return _write_plain(writer, member)
 
 
-def _write_usage_allocation(writer: Writer, member: Member, ends: list[Member]) -> list[Line]:
-    """Write an allocation; inside the definition if both features belong to the same one."""
-    name = quote_name(member.name) if member.name else ""
-    head = f"allocation {name} allocate" if name else "allocate"
+def _find_allocation_scope(member: Member, ends: list[Member]) -> Member | None:
+    """Return the namespace of an allocation: the definition that contains both features, if any."""
     definition = _find_definition(ends[0])
     is_shared = definition is not None and _find_definition(ends[1]) is definition
-    scope = definition if is_shared else member.parent
+    return definition if is_shared else member.parent
+
+
+def _write_usage_allocation(
+    writer: Writer, member: Member, ends: list[Member], scope: Member | None
+) -> list[Line]:
+    """Write an allocation between two features, which *scope* may be the definition of."""
+    name = quote_name(member.name) if member.name else ""
+    head = f"allocation {name} allocate" if name else "allocate"
     names = [format_reference(writer.plan, scope, end) for end in ends]
     line = Line(f"{head} {names[0]} to {names[1]}", write_contents(writer, member))
     if scope is member.parent or scope is None:

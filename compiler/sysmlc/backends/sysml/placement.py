@@ -14,6 +14,8 @@ from sysmlc.backends.sysml.rules import APPROXIMATED, Losses
 from sysmlc.backends.sysml.shapes import PACKAGES, Shape, find_shape
 from sysmlc.ir import Edge, Element, Graph, Kind
 
+_ENUMERATION_MEMBERS = frozenset({"enum", "comment", "metadata", "import"})
+"""Keywords of members that an enumeration definition may have."""
 _NAMELESS = frozenset({"start", "import"})
 """Keywords of members that have no name in the text."""
 _USING_EDGES = (
@@ -91,8 +93,18 @@ def _place_element(plan: Plan, element: Element, parent: Member | None) -> Membe
     shape = find_shape(plan.graph, element, plan.type_shapes)
     if shape is None:
         return parent
+    if _is_foreign_to_enumeration(parent, shape):
+        owner = f"the owner of {shape.keyword} in an enumeration"
+        plan.losses.record(APPROXIMATED, element, construct=owner, replacement="its namespace")
+        parent = None if parent is None else parent.parent
     name = "" if shape.keyword in _NAMELESS else element.name
     return plan.add(shape, parent, name, element)
+
+
+def _is_foreign_to_enumeration(parent: Member | None, shape: Shape) -> bool:
+    """Whether a member cannot stand in an enumeration definition (SysML 2.0, 7.8)."""
+    is_enumeration = parent is not None and parent.shape.keyword == "enum def"
+    return is_enumeration and shape.keyword not in _ENUMERATION_MEMBERS
 
 
 def _is_outside_measure(element: Element) -> bool:

@@ -166,6 +166,16 @@ def is_accessible(plan: Plan, scope: Member | None, feature: Member) -> bool:
     return False
 
 
+def is_path_accessible(plan: Plan, scope: Member | None, feature: Member) -> bool:
+    """Whether a feature chain from *scope* leads to a feature through the usages around it."""
+    usage: Member | None = feature
+    while usage is not None and usage.shape.is_usage:
+        if is_accessible(plan, scope, usage):
+            return True
+        usage = usage.parent
+    return False
+
+
 # -- text of references --------------------------------------------------------------------------
 
 
