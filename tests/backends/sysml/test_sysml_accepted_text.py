@@ -84,6 +84,37 @@ def test_a_guard_that_is_a_truth_value_is_a_condition():
     assert [loss for loss in losses if loss.startswith("SM735")] == []
 
 
+OUTSIDE = """
+Package p "Plant"
+  Class gate "Gate" role="block"
+    Property gate.owner "owner" role="part" aggregation="composite"
+      -> typed-by gate
+  Instance i "gate1"
+    -> instance-of gate
+    Slot i.s ""
+      -> instance-of gate.owner
+      -> references {value}
+  Instance j "gate2"
+    -> instance-of gate
+Class outside "_19_0_1" external=true
+"""
+
+
+def test_a_value_outside_of_the_model_is_reported_as_lost():
+    """Only its id is known: the stub is a definition, which has no value."""
+    lines, losses = write_accepted(OUTSIDE.replace("{value}", "outside"))
+    assert ":>> owner;" in lines
+    assert losses == [
+        "SM731 SysML v2 text cannot express 'references' from Slot to Class (1 omitted)"
+    ]
+
+
+def test_a_value_that_is_an_instance_is_written():
+    lines, losses = write_accepted(OUTSIDE.replace("{value}", "j"))
+    assert ":>> owner = gate2;" in lines
+    assert losses == []
+
+
 ENUMERATION = """
 Package p "Plant"
   Enumeration kind "Kind"

@@ -5,6 +5,7 @@ from sysmlc.backends.sysml.declarations import list_visibility, refer_to_type
 from sysmlc.backends.sysml.expressions import format_value
 from sysmlc.backends.sysml.plan import Member
 from sysmlc.backends.sysml.printing import Line, quote_name
+from sysmlc.backends.sysml.rules import UNSAID_EDGE
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import Edge, Element, Kind, list_items
 
@@ -101,12 +102,28 @@ def _write_child(writer: Writer, element: Element) -> list[Line]:
 
 
 def _format_slot_value(writer: Writer, member: Member, slot: Element, feature: Element) -> str:
-    names = writer.refer_to_targets(member, slot, Edge.REFERENCES)
+    names = writer.refer_to_all(member, slot, Edge.REFERENCES, _list_values(writer, slot))
     if "value" in slot.attrs:
         return f" = {format_value(writer, member, feature, slot)}"
     if not names:
         return ""
     return f" = {names[0] if len(names) == 1 else '(' + ', '.join(names) + ')'}"
+
+
+def _list_values(writer: Writer, slot: Element) -> list[Element]:
+    """Return the elements that are values of a slot; record the loss of definitions among them.
+
+    An instance outside of the model, of which only the id is known, is written as a definition.
+    """
+    values = []
+    for target in writer.graph.targets(slot, Edge.REFERENCES):
+        target_member = writer.plan.find(target)
+        if target_member is not None and target_member.shape.is_definition:
+            facts = {"edge": "references", "kind": str(slot.kind), "target": str(target.kind)}
+            writer.losses.record(UNSAID_EDGE, slot, **facts)
+        else:
+            values.append(target)
+    return values
 
 
 # -- units ---------------------------------------------------------------------------------------

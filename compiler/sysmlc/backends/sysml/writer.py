@@ -1,6 +1,6 @@
 """State shared by the functions that write members, and the order of members."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from sysmlc.backends.sysml.plan import Member, Plan
@@ -76,8 +76,14 @@ class Writer:
 
     def refer_to_targets(self, scope: Member | None, holder: Element, edge: Edge) -> list[str]:
         """Return the qualified names of the targets of all edges of a kind."""
+        return self.refer_to_all(scope, holder, edge, self.graph.targets(holder, edge))
+
+    def refer_to_all(
+        self, scope: Member | None, holder: Element, edge: Edge, targets: Sequence[Element]
+    ) -> list[str]:
+        """Return the qualified names of some targets of the edges of a kind."""
         names = []
-        for target in self.graph.targets(holder, edge):
+        for target in targets:
             member = self.plan.find(target)
             name = None if member is None else format_qualified_name(self.plan, scope, member)
             if name is None:
