@@ -115,6 +115,28 @@ def test_a_value_that_is_an_instance_is_written():
     assert losses == []
 
 
+CONNECTOR = """
+Package p "Plant"
+  Class gate "Gate" role="block"
+    Property gate.x "x" role="value" aggregation="composite"
+    Connector gate.c "" role="binding connector"
+      -> end gate.c.a gate.c.b
+      ConnectorEnd gate.c.a
+        -> role gate.x
+      ConnectorEnd gate.c.b
+        -> role outside
+Class outside "_19_0_1" external=true
+"""
+
+
+def test_a_connector_to_an_end_outside_of_the_model_is_reported_as_lost():
+    lines, losses = write_accepted(CONNECTOR)
+    assert not any(line.startswith("bind") for line in lines)
+    assert losses == [
+        "SM736 'end' of Connector leads to an element without a name in the text (1 omitted)"
+    ]
+
+
 ENUMERATION = """
 Package p "Plant"
   Enumeration kind "Kind"

@@ -152,7 +152,10 @@ def _format_end_chain(writer: Writer, member: Member, end: Element) -> str | Non
     path = writer.graph.targets(end, Edge.PATH)
     steps = [*(step for step in path if step is not role), role]
     first = writer.plan.find(steps[0])
-    if first is None or not is_accessible(writer.plan, member.parent, first):
+    # Of a role outside of the model only the id is known: its stub is a definition.
+    if first is None or first.shape.is_definition:
+        return None
+    if not is_accessible(writer.plan, member.parent, first):
         return None
     return format_chain(writer.plan, member.parent, steps)
 
