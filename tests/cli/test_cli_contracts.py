@@ -45,7 +45,8 @@ def test_a_selected_component_is_compared_with_its_requirements(workspace, all_p
     result = workspace.sysmlc("contracts", "check", "lamp.ir", "-c", "Plant::Gate")
     assert [result.exit_code, result.stdout] == [
         1,
-        "Plant::Gate: realizable, violates its requirements\n",
+        "Plant::Gate: realizable, violates its requirements\n"
+        "  Stays on: broken: G (state=B -> state'=B)\n",
     ]
 
 

@@ -11,13 +11,15 @@ from sysmlc.cli import terminal
 from sysmlc.support.escapes import escape_undecodable
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from sysmlc.cli.session import Settings
     from sysmlc.config import Config
     from sysmlc.diagnostics import Sink, Subject
     from sysmlc.diagnostics.renderers import Finding
     from sysmlc.logic.contract import Composite, Contract
+    from sysmlc.logic.requirements.checked_behaviours import CheckedBehaviour
+    from sysmlc.logic.requirements.stated_requirements import StatedRequirement
     from sysmlc.sources import Source
     from sysmlc.synthesis.decision import Place
 
@@ -36,6 +38,10 @@ class ContractFile(Struct, frozen=True):
     root: Path
     is_whole: bool = True
     """Whether every contract of the file could be read."""
+    behaviours: "Mapping[str, CheckedBehaviour]" = {}
+    """The behaviours of a model by component."""
+    requirements: "tuple[StatedRequirement, ...]" = ()
+    """The requirements of a model."""
 
 
 def select_contracts(
@@ -75,6 +81,8 @@ def _read_model(file: Path, config: "Config", settings: "Settings") -> ContractF
     from sysmlc.diagnostics import Sink
     from sysmlc.logic.composition.derivation import compose_blocks
     from sysmlc.logic.contract import Contract
+    from sysmlc.logic.requirements.checked_behaviours import list_checked_behaviours
+    from sysmlc.logic.requirements.stated_requirements import list_stated_requirements
 
     compilation = session.compile_unit((file,), config, settings)
     findings = tuple(reports.list_findings(compilation, only_errors=not settings.verbose))
@@ -90,6 +98,12 @@ def _read_model(file: Path, config: "Config", settings: "Settings") -> ContractF
         session.fail(f"'{file}' has no behaviour and no requirement that gives a contract")
     sink = Sink(config.rules)
     composites = compose_blocks(compilation.graph, contracts, sink)
+    behaviours = list_checked_behaviours(compilation.graph, contracts)
+    reasons = {
+        diagnostic.subject.id: diagnostic.message
+        for diagnostic in compilation.diagnostics
+        if diagnostic.rule.code in ("SM522", "SM523")
+    }
     return ContractFile(
         tuple(contracts),
         tuple(composites),
@@ -98,6 +112,8 @@ def _read_model(file: Path, config: "Config", settings: "Settings") -> ContractF
         findings,
         compilation.sources,
         compilation.root,
+        behaviours={behaviour.contract.component: behaviour for behaviour in behaviours},
+        requirements=tuple(list_stated_requirements(compilation.graph, contracts, reasons)),
     )
 
 
@@ -160,12 +176,21 @@ def _locate_in_text(origin: str) -> "Subject":
     return Subject(place=place)
 
 
-def show_results(read: ContractFile, settings: "Settings", lines: "Iterable[str]") -> None:
-    """Print the findings about a file and its contracts, then a line for each contract."""
+def show_results(
+    read: ContractFile,
+    settings: "Settings",
+    lines: "Iterable[str]",
+    verdicts: "list[dict[str, object]] | None" = None,
+) -> None:
+    """Print the findings about a file and its contracts, then a line for each contract.
+
+    The format JSON contains the *verdicts* about requirements as the list ``requirements``.
+    """
     from sysmlc.cli import reports
     from sysmlc.diagnostics.renderers import make_report
 
     findings = reports.localize(read.root, make_report(read.sink, read.sources).findings)
-    reports.print_findings([*read.findings, *findings], settings)
+    details = {} if verdicts is None else {"requirements": verdicts}
+    reports.print_findings([*read.findings, *findings], settings, details)
     for line in lines:
         terminal.echo(line, err=not reports.allows_sentences(settings))

@@ -4,12 +4,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+from msgspec.structs import replace
 
 from sysmlc.cli import options
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from sysmlc.cli.contract_files import ContractFile
     from sysmlc.cli.session import Settings
+    from sysmlc.logic.contract import Composite
     from sysmlc.synthesis.contract_checks import CheckedContract
     from sysmlc.synthesis.decision import Options
 
@@ -88,6 +92,7 @@ def _check(
 ) -> int:
     from sysmlc.cli.contract_files import select_contracts, show_results
     from sysmlc.cli.reports import write_files
+    from sysmlc.cli.requirement_reports import list_verdicts
     from sysmlc.diagnostics import Severity
     from sysmlc.synthesis.composition_check import check_compositions
     from sysmlc.synthesis.contract_checks import check_contracts
@@ -98,12 +103,20 @@ def _check(
         if contract_file.contracts
         else ()
     )
+    behaviours = contract_file.behaviours
     composites = [
-        contract for contract in contract_file.composites if component in ("", contract.component)
+        _without_demands(composite) if composite.component in behaviours else composite
+        for composite in contract_file.composites
+        if component in ("", composite.component)
     ]
     alone = list(
         check_contracts(
-            contracts, contract_file.contracts, contract_file.place, contract_file.sink, options
+            contracts,
+            contract_file.contracts,
+            contract_file.place,
+            contract_file.sink,
+            options,
+            behaviours,
         )
     )
     together = list(
@@ -118,21 +131,51 @@ def _check(
     show_results(
         contract_file,
         settings,
-        (*map(_format_line, alone), *(result.text() for result in together)),
+        (
+            *(line for result in alone for line in _format_result(result, settings.verbose)),
+            *(result.text() for result in together),
+        ),
+        list_verdicts(
+            [item for item in contract_file.requirements if component in ("", item.component)],
+            alone,
+        ),
     )
-    is_undecided = any(result.verdict.is_realizable is None for result in alone)
+    is_undecided = any(
+        result.verdict.is_realizable is None and not result.is_checked_by_behaviour
+        for result in alone
+    )
     diagnostics = (*contract_file.sink, *(finding.diagnostic for finding in contract_file.findings))
     has_errors = any(diagnostic.severity is Severity.ERROR for diagnostic in diagnostics)
     is_done = contract_file.is_whole and not is_undecided and bool(alone or together)
     return int(has_errors) if is_done else 2
 
 
-def _format_line(result: "CheckedContract") -> str:
-    additions = {
-        None: "",
-        True: ", satisfies its requirements",
-        False: ", violates its requirements",
-    }
+def _without_demands(composite: "Composite") -> "Composite":
+    """Return the parts of a block that has a behaviour, which answers for its requirements."""
+    whole = composite.whole and replace(composite.whole, guarantees=())
+    return replace(composite, whole=whole)
+
+
+def _format_result(result: "CheckedContract", is_verbose: bool) -> "Iterator[str]":
+    """Yield the line of a contract, and the lines of its requirements that do not simply hold."""
+    from sysmlc.cli.requirement_reports import describe_verdicts
+
     words = {None: "not decided", True: "realizable", False: "unrealizable"}
     verdict = result.verdict
-    return f"{verdict.component}: {words[verdict.is_realizable]}{additions[result.is_implemented]}"
+    text = words[verdict.is_realizable]
+    if result.is_checked_by_behaviour and verdict.is_realizable is None:
+        text = "checked one by one"
+    yield f"{verdict.component}: {text}{_summarise_requirements(result)}"
+    yield from describe_verdicts(result, is_verbose)
+
+
+def _summarise_requirements(result: "CheckedContract") -> str:
+    answers = [str(requirement.answer) for requirement in result.requirements]
+    if result.is_implemented is False:
+        return ", violates its requirements"
+    if "not-decided" in answers:
+        count = answers.count("not-decided")
+        return f", {count} of {len(answers)} requirements not decided"
+    if "holds-if-actions-end" in answers:
+        return ", satisfies its requirements if its actions end"
+    return ", satisfies its requirements" if answers else ""

@@ -2,7 +2,7 @@
 
 import os
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -71,15 +71,23 @@ def localize_name(root: Path, name: str) -> str:
     return escape_undecodable(path.relative_to(here).as_posix())
 
 
+_NO_DETAILS: Mapping[str, object] = {}
+
+
 def print_findings(
-    findings: "Iterable[Finding]", settings: "Settings", *, folds_infos: bool = False
+    findings: "Iterable[Finding]",
+    settings: "Settings",
+    details: Mapping[str, object] = _NO_DETAILS,
+    *,
+    folds_infos: bool = False,
 ) -> None:
     """Print the reported findings in the form that the user selected.
 
-    With *folds_infos*, the text has one line for each rule with infos, unless options ask for more.
+    *details* are members of the document that only the format JSON has. With *folds_infos*, the
+    text has one line for each rule with infos, unless options ask for more.
     """
     from sysmlc.diagnostics import Severity
-    from sysmlc.diagnostics.renderers import XPATH_FORMATS, render, shorten
+    from sysmlc.diagnostics.renderers import XPATH_FORMATS, render, render_json, shorten
 
     on_stdout = settings.form in _FORMS_ON_STDOUT
     stream = sys.stdout if on_stdout else sys.stderr
@@ -95,7 +103,10 @@ def print_findings(
             replace(finding, xpath="") if finding.xpath else finding for finding in report.findings
         )
         report = replace(report, findings=without_xpath)
-    text = render(report, settings.form, color=has_color(stream))
+    if settings.form == "json":
+        text = render_json(report, details)
+    else:
+        text = render(report, settings.form, color=has_color(stream))
     # has_color has decided; without color=True click would decide again.
     click.echo(text, nl=False, err=not on_stdout, color=True)
     if report.hidden:

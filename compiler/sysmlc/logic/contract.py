@@ -6,6 +6,7 @@ A contract has variables with owners and domains, and classified conjuncts.
 from enum import StrEnum
 
 from msgspec import Struct
+from msgspec.structs import replace
 
 from sysmlc.logic.formula import Formula
 
@@ -68,6 +69,17 @@ class Class(StrEnum):
     __hash__ = str.__hash__
 
 
+class Source(StrEnum):
+    """Who states a conjunct: the author of the model, or the compiler, which derives it.
+
+    Derived conjuncts are the behaviour that the diagrams draw, the initial values of declarations,
+    and the assumptions that actions end and loops are left sooner or later.
+    """
+
+    AUTHOR = "author"
+    DERIVED = "derived"
+
+
 class Conjunct(Struct, frozen=True):
     """One conjunct, with the id of the element that it comes from and its meaning in words."""
 
@@ -77,6 +89,12 @@ class Conjunct(Struct, frozen=True):
     text: str = ""
     viewpoint: str = ""
     """Name of the requirement whose viewpoint the conjunct belongs to; empty if common to all."""
+    source: Source = Source.AUTHOR
+
+    @property
+    def is_derived(self) -> bool:
+        """Whether the compiler derives the conjunct."""
+        return self.source is Source.DERIVED
 
 
 class Contract(Struct, frozen=True):
@@ -88,6 +106,17 @@ class Contract(Struct, frozen=True):
     variables: tuple[Variable, ...]
     assumptions: tuple[Conjunct, ...]
     guarantees: tuple[Conjunct, ...]
+
+
+def mark_derived(contract: Contract) -> Contract:
+    """Return the contract with all conjuncts marked as derived."""
+
+    def mark(conjuncts: tuple[Conjunct, ...]) -> tuple[Conjunct, ...]:
+        return tuple(replace(conjunct, source=Source.DERIVED) for conjunct in conjuncts)
+
+    return replace(
+        contract, assumptions=mark(contract.assumptions), guarantees=mark(contract.guarantees)
+    )
 
 
 class Part(Struct, frozen=True):

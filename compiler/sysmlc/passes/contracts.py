@@ -19,7 +19,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.activities import derivation as activity_contract
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.classification import classify
-from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
+from sysmlc.logic.contract import Class, Conjunct, Contract, Owner, mark_derived
 from sysmlc.logic.expressions.context import context_of
 from sysmlc.logic.feature_writes import WriterIndex
 from sysmlc.logic.formal_texts import describe_error, is_formal, read_formal
@@ -62,7 +62,8 @@ class Contracts(Struct, frozen=True):
         """Store the Contracts of behaviours, of subjects of requirements and of services."""
         assumed_range = self.assumed_low, self.assumed_high
         # `_add_formulas` finds contracts by component, so that these names must be distinct before.
-        derived = [*self._derive_machines(graph, sink), *_derive_activities(graph)]
+        drawn = (*self._derive_machines(graph, sink), *_derive_activities(graph))
+        derived = list(map(mark_derived, drawn))
         derived = _number_components(graph, derived, sink)
         derived = _add_formulas(graph, derived, assumed_range, sink)
         required = list(requirements.derive(graph, derived, assumed_range, sink))

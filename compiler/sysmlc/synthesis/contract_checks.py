@@ -1,13 +1,16 @@
 """Checks of the contracts of a model: each by itself, and behaviours against requirements."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
 from msgspec import Struct
+from msgspec.structs import replace
 
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.logic.contract import Contract
+from sysmlc.logic import formula as f
+from sysmlc.logic.contract import Conjunct, Contract, Owner
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import reduce_contract
+from sysmlc.logic.requirements.checked_behaviours import CheckedBehaviour
 from sysmlc.synthesis.algebra.composition import conjoin_viewpoints
 from sysmlc.synthesis.algebra.fair_systems import DomainError
 from sysmlc.synthesis.algebra.refinement import Failure, find_refinement_failures
@@ -16,13 +19,19 @@ from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.synthesis.decision import Options, Place, Verdict, decide
 from sysmlc.synthesis.games.game import OutsideGr1Error, make_game
 from sysmlc.synthesis.lints import lint
+from sysmlc.synthesis.requirement_verdicts import (
+    Answer,
+    RequirementVerdict,
+    decide_requirements,
+)
 from sysmlc.synthesis.unrealizable import find_unrealizable_core, is_won
 from sysmlc.synthesis.witnesses import (
     Party,
     Witness,
-    describe_problem,
     manager_factory,
+    print_temporal,
     report_failure,
+    text_in_parentheses,
 )
 
 SUFFIX = ".requirements"
@@ -47,7 +56,8 @@ NOT_COMPARED = rule(
     "SM562",
     "behaviour-not-compared",
     Severity.WARNING,
-    "the behaviour of '{component}' is not compared with its requirements: {reason}",
+    "it is not decided whether the behaviour of '{component}' satisfies '{formula}'{context}: "
+    "{reason}",
 )
 
 
@@ -64,9 +74,24 @@ class CheckedContract(Struct, frozen=True):
     """The result of checking one contract."""
 
     verdict: Verdict
-    is_implemented: bool | None
-    """Whether the behaviour refines its requirements; None without requirements or verdict."""
+    requirements: tuple[RequirementVerdict, ...] = ()
+    """The verdicts about the requirements of the component, if the contract is a behaviour's."""
+    assumes_more: bool = False
+    """Whether the author wrote an assumption on the behaviour that the requirements do not make."""
+    is_checked_by_behaviour: bool = False
+    """Whether it is the contract of requirements that a behaviour is checked against."""
     witnesses: tuple[Witness, ...] = ()
+
+    @property
+    def is_implemented(self) -> bool | None:
+        """Whether the behaviour satisfies its requirements; None without a complete answer."""
+        answers = [requirement.answer for requirement in self.requirements]
+        if self.assumes_more or Answer.BROKEN in answers:
+            return False
+        return None if not answers or Answer.NOT_DECIDED in answers else True
+
+
+_NO_BEHAVIOURS: Mapping[str, CheckedBehaviour] = {}
 
 
 def check_contracts(
@@ -75,37 +100,35 @@ def check_contracts(
     place: Place,
     sink: Sink,
     options: Options,
+    behaviours: Mapping[str, CheckedBehaviour] = _NO_BEHAVIOURS,
 ) -> Iterator[CheckedContract]:
-    """Decide and lint the chosen contracts, and compare behaviours with their requirements.
+    """Decide and lint the chosen contracts, and check behaviours against their requirements.
 
     *contracts* are all contracts of the model, because the contract of the requirements of a chosen
-    behaviour need not be chosen itself.
+    behaviour need not be chosen itself. *behaviours* are the behaviours by component; without one,
+    the contract of a component describes its behaviour completely.
     """
-    requirement_contracts = {
-        contract.component.removesuffix(SUFFIX): contract
-        for contract in contracts
-        if _is_requirement_contract(contract)
-    }
+    all_by_component = {contract.component: contract for contract in contracts}
     for contract in chosen:
+        component = contract.component
+        behaviour = all_by_component.get(component.removesuffix(SUFFIX))
+        if _is_requirement_contract(contract) and behaviour is not None:
+            checked = behaviours.get(behaviour.component) or CheckedBehaviour(behaviour)
+            verdict = _decide_consistency(contract, checked, place, sink, options)
+            yield CheckedContract(verdict, is_checked_by_behaviour=True)
+            continue
         verdict = decide(contract, place, sink, options)
         # Lints play games and explore runs, so an undecided contract would meet the same obstacle.
         if verdict.is_realizable is not None:
             _lint_within_limits(contract, place, sink, options)
         if verdict.is_realizable:
             check_viewpoints(contract, place, sink, options)
-        requirements = (
-            None
-            if _is_requirement_contract(contract)
-            else requirement_contracts.get(contract.component)
-        )
-        failures = (
-            None
-            if requirements is None
-            else _find_requirement_failures(contract, requirements, place, sink, options)
-        )
-        is_implemented = None if failures is None else not failures
-        witnesses = tuple(_build_witness(contract, failure) for failure in failures or ())
-        yield CheckedContract(verdict, is_implemented, witnesses)
+        requirements = all_by_component.get(f"{component}{SUFFIX}")
+        if requirements is None:
+            yield CheckedContract(verdict)
+        else:
+            checked = behaviours.get(component) or CheckedBehaviour(contract)
+            yield _check_requirements(verdict, checked, requirements, place, sink, options)
 
 
 def _is_requirement_contract(contract: Contract) -> bool:
@@ -120,23 +143,141 @@ def _lint_within_limits(contract: Contract, place: Place, sink: Sink, options: O
         sink.report(GIVEN_UP, place(contract.origin), component=contract.component, reached=reached)
 
 
-def _find_requirement_failures(
-    behaviour: Contract, requirements: Contract, place: Place, sink: Sink, options: Options
-) -> tuple[Failure, ...] | None:
-    """Report and return the failures of refinement; None if that is not decided."""
-    try:
-        failures = tuple(
-            find_refinement_failures(behaviour, requirements, manager_factory(options)())
-        )
-    except (OutsideGr1Error, DomainError, LimitError) as problem:
-        subject = place(behaviour.origin)
-        reason = describe_problem(problem)
-        sink.report(NOT_COMPARED, subject, component=behaviour.component, reason=reason)
-        return None
+# -- requirements of behaviours --------------------------------------------------------------------
+
+
+def _decide_consistency(
+    requirements: Contract,
+    behaviour: CheckedBehaviour,
+    place: Place,
+    sink: Sink,
+    options: Options,
+) -> Verdict:
+    """Decide whether a system can satisfy all requirements together, and lint them.
+
+    Actions of the behaviour are assumed to end. A feature that other behaviours assign counts as an
+    output. Formulas outside GR(1) are not part of the question, because the behaviour is checked
+    against each of them anyway.
+    """
+    irreducible = reduce_contract(requirements).irreducible
+    if any(conjunct in irreducible for conjunct in requirements.assumptions):
+        return Verdict(requirements.component, None)
+    contract = _complete(requirements, behaviour, irreducible)
+    verdict = decide(contract, place, sink, options)
+    if verdict.is_realizable is not None:
+        _lint_within_limits(_without(requirements, irreducible), place, sink, options)
+    if verdict.is_realizable:
+        check_viewpoints(contract, place, sink, options)
+    return (
+        replace(verdict, is_realizable=None) if irreducible and verdict.is_realizable else verdict
+    )
+
+
+def _without(requirements: Contract, irreducible: Sequence[Conjunct]) -> Contract:
+    guarantees = tuple(
+        conjunct for conjunct in requirements.guarantees if conjunct not in irreducible
+    )
+    return replace(requirements, guarantees=guarantees)
+
+
+def _complete(
+    requirements: Contract, behaviour: CheckedBehaviour, irreducible: Sequence[Conjunct]
+) -> Contract:
+    """Return the requirements with the assumptions that the compiler derives for the behaviour."""
+    assumptions = tuple(
+        conjunct for conjunct in behaviour.contract.assumptions if conjunct.is_derived
+    )
+    names = {variable.name for variable in requirements.variables}
+    read = {variable.name for item in assumptions for variable in f.variables(item.formula)}
+    variables = (
+        *requirements.variables,
+        *(variable for variable in behaviour.contract.variables if variable.name in read - names),
+    )
+    features = behaviour.gaps.keys() - behaviour.ends
+    return replace(
+        _without(requirements, irreducible),
+        variables=tuple(
+            replace(variable, owner=Owner.SYSTEM) if variable.name in features else variable
+            for variable in variables
+        ),
+        assumptions=(
+            *(
+                conjunct
+                for conjunct in requirements.assumptions
+                # The initial value of such a feature is no assumption about an input.
+                if not (conjunct.is_derived and _reads(conjunct, features))
+            ),
+            *assumptions,
+        ),
+    )
+
+
+def _reads(conjunct: Conjunct, names: Set[str]) -> bool:
+    return any(variable.name in names for variable in f.variables(conjunct.formula))
+
+
+def _check_requirements(
+    verdict: Verdict,
+    behaviour: CheckedBehaviour,
+    requirements: Contract,
+    place: Place,
+    sink: Sink,
+    options: Options,
+) -> CheckedContract:
+    """Check a behaviour against each conjunct of its requirements, and report the failures."""
+    contract = behaviour.contract
+    failures = _find_undischarged(contract, requirements, options)
     for failure in failures:
-        rule = ASSUMES if failure.is_assumption else BREAKS
-        report_failure(rule, failure, behaviour.component, place(failure.conjunct.origin), sink)
-    return failures
+        subject = place(failure.conjunct.origin)
+        report_failure(ASSUMES, failure, contract.component, subject, sink)
+    undischarged = [failure.conjunct for failure in failures]
+    verdicts = tuple(decide_requirements(behaviour, requirements, undischarged, options))
+    for requirement in verdicts:
+        _report_verdict(contract, requirement, place, sink)
+    failures += [
+        Failure(requirement.conjunct, False, requirement.trace)
+        for requirement in verdicts
+        if requirement.trace is not None
+    ]
+    witnesses = tuple(_build_witness(contract, failure) for failure in failures)
+    return CheckedContract(verdict, verdicts, bool(undischarged), witnesses=witnesses)
+
+
+def _find_undischarged(
+    behaviour: Contract, requirements: Contract, options: Options
+) -> list[Failure]:
+    """Return the author's assumptions on a behaviour that its requirements do not entail."""
+    stated = tuple(conjunct for conjunct in behaviour.assumptions if not conjunct.is_derived)
+    try:
+        return list(
+            find_refinement_failures(
+                replace(behaviour, assumptions=stated),
+                replace(requirements, guarantees=()),
+                manager_factory(options)(),
+            )
+        )
+    except (OutsideGr1Error, DomainError, LimitError):
+        # Each requirement meets the same obstacle and reports it.
+        return []
+
+
+def _report_verdict(
+    behaviour: Contract, requirement: RequirementVerdict, place: Place, sink: Sink
+) -> None:
+    conjunct, component = requirement.conjunct, behaviour.component
+    subject = place(conjunct.origin)
+    if requirement.trace is not None:
+        failure = Failure(conjunct, False, requirement.trace)
+        report_failure(BREAKS, failure, component, subject, sink)
+    elif requirement.answer is Answer.NOT_DECIDED:
+        sink.report(
+            NOT_COMPARED,
+            subject,
+            component=component,
+            formula=print_temporal(conjunct),
+            context=text_in_parentheses(conjunct),
+            reason=requirement.reason,
+        )
 
 
 def _build_witness(behaviour: Contract, failure: Failure) -> Witness:

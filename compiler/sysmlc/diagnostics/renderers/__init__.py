@@ -7,7 +7,16 @@ from sysmlc.diagnostics.renderers.lines import render_concise, render_github, re
 from sysmlc.diagnostics.renderers.report import Finding, Report, make_report, shorten
 from sysmlc.diagnostics.renderers.text import render_text
 
-__all__ = ["FORMATS", "XPATH_FORMATS", "Finding", "Report", "make_report", "render", "shorten"]
+__all__ = [
+    "FORMATS",
+    "XPATH_FORMATS",
+    "Finding",
+    "Report",
+    "make_report",
+    "render",
+    "render_json",
+    "shorten",
+]
 
 _RENDERERS: dict[str, Callable[[Report], str]] = {
     "concise": render_concise,

@@ -1,6 +1,7 @@
 """Findings as JSON documents for programs: our own format ``json``, and SARIF 2.1.0."""
 
 import hashlib
+from collections.abc import Mapping
 from urllib.parse import quote
 
 from sysmlc import __version__
@@ -12,13 +13,20 @@ SARIF_SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 _SARIF_LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "note"}
 
 
-def render_json(report: Report) -> str:
-    """Return the format ``sysmlc-diagnostics/2`` (metamodels/sysmlc-diagnostics.schema.json)."""
+_NO_DETAILS: Mapping[str, object] = {}
+
+
+def render_json(report: Report, details: Mapping[str, object] = _NO_DETAILS) -> str:
+    """Return the format ``sysmlc-diagnostics/2`` (metamodels/sysmlc-diagnostics.schema.json).
+
+    *details* are further members of the document.
+    """
     return encode_json(
         {
             "format": "sysmlc-diagnostics/2",
             "diagnostics": [_describe_finding(finding) for finding in report.findings],
             "summary": report.summary(),
+            **details,
         }
     )
 

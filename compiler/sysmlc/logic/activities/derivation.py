@@ -40,13 +40,14 @@ _CACHE_SIZE = 256
 
 
 @lru_cache(_CACHE_SIZE)
-def derive_contract(graph: TokenGraph) -> Contract:
+def derive_contract(graph: TokenGraph, is_repeated: bool = True) -> Contract:
     """Return the contract of an activity.
 
     It guarantees that the tokens move as drawn and, if the environment keeps the assumptions, that
-    the activity finishes again and again.
+    the activity finishes again and again. If the activity is not repeated, the contract describes a
+    single performance: after its end nothing runs.
     """
-    formulas = StepFormulas(graph)
+    formulas = StepFormulas(graph, is_repeated)
     return Contract(
         component=graph.component,
         origin=graph.activity,
@@ -72,7 +73,7 @@ def derive_contract(graph: TokenGraph) -> Contract:
                 for store in graph.stores
                 for conjunct in _derive_store_updates(formulas, store)
             ),
-            *_derive_progress(formulas),
+            *(_derive_progress(formulas) if is_repeated else ()),
         ),
     )
 

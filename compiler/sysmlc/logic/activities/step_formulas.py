@@ -38,8 +38,10 @@ class StepFormulas:
     The formulas of regions are cached, because many other formulas contain them.
     """
 
-    def __init__(self, graph: TokenGraph) -> None:
+    def __init__(self, graph: TokenGraph, is_repeated: bool = True) -> None:
+        """Prepare the formulas; *is_repeated*: the activity starts again at its end."""
         self.graph = graph
+        self._is_repeated = is_repeated
         self._quiets = dict(graph.quiets)
         self._completions: dict[str, Formula] = {}
         self._interrupted: dict[str, Formula] = {}
@@ -257,7 +259,7 @@ class StepFormulas:
     def begin_formula(self, region: str) -> Formula:
         """The region starts in the next step."""
         if region == ACTIVITY_REGION:
-            return self.complete_formula(region)
+            return self.complete_formula(region) if self._is_repeated else f.FALSE
         node = self.graph.node(region)
         return f.both(
             self.start_formula(node), f.negate(self.cleared_formula(node.region, {node.id}))

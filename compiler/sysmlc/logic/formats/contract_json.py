@@ -16,6 +16,7 @@ from sysmlc.logic.contract import (
     EnumerationDomain,
     IntegerDomain,
     Owner,
+    Source,
     Variable,
 )
 from sysmlc.logic.formats import rules
@@ -198,9 +199,10 @@ def _read_conjunct(
     if not isinstance(formula_text, LocatedText):
         reason = f"one of the {section} is neither a formula nor an object with one"
         raise ShapeError(reason, getattr(item, "offset", list_offset))
-    origin, text = file.origin_at(formula_text.offset), ""
+    origin, text, source = file.origin_at(formula_text.offset), "", Source.AUTHOR
     if isinstance(item, LocatedObject):
         origin, text = text_at(item, "origin"), text_at(item, "text")
+        source = _read_source(item)
     try:
         formula = parse_formula(formula_text, domains, _NeutralReader)
     except FormulaError as error:
@@ -218,7 +220,15 @@ def _read_conjunct(
             reason=reason,
         )
         return None
-    return Conjunct(step, class_, origin, text)
+    return Conjunct(step, class_, origin, text, source=source)
+
+
+def _read_source(item: LocatedObject) -> Source:
+    """Return who states a conjunct: the author if the object does not say it. Raises ShapeError."""
+    text = text_at(item, "source") or Source.AUTHOR
+    if text not in list(Source):
+        raise ShapeError("the source of a conjunct is neither 'author' nor 'derived'", item.offset)
+    return Source(text)
 
 
 # -- writing ---------------------------------------------------------------------------------------
@@ -259,14 +269,15 @@ def _group_by_class(conjuncts: Iterable[Conjunct]) -> dict[str, list[dict[str, s
     """Return the conjuncts of each class; the list of a class without conjuncts is empty."""
     groups: dict[str, list[dict[str, str]]] = {str(class_): [] for class_ in Class}
     for conjunct in conjuncts:
-        groups[str(conjunct.class_)].append(
-            {
-                "formula": print_formula(conjunct.formula),
-                "class": str(conjunct.class_),
-                "origin": conjunct.origin,
-                "text": conjunct.text,
-            }
-        )
+        entry = {
+            "formula": print_formula(conjunct.formula),
+            "class": str(conjunct.class_),
+            "origin": conjunct.origin,
+            "text": conjunct.text,
+        }
+        if conjunct.is_derived:
+            entry["source"] = str(conjunct.source)
+        groups[str(conjunct.class_)].append(entry)
     return groups
 
 

@@ -8,7 +8,7 @@ choice (the past temporal testers of Pnueli; Spectra and TuLiP do the same).
 from collections.abc import Iterable
 
 from sysmlc.logic import formula as f
-from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Owner, Variable
+from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Owner, Source, Variable
 from sysmlc.logic.formula import Formula, Var, has_primes
 from sysmlc.logic.printing import print_formula
 
@@ -74,8 +74,9 @@ class History:
         text = f"'{name}' remembers {print_formula(rule)}."
         self._taken.add(name)
         self.variables.append(Variable(name, Owner.SYSTEM, BooleanDomain(), origin))
-        self.conjuncts.append(Conjunct(initial, Class.INIT, origin, text))
-        self.conjuncts.append(Conjunct(update, Class.SAFETY, origin, text))
+        for formula, class_ in ((initial, Class.INIT), (update, Class.SAFETY)):
+            conjunct = Conjunct(formula, class_, origin, text, source=Source.DERIVED)
+            self.conjuncts.append(conjunct)
 
     def _find_bit(self, stem: str, stay: Formula, goal: Formula, start: bool, origin: str) -> Var:
         """Return the bit for an operator and its operands; create it at the first call.

@@ -8,7 +8,7 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph
 from sysmlc.logic import formula as f
 from sysmlc.logic.classification import classify
-from sysmlc.logic.contract import Class, Conjunct, Contract
+from sysmlc.logic.contract import Class, Conjunct, Contract, Source
 from sysmlc.logic.expressions.context import context_of, report_range
 from sysmlc.logic.expressions.elaboration import ElaborationError, Fault, elaborate_condition
 from sysmlc.logic.expressions.expression import ExpressionError
@@ -74,7 +74,15 @@ def derive(
                 conjuncts += _classify(scope, statement, formula, is_assumed)
         if demands:
             name = component if behaviour is None else f"{component}.requirements"
-            yield _make_contract(name, subject, scope, assumptions, demands)
+            inputs, outputs = _state_initial_values(
+                scope, _list_used_names(scope, (*assumptions, *demands))
+            )
+            # Initial values of outputs belong to the behaviour, whose first entries may assign
+            # other values.
+            initial_values = () if behaviour is not None else outputs
+            yield _make_contract(
+                name, subject, scope, (*inputs, *assumptions), (*initial_values, *demands)
+            )
     informal.report(graph, sink)
 
 
@@ -250,18 +258,20 @@ def _describe(statement: Statement, is_assumed: bool) -> str:
     return f"{subject} {'assumes' if is_assumed else 'demands'} it."
 
 
+def _list_used_names(scope: Scope, conjuncts: Iterable[Conjunct]) -> set[str]:
+    formulas = (conjunct.formula for conjunct in conjuncts)
+    return {variable.name for variable in scope.select_variables(formulas)}
+
+
 def _make_contract(
     name: str,
     subject: Element,
     scope: Scope,
-    assumptions: list[Conjunct],
-    demands: list[Conjunct],
+    assumptions: tuple[Conjunct, ...],
+    demands: tuple[Conjunct, ...],
 ) -> Contract:
     variables = scope.select_variables(conjunct.formula for conjunct in (*assumptions, *demands))
-    inputs, outputs = _state_initial_values(scope, {variable.name for variable in variables})
-    return add_history_bits(
-        Contract(name, subject.id, variables, (*inputs, *assumptions), (*outputs, *demands))
-    )
+    return add_history_bits(Contract(name, subject.id, variables, assumptions, demands))
 
 
 def _state_initial_values(scope: Scope, names: set[str]) -> tuple[list[Conjunct], list[Conjunct]]:
@@ -272,7 +282,9 @@ def _state_initial_values(scope: Scope, names: set[str]) -> tuple[list[Conjunct]
         if feature.variable in names and feature.default is not None and not feature.is_constant:
             text = f"'{feature.element.name}' starts with {print_literal(feature.default)}."
             formula = _equals(feature.variable, feature.default)
-            conjunct = Conjunct(formula, Class.INIT, feature.element.id, text)
+            conjunct = Conjunct(
+                formula, Class.INIT, feature.element.id, text, source=Source.DERIVED
+            )
             (inputs if scope.is_about_inputs(formula) else outputs).append(conjunct)
     return inputs, outputs
 

@@ -29,7 +29,7 @@ def collect_statements(graph: Graph) -> list[tuple[Element, list[Statement]]]:
     """
     statements: dict[str, dict[str, Statement]] = {}
     for requirement in filter(query.is_requirement, graph.of_kind(Kind.CLASS)):
-        new_statements = list(_iter_statements(graph, requirement))
+        new_statements = list(iter_statements(graph, requirement))
         if new_statements:
             for subject in _iter_subjects(graph, requirement):
                 # A constraint that several requirements inherit counts once.
@@ -40,7 +40,7 @@ def collect_statements(graph: Graph) -> list[tuple[Element, list[Statement]]]:
     return [(graph[id], list(by_constraint.values())) for id, by_constraint in statements.items()]
 
 
-def _iter_statements(graph: Graph, requirement: Element) -> Iterator[Statement]:
+def iter_statements(graph: Graph, requirement: Element) -> Iterator[Statement]:
     """Yield the constraints of a requirement and of those that it specialises."""
     family = (requirement, *query.generals(graph, requirement))
     is_open = not any(_separates_assumptions(graph, member) for member in family)

@@ -91,13 +91,65 @@ def _compose(composite: Composite, manager: Manager) -> Composition:
     )
     if contradiction:
         return Composition(contract, conflict=contradiction)
-    discharge_result = discharge(
-        reduced_composite, (*whole_contract.assumptions, *observed.definitions), universe
-    )
+    assumed = (*whole_contract.assumptions, *observed.definitions)
+    endings = _find_possible_endings(reduced_composite, assumed, universe)
+    discharge_result = discharge(reduced_composite, (*assumed, *endings), universe)
     runs = Entailment(universe, universe.system(discharge_result.facts))
-    failures = tuple(_find_violations(whole_contract.guarantees, runs))
+    failures = tuple(_find_violations(_list_demands(composite, whole_contract), runs))
     losses = tuple(_find_violations(composite.exclusions, runs))
-    return Composition(contract, discharge_result.open, failures, losses)
+    # An assumption that the compiler derives is no demand on those who wrote the model.
+    open_assumptions = tuple(
+        assumption for assumption in discharge_result.open if not assumption.conjunct.is_derived
+    )
+    return Composition(contract, open_assumptions, failures, losses)
+
+
+def _find_possible_endings(
+    composite: Composite, assumed: Sequence[Conjunct], universe: Universe
+) -> tuple[Conjunct, ...]:
+    """Return the derived assumptions of the parts: actions end, and loops are left.
+
+    The result is empty if no run of the parts satisfies all of them.
+    """
+    endings = tuple(
+        conjunct
+        for part in composite.parts
+        for conjunct in part.contract.assumptions
+        if conjunct.is_derived
+    )
+    guarantees = (conjunct for part in composite.parts for conjunct in part.contract.guarantees)
+    conjuncts = (*assumed, *composite.wiring, *guarantees, *endings)
+    return endings if Entailment(universe, universe.system(conjuncts)).is_possible else ()
+
+
+def _list_demands(composite: Composite, whole: Contract) -> list[Conjunct]:
+    """List the guarantees of the whole that its parts have to satisfy.
+
+    These are not the initial values of declarations, and no conjuncts about variables of the whole
+    that no part decides: nothing in the composition restricts such a variable.
+    """
+    variables = () if composite.whole is None else composite.whole.variables
+    decided = {name for part in composite.parts for name in outputs_of(part)}
+    own = {variable.name for variable in variables if variable.owner is Owner.SYSTEM}
+    undecided = own - decided - _list_defined_names(whole)
+    is_required = any(not conjunct.is_derived for conjunct in whole.guarantees)
+    return [
+        conjunct
+        for conjunct in whole.guarantees
+        if not (is_required and conjunct.is_derived and conjunct.class_ is Class.INIT)
+        and not {variable.name for variable in f.variables(conjunct.formula)} & undecided
+    ]
+
+
+def _list_defined_names(whole: Contract) -> set[str]:
+    """Return the variables that derived conjuncts define, such as history bits."""
+    return {
+        variable.name
+        for conjunct in whole.guarantees
+        if conjunct.is_derived and conjunct.class_ is Class.SAFETY
+        for variable in f.variables(conjunct.formula)
+        if variable.primed
+    }
 
 
 def _find_contradiction(

@@ -34,6 +34,11 @@ class Entailment:
         self.runs = Runs(system)
 
     @property
+    def manager(self) -> Manager:
+        """Owner of all diagrams."""
+        return self.runs.manager
+
+    @property
     def is_possible(self) -> bool:
         """Whether the system has any fair run."""
         return self.runs.fair & self.runs.system.init != self.runs.manager.false
