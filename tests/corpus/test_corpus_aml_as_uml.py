@@ -14,8 +14,11 @@ from sysmlc.sources import Source
 
 pytestmark = pytest.mark.corpus
 
-IGNORED = {"id", "source", "trace"}
+IGNORED = {"id", "source", "trace", "caex_id"}
 RESPELT_ID = "a value names an ID that xmi:id does not allow, so another id is written"
+
+
+KEPT_TEXT = "a value of an interface names an ID; it stays as it is, as the IDs come back too"
 
 
 def save(graph):
@@ -52,6 +55,8 @@ def find_reason(graph, change):
     is_value = change.what == "attribute" and key in ("default", "value")
     if is_value and "Kind." in before and after.strip("'") in graph:
         return RESPELT_ID
+    if change.what == "attribute" and key.startswith("value.") and "Kind." in before:
+        return KEPT_TEXT
     return f"without a reason: {change}"
 
 

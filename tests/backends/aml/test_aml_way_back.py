@@ -65,7 +65,10 @@ def test_internal_elements_come_back_with_their_content(way, tmp_path):
         "InstanceHierarchy[@Name='Plant']/InternalElement"
     )
     (belt,) = line.findall("InternalElement")
-    assert (line.get("Name"), belt.get("Name")) == ("line", "belt")
+    assert [(node.get("Name"), node.get("ID")) for node in (line, belt)] == [
+        ("line", "1line"),
+        ("belt", "belt"),
+    ]
     assert belt.get("RefBaseSystemUnitPath") == "Lib/Belt"
     assert [
         (attribute.get("Name"), attribute.findtext("Value"), attribute.get("Unit"))
@@ -75,7 +78,7 @@ def test_internal_elements_come_back_with_their_content(way, tmp_path):
     link = line.find("InternalLink")
     ends = [link.get("RefPartnerSideA"), link.get("RefPartnerSideB")]
     interfaces = [line.find("ExternalInterface"), belt.find("ExternalInterface")]
-    assert [interface.get("ID") for interface in interfaces] == ends
+    assert [interface.get("ID") for interface in interfaces] == ends == ["line-in", "belt-out"]
 
 
 def test_a_model_without_structure_gives_an_error_and_no_file(tmp_path):

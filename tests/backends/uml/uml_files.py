@@ -39,4 +39,4 @@ def round_trip(graph):
     text, _ = save(graph)
     back = read(text.encode())
     assert verify(back) == []
-    return text, back, diff(graph, back, {"id", "source", "trace"})
+    return text, back, diff(graph, back, {"id", "source", "trace", "caex_id"})

@@ -10,7 +10,7 @@ from sysmlc.backends.sysml.backend import print_document
 from sysmlc.diagnostics import Coverage, Severity, Sink
 from sysmlc.frontends.caex import FRONTEND as CAEX
 from sysmlc.frontends.sysml import FRONTEND
-from sysmlc.ir import Graph, Kind
+from sysmlc.ir import Edge, Graph, Kind
 from sysmlc.ir.compare import compare
 from sysmlc.ir.query.classifiers import quantity_kind_of, unit_of
 from sysmlc.ir.text import parse_text
@@ -80,6 +80,42 @@ def test_ids_of_interfaces_that_are_read_are_not_reported_as_lost():
     again = read_back(read_plant(PLANT.replace("{unit}", "m/s").encode()), sink)
     assert [element for element in again if element.attrs.get("interface_ids")]
     assert [diagnostic.message for diagnostic in sink if diagnostic.rule.code == "SM481"] == []
+
+
+def test_values_for_a_part_of_a_class_stay_values():
+    """The text alone declares a second part there; AutomationML had one element more then."""
+    values = """<SystemUnitClass Name="Line" RefBaseClassPath="Units/Cell">
+     <InternalElement Name="belt" ID="line.belt" RefBaseSystemUnitPath="Units/Belt">
+      <Attribute Name="speed"><Value>3</Value></Attribute></InternalElement>
+    </SystemUnitClass></SystemUnitClassLib>"""
+    text = PLANT.replace("{unit}", "m/s").replace("</SystemUnitClassLib>", values)
+    assert list_differences(read_plant(text.encode())) == []
+
+
+def test_roles_of_repeated_parts_come_back():
+    roles = """<RoleRequirements RefBaseRoleClassPath="AutomationMLBaseRoleClassLib/\
+AutomationMLBaseRole/Resource"/></InternalElement>"""
+    text = PLANT.replace("{unit}", "m/s").replace("</InternalElement>", roles, 1)
+    graph = read_plant(text.encode())
+    assert any(element.kind is Kind.INSTANCE for element in realizing(graph))
+    assert [(element.kind, element.name) for element in realizing(graph)] == [
+        (element.kind, element.name) for element in realizing(read_back(graph))
+    ]
+
+
+def test_the_role_of_an_element_stays_beside_an_inner_element_of_the_same_name():
+    text = """<CAEXFile SchemaVersion="3.0" FileName="p.aml"><InstanceHierarchy Name="Plant">
+     <InternalElement Name="cell" ID="c"><InternalElement Name="robot" ID="r">
+      <InternalElement Name="robot" ID="arm"/>
+      <RoleRequirements RefBaseRoleClassPath="Roles/Mover"/></InternalElement></InternalElement>
+    </InstanceHierarchy><RoleClassLib Name="Roles"><RoleClass Name="Mover"/></RoleClassLib>
+    </CAEXFile>"""
+    graph = read_plant(text.encode())
+    assert list_differences(graph) == []
+
+
+def realizing(graph):
+    return [element for element in graph if graph.targets(element, Edge.REALIZES)]
 
 
 def test_an_id_of_an_interface_is_written_once_beside_other_members():

@@ -1,21 +1,19 @@
 """The state that all writers share: the files, the ids and the class paths in them."""
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from msgspec import Struct
 
-from sysmlc.backends.aml.class_kinds import ClassKind, is_caex_package
+from sysmlc.backends.aml.class_kinds import ClassKind, is_caex_package, is_inline
 from sysmlc.backends.aml.node import Node
 from sysmlc.backends.aml.rules import Losses
-from sysmlc.ir import Edge, Element, Graph, Kind, list_items
+from sysmlc.ir import Edge, Element, Graph, list_items
 from sysmlc.ir.element import derived_id
+from sysmlc.ir.query.caex_ids import find_caex_id, find_extended_id
 
 _BRACKETED = frozenset("/@[]")
 """A path whose names contain one of these has its names in brackets (IEC 62424, A.2)."""
-_ADDED_ID = re.compile(r"#(values|class|part|type)(~\d+)?$")
-"""Ends of the ids of elements that the front end ``caex`` adds to an object."""
 
 
 @dataclass(slots=True, eq=False)
@@ -60,13 +58,7 @@ class ObjectIds(Struct, frozen=True):
 
     def find_original(self, element: Element) -> str:
         """Return the ID that the object has in its AutomationML file, or the empty string."""
-        id = element.id
-        if element.source not in self.files or _ADDED_ID.search(id):
-            return ""
-        # The front end made such an id: the object has no ID, or not the only one of its kind.
-        if id.startswith((f"{element.source}#", f"{element.owner}/")):
-            return ""
-        return "" if element.owner is None and element.kind is Kind.PACKAGE and "#" in id else id
+        return find_caex_id(element, self.files)
 
     def choose(self, *elements: Element | None) -> str:
         """Return the ID of an object that several elements represent.
@@ -75,18 +67,12 @@ class ObjectIds(Struct, frozen=True):
         """
         present = [element for element in elements if element is not None]
         for element in present:
-            id = self.find_original(element) or self._find_in_class(element)
+            id = self.find_original(element)
+            if not id and is_inline(element) and element.source in self.files:
+                id = find_extended_id(element)
             if id:
                 return id
         return derived_id(present[0].id, "caex")
-
-    def _find_in_class(self, element: Element) -> str:
-        """Return the object's ID from the id of the inline class that the front end added."""
-        id = element.id.removesuffix("#part")
-        if not id.endswith("#class") or element.source not in self.files:
-            return ""
-        id = id.removesuffix("#class")
-        return "" if "/" in id else id
 
 
 @dataclass(slots=True)

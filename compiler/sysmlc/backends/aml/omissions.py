@@ -19,6 +19,7 @@ _COVERED_ATTRIBUTES = frozenset(
         "library",
         "semantics",
         "interface_ids",
+        "caex_id",
         "ppr",
         "domain",
         "usage",

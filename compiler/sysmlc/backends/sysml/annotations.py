@@ -18,6 +18,7 @@ from sysmlc.backends.sysml.shapes import is_part_port
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import AttrValue, Edge, Element, Kind, list_items
 from sysmlc.ir.query import CLASSIFIERS
+from sysmlc.ir.query.caex_ids import find_caex_id
 
 _STRUCTURAL_SUBKINDS = frozenset({"part", "model", "caex", "internal-link", "alias", "variable"})
 """Subkinds that follow from the place of an element, so that no metadata states them."""
@@ -46,8 +47,6 @@ _KIND_NAMES = {
 """Kinds that share their keyword with another kind."""
 _ITEMS = (Kind.CLASS, Kind.SIGNAL, Kind.ITEM, Kind.DATA_TYPE, Kind.COMPONENT)
 """Kinds of items that flow; the domain of flows and connectors follows from them."""
-_ADDED_CLASS_SUFFIX = "#class"
-"""End of the id of a class that the front end adds for an InternalElement without a class."""
 _CAEX_ATTRIBUTES = {
     "data_type": "dataType",
     "unit": "unit",
@@ -125,21 +124,24 @@ def _iter_preserved_facts(writer: Writer, member: Member, element: Element) -> I
 
 
 def _iter_caex_attributes(writer: Writer, member: Member, element: Element) -> Iterator[Line]:
-    facts: dict[str, AttrValue] = {}
-    if element.source in writer.caex_files:
-        local_id = element.id.rpartition("#")[2]
-        is_added = "/" in local_id or element.id.endswith(_ADDED_CLASS_SUFFIX)
-        is_own = not is_added and local_id not in ("", element.name)
-        facts["id"] = local_id if is_own else None
+    facts: dict[str, AttrValue] = {"id": find_caex_id(element, writer.caex_files)}
     for key, name in _CAEX_ATTRIBUTES.items():
         value = element.attrs.get(key)
         if value is not None:
             facts[name] = str(value) if key == "default_value" else _flatten(value)
-    if facts and _needs_subkind(element):
+    is_caex = element.source in writer.caex_files or any(facts.values())
+    if (is_caex and _needs_subkind(element)) or is_part_of_class(writer, element):
         facts["kind"] = element.subkind
     present = {name: value for name, value in facts.items() if value not in (None, "", ())}
     if present:
         yield make_annotation(writer, member, "AutomationML", present)
+
+
+def is_part_of_class(writer: Writer, element: Element) -> bool:
+    """Whether an instance has values for a part of a class; in a class it would be a part."""
+    owner = writer.graph.owner(element)
+    is_values = element.kind is Kind.INSTANCE and element.subkind == "part"
+    return is_values and owner is not None and owner.kind is not Kind.INSTANCE
 
 
 def _flatten(value: AttrValue) -> AttrValue:

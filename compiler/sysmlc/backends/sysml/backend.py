@@ -145,7 +145,7 @@ def _write_once(
     assign_names(plan)
     rename_hiding_members(plan)
     documents = graph.of_kind(Kind.DOCUMENT)
-    caex_files = frozenset(d.source for d in documents if d.subkind == "caex")
+    caex_files = frozenset(d.source for d in documents if d.subkind == "caex" and d.source)
     writer = Writer(graph, plan, losses, WRITERS, public_ids=public_ids, caex_files=caex_files)
     dependencies.prewrite_dependencies(writer)
     with allow_recursion(plan.depth):

@@ -117,7 +117,8 @@ def _write_realizations(writer: Writer, member: Member, element: Element) -> lis
         name = format_qualified_name(writer.plan, member, realized)
         if name is not None:
             keyword = writer.refer_to_sysmlc(member, "realization")
-            source = quote_name(member.name)
+            # A member of the same name inside hides the bare name.
+            source = format_qualified_name(writer.plan, member, member)
             lines.append(Line(f"#{keyword} dependency from {source} to {name}"))
     return lines
 

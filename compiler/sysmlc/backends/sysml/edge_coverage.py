@@ -19,7 +19,6 @@ _EXPRESSED_EDGES = frozenset(
         Edge.SPECIALIZES,
         Edge.SUBSETS,
         Edge.REDEFINES,
-        Edge.REALIZES,
         Edge.CONVEYS,
         Edge.FLOW_SOURCE,
         Edge.FLOW_TARGET,
@@ -134,6 +133,11 @@ def _is_unexpressed_redefinition(writer: Writer, feature: Element, redefined: El
     return is_incompatible(writer.plan, feature, redefined)
 
 
+def _is_unexpressed_realization(_writer: Writer, source: Element, _target: Element) -> bool:
+    """Whether the text lacks a realization: classes and features have a dependency for it."""
+    return source.kind is Kind.INSTANCE
+
+
 def _is_unexpressed_call(writer: Writer, action: Element, target: Element) -> bool:
     """Whether an action uses a feature that is not accessible where the action stands."""
     member, feature = writer.plan.find(action), writer.plan.find(target)
@@ -157,6 +161,7 @@ _CHECKS = {
     Edge.REFERENCES: _is_unexpressed_reference,
     Edge.SUBSETS: _is_unexpressed_subset,
     Edge.REDEFINES: _is_unexpressed_redefinition,
+    Edge.REALIZES: _is_unexpressed_realization,
     Edge.APPLIES: _is_never_expressed,
     Edge.CALLS: _is_unexpressed_call,
 }

@@ -1,9 +1,10 @@
 """Instances and their slots: usages with bound values."""
 
-from sysmlc.backends.sysml.annotations import make_annotation, write_annotations
+from sysmlc.backends.sysml.annotations import is_part_of_class, make_annotation, write_annotations
 from sysmlc.backends.sysml.declarations import list_visibility, refer_to_type
 from sysmlc.backends.sysml.expressions import format_value
 from sysmlc.backends.sysml.plan import Member
+from sysmlc.backends.sysml.preserved_facts import format_fact_value
 from sysmlc.backends.sysml.printing import Line, quote_name
 from sysmlc.backends.sysml.rules import UNSAID_EDGE
 from sysmlc.backends.sysml.writer import Writer
@@ -59,6 +60,8 @@ def _write_part(writer: Writer, member: Member, element: Element, part: Element)
         return writer.drop(member, "represents")
     for step in reversed(steps[1:]):
         body = [Line(f"part :>> {quote_name(step.name)}", body)]
+        if is_part_of_class(writer, element):
+            body.insert(0, make_annotation(writer, member, "AutomationML", {"kind": "part"}))
     return [Line(f"part {_choose_operator(writer, member, element, steps[0])} {name}", body)]
 
 
@@ -88,7 +91,7 @@ def _write_slot(writer: Writer, member: Member, slot: Element) -> list[Line]:
     value = _format_slot_value(writer, member, slot, feature)
     keyword = "port " if feature.kind is Kind.PORT else ""
     values = tuple(
-        f"{key.removeprefix('value.')}={value}"
+        f"{key.removeprefix('value.')}={format_fact_value(value)}"
         for key, value in slot.attrs.items()
         if key.startswith("value.")
     )

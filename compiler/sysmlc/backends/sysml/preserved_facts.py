@@ -1,9 +1,10 @@
 """Facts that metadata preserves because SysML v2 has no words for them.
 
 A fact is a line of text: ``key=value`` for an attribute, ``edge->name`` for an edge to a member of
-the text, ``edge=>name`` for an edge to an element outside of the model. The front end for SysML v2
-restores attributes and edges from it. Facts of a part without a member start with the word for the
-part and a dot (``region.visibility=private``).
+the text, ``edge=>name`` for an edge to an element outside of the model, ``key[]->name`` for an
+attribute that is a list of elements. The front end for SysML v2 restores attributes and edges from
+it. Facts of a part without a member start with the word for the part and a dot
+(``region.visibility=private``).
 """
 
 import json
@@ -31,8 +32,12 @@ _WITH_PARTS = (
 )
 _STARTS = ((Kind.CONTROL, "initial"), (Kind.PSEUDOSTATE, "initial"))
 _ENDS = ((Kind.CONTROL, "final"), (Kind.CONTROL, "flow-final"), (Kind.FINAL_STATE, ""))
-_NEVER_IDS = frozenset({"name", "guard", "body", "default", "value", "visibility", "subkind"})
+_NEVER_IDS = frozenset(
+    {"name", "guard", "body", "default", "value", "visibility", "subkind", "href"}
+)
 """Attributes whose value is never the id of an element, even if it equals one."""
+_VALUE = "value."
+"""Start of the attributes with values of an interface; a value may look like an id as well."""
 _MARKS = ("=", "->", '"')
 
 
@@ -52,10 +57,10 @@ def list_all_facts(writer: Writer, element: Element) -> tuple[str, ...]:
     """Return all facts of an element whose kind has no equivalent in SysML v2."""
     facts = []
     for key, value in element.attrs.items():
-        fact = _format_attribute(writer, key, value)
-        if fact is not None and key not in _NEVER_PRESERVED:
+        attribute_facts = _format_attribute(writer, key, value)
+        if attribute_facts and key not in _NEVER_PRESERVED:
             writer.stored_attributes.add((element.id, key))
-            facts.append(fact)
+            facts += attribute_facts
     for edge in _PRESERVED_EDGES:
         for target in writer.graph.targets(element, edge):
             facts += _iter_edge_facts(writer, element, edge, target)
@@ -70,10 +75,10 @@ def _iter_own_facts(writer: Writer, member: Member, element: Element) -> Iterato
 
 def _iter_attribute_facts(writer: Writer, member: Member | None, element: Element) -> Iterator[str]:
     for key in iter_unexpressed_attributes(writer, member, element):
-        fact = _format_attribute(writer, key, element.attrs.get(key))
-        if fact is not None:
+        facts = _format_attribute(writer, key, element.attrs.get(key))
+        if facts:
             writer.stored_attributes.add((element.id, key))
-            yield fact
+        yield from facts
 
 
 def _iter_edge_facts(
@@ -92,7 +97,7 @@ def _iter_part_facts(writer: Writer, part: Element, default_name: str) -> Iterat
         construct = "a first or last node without a name"
         writer.record_approximation(part, construct, "start or done")
     elif part.name != default_name:
-        yield _format_attribute(writer, "name", part.name) or ""
+        yield from _format_attribute(writer, "name", part.name)
     if part.kind is Kind.ACTIVITY_PARAMETER and not writer.graph.targets(part, Edge.TYPED_BY):
         construct = "a parameter node without a type"
         writer.record_approximation(part, construct, "one of its parameter's type")
@@ -139,19 +144,24 @@ def _is_parameter_node(writer: Writer, element: Element) -> bool:
 # -- the text of a fact --------------------------------------------------------------------------
 
 
-def _format_attribute(writer: Writer, key: str, value: AttrValue) -> str | None:
-    """Return the fact of an attribute; None if the text cannot name an element in the value.
+def _format_attribute(writer: Writer, key: str, value: AttrValue) -> list[str]:
+    """Return the facts of an attribute; none if the text cannot name an element in the value.
 
     A string stands as it is unless a reader would take it for JSON; all other values are JSON. A
-    key that contains one of the marks is a JSON string.
+    key that contains one of the marks is a JSON string. A list of elements has a fact for each.
     """
     name = _format_json(key) if any(mark in key for mark in _MARKS) else key
+    if key.startswith(_VALUE):
+        return [f"{name}={format_fact_value(value)}"]
     if isinstance(value, str) and key not in _NEVER_IDS and value in writer.graph:
         path = _format_path(writer, writer.graph[value])
-        return None if path is None else f"{name}->{path}"
+        return [] if path is None else [f"{name}->{path}"]
     if isinstance(value, tuple) and _contains_ids(writer, value):
-        return None
-    return f"{name}={_format_value(value)}"
+        elements = [writer.graph.get(item) for item in value if isinstance(item, str)]
+        paths = [_format_path(writer, element) for element in elements if element is not None]
+        is_nameable = len(paths) == len(value) and None not in paths
+        return [f"{name}[]->{path}" for path in paths] if is_nameable else []
+    return [f"{name}={format_fact_value(value)}"]
 
 
 def _format_edge(writer: Writer, edge: Edge, target: Element) -> str | None:
@@ -182,7 +192,8 @@ def _contains_ids(writer: Writer, value: AttrValue) -> bool:
     return isinstance(value, str) and value in writer.graph
 
 
-def _format_value(value: AttrValue) -> str:
+def format_fact_value(value: AttrValue) -> str:
+    """Return the text of a value: itself unless a reader would take it for JSON, else JSON."""
     is_plain = isinstance(value, str) and not _is_json(value) and not value.startswith(">")
     return str(value) if is_plain else _format_json(value)
 

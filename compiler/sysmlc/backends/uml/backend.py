@@ -79,6 +79,7 @@ def write_document(graph: Graph, sink: Sink) -> str:
     if is_plant(graph):
         losses.round_trip = RoundTripFacts(graph, context.ids)
         losses.round_trip.store_libraries()
+        losses.round_trip.store_caex_ids()
     # All nodes come first, because content refers only to elements that are written.
     for root in graph.roots():
         _add_nodes(context, root)

@@ -10,6 +10,7 @@ from sysmlc.backends.losses import LossCounter
 from sysmlc.backends.uml.hrefs import make_href
 from sysmlc.diagnostics import Rule, Severity, Sink, rule
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
+from sysmlc.ir.query.caex_ids import CAEX_ID, find_caex_id
 from sysmlc.ir.round_trip import Record, StoredElement, encode_record
 
 UNSUPPORTED_KIND = rule(
@@ -107,7 +108,9 @@ class RoundTripFacts:
             self._names[self.ids[element.id]] = element.name
         elif name in element.attrs:
             attributes = self._attributes.setdefault(self.ids[element.id], {})
-            attributes[name] = self._replace_ids(element.attrs[name])
+            value = element.attrs[name]
+            # A value of an interface is the text of the author, even if it equals an id.
+            attributes[name] = value if name.startswith("value.") else self._replace_ids(value)
 
     def store_owner(self, element: Element) -> None:
         """Store the owner of an element that is saved with another owner."""
@@ -138,6 +141,15 @@ class RoundTripFacts:
             if element.attrs.get("library") and not element.attrs.get("href"):
                 for member in self.graph.subtree(element):
                     self.store_element(member)
+
+    def store_caex_ids(self) -> None:
+        """Store the IDs of AutomationML, of which ``xmi:id`` allows only some."""
+        documents = self.graph.of_kind(Kind.DOCUMENT)
+        files = {document.source for document in documents if document.subkind == "caex"} - {""}
+        for element in self.graph:
+            id = find_caex_id(element, files)
+            if id:
+                self._attributes.setdefault(self.ids[element.id], {})[CAEX_ID] = id
 
     def encode(self) -> str:
         """Return the body of the comment."""

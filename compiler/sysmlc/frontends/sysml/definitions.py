@@ -8,6 +8,7 @@ from sysmlc.frontends.sysml.annotations import apply_levels, is_recipe_level
 from sysmlc.frontends.sysml.kinds import CLASSIFIERS, KINDS_BY_METADATA
 from sysmlc.frontends.sysml.libraries import FILES, LOWERED
 from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.ir.query.caex_ids import CAEX_ID
 from sysmlc.language.tree import Node, Reference
 
 if TYPE_CHECKING:
@@ -18,6 +19,7 @@ _QUANTITY = re.compile(r"(?P<name>\w+)Value")
 _WORD_BOUNDARY = re.compile(r"(?<=[a-z])(?=[A-Z])")
 _LIBRARY: dict[str, AttrValue] = {"external": True, "library": True}
 _AML_ATTRIBUTES = {
+    "id": CAEX_ID,
     "dataType": "data_type",
     "unit": "unit",
     "category": "category",

@@ -216,6 +216,8 @@ def read_interface_id(lowering: "Lowering", node: Node, element: Element) -> boo
     if len(nodes.body_of(node)) != 1 or target is None:
         return False
     interface_id = annotations.metadata_value(node, "AutomationML", "id")
+    if interface_id is None:
+        return False
     lowering.redundant.add(id(node))
     lowering.skipped.update(map(id, nodes.body_of(node)))
     lowering.defer_until_elements(

@@ -39,6 +39,8 @@ def _lower_feature(lowering: Lowering, node: Node, owner: Element | None) -> Non
         definitions.lower_definition(lowering, node, owner, Kind.INTERACTION, "")
     elif owner is None or owner.kind in _PACKAGES:
         instances.lower_package_usage(lowering, node, owner)
+    elif owner.kind in STRUCTURAL and instances.is_marked_part(node):
+        instances.lower_part(lowering, node, owner)
     elif owner.kind in STRUCTURAL:
         features.lower_classifier_feature(lowering, node, owner)
     elif owner.kind in ACTIVITIES or owner.kind in _BEHAVIOURS_WITHOUT_STEPS:

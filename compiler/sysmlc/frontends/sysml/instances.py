@@ -2,15 +2,16 @@
 
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml import nodes, values
+from sysmlc.frontends.sysml import annotations, nodes, values
 from sysmlc.frontends.sysml.definitions import (
-    external_attributes,
+    foreign_attributes,
     lower_definition,
     read_kind,
     visibility_attributes,
 )
 from sysmlc.frontends.sysml.features import read_interface_id
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.frontends.sysml.preserved_facts import parse_fact_value
+from sysmlc.ir import Edge, Element, Kind, as_items
 from sysmlc.language.tree import Node
 
 if TYPE_CHECKING:
@@ -69,7 +70,7 @@ def _is_redefinition(node: Node) -> bool:
 def _lower_instance(lowering: "Lowering", node: Node, owner: Element | None) -> None:
     """Lower a usage to an instance of its types, with a slot for each value."""
     _, subkind = read_kind(node, Kind.INSTANCE)
-    attributes = visibility_attributes(node) | external_attributes(node)
+    attributes = visibility_attributes(node) | foreign_attributes(node)
     instance = lowering.add_element(
         node, Kind.INSTANCE, nodes.name_of(node), owner, subkind=subkind, **attributes
     )
@@ -95,7 +96,7 @@ def _lower_members(lowering: "Lowering", node: Node, instance: Element) -> None:
         elif read_interface_id(lowering, member, instance):
             continue
         elif _is_part(member):
-            _lower_part(lowering, member, instance)
+            lower_part(lowering, member, instance)
         else:
             _lower_slot(lowering, member, instance)
 
@@ -106,13 +107,31 @@ def _is_part(node: Node) -> bool:
     return is_part_usage or not all(map(nodes.is_annotation, nodes.body_of(node)))
 
 
-def _lower_part(lowering: "Lowering", node: Node, owner: Element) -> None:
-    """Lower values for a part of an instance to an instance inside it."""
-    part = lowering.add_element(node, Kind.INSTANCE, nodes.name_of(node), owner, subkind="part")
-    reference = nodes.find_reference(node, "Redefinition")
+def is_marked_part(node: Node) -> bool:
+    """Whether metadata marks a member of a class as values for a part: AutomationML repeats it."""
+    return node.kind == "PartUsage" and read_kind(node, Kind.PROPERTY)[1] == "part"
+
+
+def lower_part(lowering: "Lowering", node: Node, owner: Element) -> None:
+    """Lower values for a part of an instance or of a class to an instance inside it."""
+    attributes = foreign_attributes(node)
+    part = lowering.add_element(
+        node, Kind.INSTANCE, nodes.name_of(node), owner, subkind="part", **attributes
+    )
+    reference = nodes.find_reference(node, "Redefinition", *nodes.SUBSETTINGS)
     lowering.connect_reference(Edge.REPRESENTS, part, reference)
-    lowering.defer_until_elements(lambda: _connect_types(lowering, node, part))
+    lowering.defer_until_elements(
+        lambda: lowering.connect_nodes(Edge.INSTANCE_OF, part, nodes.types_of(lowering, node))
+    )
+    lowering.defer_until_edges(lambda: _name_after_part(lowering, part))
     _lower_members(lowering, node, part)
+
+
+def _name_after_part(lowering: "Lowering", instance: Element) -> None:
+    """Give the values for a part its name in the source, which metadata of the part may state."""
+    part = lowering.graph.target(instance, Edge.REPRESENTS)
+    if part is not None and part.name:
+        lowering.graph.rename(instance, part.name)
 
 
 def _lower_slot(lowering: "Lowering", node: Node, owner: Element) -> None:
@@ -122,7 +141,16 @@ def _lower_slot(lowering: "Lowering", node: Node, owner: Element) -> None:
     value = nodes.value_of(node)
     if value is not None:
         _set_slot_value(lowering, slot, value)
+    _set_interface_values(lowering, node, slot)
     lowering.lower_annotations(node, slot)
+
+
+def _set_interface_values(lowering: "Lowering", node: Node, slot: Element) -> None:
+    """Set the values that an instance gives to attributes of an interface of AutomationML."""
+    texts = annotations.metadata_value(node, "AutomationML", "values")
+    for text in () if texts is None else as_items(texts):
+        name, _, value = str(text).partition("=")
+        lowering.graph.set(slot, **{f"value.{name}": parse_fact_value(value)})
 
 
 def _set_slot_value(lowering: "Lowering", slot: Element, value: Node) -> None:

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import nodes
-from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.ir import AttrValue, Edge, Element, Kind, list_items
 from sysmlc.language.tree import Node
 
 if TYPE_CHECKING:
@@ -25,6 +25,8 @@ _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "b": "\b", "f": "\f"}
 _EDGES = {edge.value: edge for edge in Edge}
 _EXTERNAL_KINDS = {Edge.APPLIES: Kind.PROFILE}
 """Kinds of the external targets of edges; other edges lead to classes."""
+_LIST = "[]"
+"""End of the key of an attribute whose value is a list of elements: one fact for each."""
 _ATTEMPTS = 3
 """How often a fact waits for a part of its element."""
 
@@ -54,9 +56,9 @@ def _restore_fact(lowering: "Lowering", element: Element, fact: str, attempts: i
         if attempts:
             _defer_fact(lowering, element, fact, attempts - 1)
     elif key == "name":
-        lowering.graph.rename(holder, str(_parse_value(text)))
+        lowering.graph.rename(holder, str(parse_fact_value(text)))
     elif operator == "=":
-        lowering.graph.set(holder, **{key: _parse_value(text)})
+        lowering.graph.set(holder, **{key: parse_fact_value(text)})
     elif operator == "=>":
         _connect_external(lowering, holder, key, text)
     else:
@@ -71,13 +73,16 @@ def _connect_external(lowering: "Lowering", holder: Element, key: str, name: str
 
 
 def _connect(lowering: "Lowering", holder: Element, key: str, name: str) -> None:
-    """Add an edge, or an attribute whose value is the id of an element."""
+    """Add an edge, or an attribute whose value is the id of an element, or a list of ids."""
     target = lowering.element_of(_find_node(lowering, name))
     if target is None:
         return
     edge = _EDGES.get(key)
     if edge is not None:
         lowering.graph.connect(edge, holder, target)
+    elif key.endswith(_LIST):
+        key = key.removesuffix(_LIST)
+        lowering.graph.set(holder, **{key: (*list_items(holder.attrs.get(key)), target.id)})
     else:
         lowering.graph.set(holder, **{key: target.id})
 
@@ -100,7 +105,7 @@ def _unescape(text: str) -> str:
     return _ESCAPED.sub(lambda match: _ESCAPES.get(match[1], match[1]), text)
 
 
-def _parse_value(text: str) -> AttrValue:
+def parse_fact_value(text: str) -> AttrValue:
     """Return the JSON value of a text, or the text itself if it is no JSON."""
     try:
         return _freeze(json.loads(text))

@@ -37,6 +37,7 @@ _GUARDED = frozenset({Kind.TRANSITION, Kind.CONTROL_FLOW, Kind.OBJECT_FLOW})
 
 NOT_CONTENT = frozenset(
     {
+        "caex_id",
         "change_mode",
         "external",
         "interface_ids",
