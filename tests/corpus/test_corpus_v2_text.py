@@ -32,7 +32,6 @@ UNREPORTED = {
     "magicdraw/Wired_Camera_Example.mdzip": 1,
     "md-eclipse-export/Arrowhead.profile.uml": 3,
     "papyrus/Arrowhead-5.0.uml": 3,
-    "papyrus/ArrowheadProfile_v5.0.profile.uml": 4,
     "papyrus/AssertionLibrary.uml": 2,
     "papyrus/RoboCab.uml": 3,
 }
