@@ -246,6 +246,8 @@ def _add_transitions(draw, build, region, vertices, signals):
     graph = build.graph
     regions = dict.fromkeys(graph.owner(vertex).id for vertex in vertices)
     for id in regions:
+        if id != region.id and draw(st.integers(0, 5)) == 0:
+            continue
         inside = [vertex for vertex in vertices if vertex.owner == id and vertex.kind is Kind.STATE]
         start = build.add(Kind.PSEUDOSTATE, graph[id], subkind="initial")
         _add_transition(draw, build, graph[id], start, draw(st.sampled_from(inside)))

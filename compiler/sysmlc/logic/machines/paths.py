@@ -293,9 +293,12 @@ class PathExplorer(Struct, frozen=True):
         return ""
 
     def _start_region(self, path: Path, region: str) -> list[Path]:
-        """Start a region with its initial transition."""
+        """Start a region with its initial transition.
+
+        A region without one is never entered by default (``default_entry``).
+        """
         started = replace(path, guard_values=path.values)
-        outgoing = self.machine.outgoing[self.machine.regions[region].initial]
+        outgoing = self.machine.outgoing.get(self.machine.regions[region].initial, ())
         return [after for transition in outgoing for after in self._follow(started, transition)]
 
     # -- history -----------------------------------------------------------------------------

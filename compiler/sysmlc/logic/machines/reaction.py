@@ -237,8 +237,11 @@ def start_open_regions(
 def start_region(
     machine: Machine, run: Reaction, past: Mapping[str, Literal] | None, region: str
 ) -> list[Reaction]:
-    """Start a region with its initial transition."""
-    outgoing = machine.outgoing[machine.regions[region].initial]
+    """Start a region with its initial transition.
+
+    A region without one is never entered by default (``default_entry``).
+    """
+    outgoing = machine.outgoing.get(machine.regions[region].initial, ())
     start = replace(run, guard_values=run.store)
     return [after for transition in outgoing for after in _follow(machine, start, past, transition)]
 

@@ -30,8 +30,8 @@ NO_INITIAL = rule(
     "SM421",
     "region-without-initial",
     Severity.ERROR,
-    "region '{region}' of '{owner}' has no initial pseudostate with one transition",
-    help="add an initial pseudostate and a transition from it",
+    "region '{region}' of '{owner}' {fault}",
+    help="add an initial pseudostate with one transition to the first state",
 )
 DANGLING = rule(
     "SM423",
@@ -66,7 +66,7 @@ def is_supported(graph: Graph, machine: Element, sink: Sink) -> bool:
     ]
     for element, description in unsupported:
         sink.report(NOT_DERIVED, graph.subject(element), what=description, machine=machine.name)
-    faults = [_is_broken(graph, element, sink) for element in elements]
+    faults = [_is_broken(graph, machine, element, sink) for element in elements]
     return not unsupported and not any(faults)
 
 
@@ -155,13 +155,16 @@ def _describe_unsupported_pseudostate(graph: Graph, element: Element) -> str:
     return ""
 
 
-def _is_broken(graph: Graph, element: Element, sink: Sink) -> bool:
+def _is_broken(graph: Graph, machine: Element, element: Element, sink: Sink) -> bool:
     """Whether the element lacks a mandatory part, and report it.
 
-    A region needs an initial pseudostate, and a transition needs both ends.
+    A region of the machine needs an initial pseudostate, and a transition needs both ends.
     """
     if element.kind is Kind.REGION:
-        return _lacks_initial(graph, element, sink)
+        fault = _explain_bad_start(graph, machine, element)
+        if fault:
+            report_bad_start(graph, element, fault, sink)
+        return bool(fault)
     if element.kind is not Kind.TRANSITION:
         return False
     ends = {
@@ -177,16 +180,34 @@ def _is_broken(graph: Graph, element: Element, sink: Sink) -> bool:
     return None in ends.values()
 
 
-def _lacks_initial(graph: Graph, region: Element, sink: Sink) -> bool:
+def _explain_bad_start(graph: Graph, machine: Element, region: Element) -> str:
+    """Return why the region cannot start, or an empty text.
+
+    Nested regions without initial pseudostate are correct unless a transition enters them by
+    default, which ``default_entry`` decides for the complete machine.
+    """
     initial = find_initial(graph, region)
-    if initial is not None and len(graph.sources(initial, Edge.FLOW_SOURCE)) == 1:
-        return False
-    if not any(vertex.kind in (Kind.STATE, Kind.FINAL_STATE) for vertex in graph.owned(region)):
-        return False
+    starts = [] if initial is None else graph.sources(initial, Edge.FLOW_SOURCE)
+    if len(starts) > 1:
+        return f"has an initial pseudostate with {len(starts)} outgoing transitions; UML allows one"
+    has_states = any(v.kind in (Kind.STATE, Kind.FINAL_STATE) for v in graph.owned(region))
+    if starts or not has_states or graph.owner(region) is not machine:
+        return ""
+    return f"{describe_missing_start(graph, region)}, but the machine starts there"
+
+
+def describe_missing_start(graph: Graph, region: Element) -> str:
+    """Describe what a region without initial transition lacks."""
+    if find_initial(graph, region) is None:
+        return "has no initial pseudostate"
+    return "has an initial pseudostate without outgoing transition"
+
+
+def report_bad_start(graph: Graph, region: Element, fault: str, sink: Sink) -> None:
+    """Report a region that cannot start."""
     owner = graph.owner(region) or region
     name = region.name or "<Region>"
-    sink.report(NO_INITIAL, graph.subject(region), region=name, owner=owner.name)
-    return True
+    sink.report(NO_INITIAL, graph.subject(region), region=name, owner=owner.name, fault=fault)
 
 
 def find_initial(graph: Graph, region: Element) -> Element | None:

@@ -69,12 +69,19 @@ def read_regions(
     regions = [
         child
         for child in graph.owned(owner)
-        if child.kind is Kind.REGION and find_initial(graph, child) is not None
+        if child.kind is Kind.REGION and _has_content(graph, child)
     ]
     for region in regions:
         is_only = len(regions) == 1
         _read_region(draft, region, state, _region_name(named, region, state, is_only))
     return tuple(draft.id_of(region) for region in regions)
+
+
+def _has_content(graph: Graph, region: Element) -> bool:
+    """Whether the region has a state, a final state or an initial pseudostate."""
+    owned = graph.owned(region)
+    has_states = any(vertex.kind in (Kind.STATE, Kind.FINAL_STATE) for vertex in owned)
+    return has_states or find_initial(graph, region) is not None
 
 
 def _region_name(owner: Element, region: Element, state: str, is_only: bool) -> str:

@@ -8,6 +8,7 @@ from itertools import combinations
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Graph
+from sysmlc.logic.machines.default_entry import can_start_regions
 from sysmlc.logic.machines.machine import HISTORIES, Machine, Transition, element_id
 
 PSEUDO_CYCLE = rule(
@@ -53,7 +54,9 @@ def is_well_formed(graph: Graph, machine: Machine, sink: Sink) -> bool:
     """Whether the machine passes the other checks; report the faults."""
     if [*_report_dead_ends(graph, machine, sink), *_report_cycles(graph, machine, sink)]:
         return False
-    return not [*_report_strays(graph, machine, sink), *_report_malformed(graph, machine, sink)]
+    if [*_report_strays(graph, machine, sink), *_report_malformed(graph, machine, sink)]:
+        return False
+    return can_start_regions(graph, machine, sink)
 
 
 def _report_foreign_targets(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
@@ -89,10 +92,12 @@ def _report_strays(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
 def _report_dead_ends(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
     """Report pseudostates without outgoing transition. Yield their ids.
 
-    A history pseudostate needs none: its region starts by default.
+    A history pseudostate needs none: its region starts by default. ``default_entry`` checks the
+    initial pseudostates of nested regions.
     """
     for vertex in machine.vertices.values():
-        is_transient = not vertex.is_stable and vertex.kind not in HISTORIES
+        is_nested_start = vertex.kind == "initial" and machine.regions[vertex.region].state != ""
+        is_transient = not (vertex.is_stable or vertex.kind in HISTORIES or is_nested_start)
         if is_transient and not machine.outgoing.get(vertex.id):
             element = graph[element_id(vertex.id)]
             name = element.name or vertex.kind
