@@ -113,7 +113,7 @@ SYMBOLS = {
         ("mode == hand", "mode=hand"),
         ("hand == mode", "mode=hand"),
         ("mode != Mode::full", "mode!=full"),
-        ("open == true", "open <-> true"),
+        ("open == true", "open"),
         ("(if open ? bay else bay + 1) > 2", "open & bay>2 | !open & bay + 1>2"),
         ("open xor bay == 1", "!(open <-> bay=1)"),
         ("self.open implies this.bay <= 6", "open -> bay<=6"),

@@ -219,3 +219,27 @@ def test_one_token_goes_to_one_of_several_open_branches(x, y, is_allowed):
     after = dict.fromkeys(names, False) | {to_x: bool(x), to_y: bool(y)}
     steps = [part.formula for part in contract.guarantees if part.class_ is Class.SAFETY]
     assert all(is_true(formula, before, after) for formula in steps) is is_allowed
+
+
+def list_fillers(contract: Contract) -> list[str]:
+    """Return the conjuncts that contain a constant."""
+    texts = [print_formula(c.formula) for c in (*contract.assumptions, *contract.guarantees)]
+    return [text for text in texts if {"true", "false"} & set(text.replace("(", " ").split())]
+
+
+def test_a_flow_that_never_gets_a_second_token_has_a_guarantee_without_a_constant():
+    contract = derive(sketch("initial i\nmerge m\naction work\ni -> m\nm -> work\nwork -> m"))
+    assert "G (!at_start_to_merge_1')" in map(print_conjunct, contract.guarantees)
+    assert list_fillers(contract) == []
+
+
+def test_a_free_choice_has_no_guarantee_that_is_just_true():
+    contract = derive(
+        sketch(
+            "initial i\ndecision d\naction x\naction y\nfinal f\n"
+            "i -> d\nd -> x\nd -> y\nx -> f\ny -> f"
+        )
+    )
+    assert list_fillers(contract) == []
+    choice = [c for c in contract.guarantees if c.text.startswith("The token that decision")]
+    assert len(choice) == 1

@@ -296,3 +296,9 @@ def test_the_pass_leaves_the_elements_unchanged_and_is_idempotent():
     pipeline.load("contracts").run(graph, Sink())
     assert list(graph.derived(Contract)) == contracts
     assert print_text(graph) == before
+
+
+def test_a_timer_that_never_counts_on_has_no_guarantee_that_is_just_true():
+    _, (contract,), _ = derive_contracts(machine(arrow("b", "a", after="after 1 s")))
+    assert "true" not in print_formulas(contract, Class.SAFETY)
+    assert any("ticks_B" in formula for formula in print_formulas(contract, Class.SAFETY))

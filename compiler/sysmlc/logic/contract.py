@@ -3,12 +3,13 @@
 A contract has variables with owners and domains, and classified conjuncts.
 """
 
+from collections.abc import Iterable
 from enum import StrEnum
 
 from msgspec import Struct
 from msgspec.structs import replace
 
-from sysmlc.logic.formula import Formula
+from sysmlc.logic.formula import TRUE, Formula
 
 
 class Owner(StrEnum):
@@ -95,6 +96,11 @@ class Conjunct(Struct, frozen=True):
     def is_derived(self) -> bool:
         """Whether the compiler derives the conjunct."""
         return self.source is Source.DERIVED
+
+
+def drop_trivial(conjuncts: Iterable[Conjunct]) -> tuple[Conjunct, ...]:
+    """Return the conjuncts without those that are just ``true``."""
+    return tuple(conjunct for conjunct in conjuncts if conjunct.formula != TRUE)
 
 
 class Contract(Struct, frozen=True):

@@ -189,6 +189,14 @@ def iff(left: Formula, right: Formula) -> Formula:
     return _apply(_IFF, (left, right))
 
 
+def fold_iff(left: Formula, right: Formula) -> Formula:
+    """Return the equivalence of two Boolean formulas with folded constants."""
+    for constant, operand in ((left, right), (right, left)):
+        if isinstance(constant, Const):
+            return operand if constant.value else negate(operand)
+    return iff(left, right)
+
+
 def compare(op: Op, left: Formula, right: Formula) -> Formula:
     """Return *op*, a comparison or an arithmetic operation, applied to two values."""
     return _apply(op, (left, right))

@@ -62,13 +62,6 @@ def _move_constant_right(op: Op, args: tuple[Formula, ...]) -> Formula:
             return Apply(op, args)
 
 
-def _fold_equivalence(left: Formula, right: Formula) -> Formula:
-    for constant, operand in ((left, right), (right, left)):
-        if isinstance(constant, Const):
-            return operand if constant.value else f.negate(operand)
-    return f.iff(left, right)
-
-
 def is_satisfiable(
     formula: Formula, domain_by_name: Mapping[str, Domain], limit: int = _MAX_VALUATIONS
 ) -> bool:
@@ -297,5 +290,5 @@ _CONNECTIVES: dict[Op, Callable[..., Formula]] = {
     Op.OR: f.either,
     Op.NOT: f.negate,
     Op.IMPLIES: f.implies,
-    Op.IFF: _fold_equivalence,
+    Op.IFF: f.fold_iff,
 }

@@ -31,6 +31,7 @@ from sysmlc.logic.contract import (
     Contract,
     Owner,
     Variable,
+    drop_trivial,
 )
 from sysmlc.logic.formula import Const, Formula
 from sysmlc.logic.printing import print_formula, print_literal
@@ -52,30 +53,30 @@ def derive_contract(graph: TokenGraph, is_repeated: bool = True) -> Contract:
         component=graph.component,
         origin=graph.activity,
         variables=list_variables(graph),
-        assumptions=tuple(derive_assumptions(formulas)),
-        guarantees=(
-            *_derive_start_tokens(graph),
-            *(conjunct for store in graph.stores for conjunct in _derive_initial_value(store)),
-            *(_derive_completion(formulas, region, name) for region, name in graph.quiets),
-            *(
-                _derive_edge_update(formulas, edge)
-                for edge in graph.edges
-                if not formulas.is_chosen(edge)
-            ),
-            *(
-                conjunct
-                for node in formulas.list_choosers()
-                for conjunct in _derive_choice(formulas, node)
-            ),
-            *(_derive_run_update(formulas, node) for node in graph.workers()),
-            *(
-                conjunct
-                for store in graph.stores
-                for conjunct in _derive_store_updates(formulas, store)
-            ),
-            *(_derive_progress(formulas) if is_repeated else ()),
-        ),
+        assumptions=drop_trivial(derive_assumptions(formulas)),
+        guarantees=drop_trivial(_derive_guarantees(formulas, is_repeated)),
     )
+
+
+def _derive_guarantees(formulas: StepFormulas, is_repeated: bool) -> Iterator[Conjunct]:
+    """Yield how the activity starts, how its tokens and variables change, and its progress."""
+    graph = formulas.graph
+    yield from _derive_start_tokens(graph)
+    for store in graph.stores:
+        yield from _derive_initial_value(store)
+    for region, name in graph.quiets:
+        yield _derive_completion(formulas, region, name)
+    for edge in graph.edges:
+        if not formulas.is_chosen(edge):
+            yield _derive_edge_update(formulas, edge)
+    for node in formulas.list_choosers():
+        yield from _derive_choice(formulas, node)
+    for node in graph.workers():
+        yield _derive_run_update(formulas, node)
+    for store in graph.stores:
+        yield from _derive_store_updates(formulas, store)
+    if is_repeated:
+        yield from _derive_progress(formulas)
 
 
 def list_variables(graph: TokenGraph) -> tuple[Variable, ...]:
@@ -147,7 +148,7 @@ def _derive_completion(formulas: StepFormulas, region: str, name: str) -> Conjun
         f"'{name}' is true when {label} has ended: a token is at a final node, "
         "or nothing in it can move."
     )
-    value = f.iff(f.var(name), formulas.completion_formula(region))
+    value = f.fold_iff(f.var(name), formulas.completion_formula(region))
     return Conjunct(value, Class.SAFETY, _origin_of(formulas.graph, region), text)
 
 
@@ -156,7 +157,7 @@ def _constant(value: bool) -> Formula:
 
 
 def _next_value(variable: str, value: Formula) -> Formula:
-    return f.iff(f.prime(f.var(variable)), value)
+    return f.fold_iff(f.prime(f.var(variable)), value)
 
 
 def _describe_edge(formulas: StepFormulas, edge: TokenEdge) -> str:
@@ -365,4 +366,4 @@ def _equality(store: Store, value: Formula, *, is_next: bool) -> Formula:
         return f.eq(variable, value)
     if isinstance(value, Const):
         return variable if value.value else f.negate(variable)
-    return f.iff(variable, value)
+    return f.fold_iff(variable, value)

@@ -88,7 +88,7 @@ _CONNECTIVE: dict[str, Callable[[Formula, Formula], Formula]] = {
     "and": f.both,
     "or": f.either,
     "implies": f.implies,
-    "xor": lambda left, right: f.negate(f.iff(left, right)),
+    "xor": lambda left, right: f.negate(f.fold_iff(left, right)),
 }
 
 
@@ -239,7 +239,7 @@ def _elaborate_binary(expression: Binary, scope: Scope) -> GuardedValue:
 def _compare(op: str, left: Formula, right: Formula, domain: Domain) -> Formula:
     if not isinstance(domain, BooleanDomain):
         return f.compare(_EQUALITY.get(op) or _ORDER[op], left, right)
-    is_same = f.iff(left, right)
+    is_same = f.fold_iff(left, right)
     return is_same if op == "==" else f.negate(is_same)
 
 

@@ -15,6 +15,7 @@ from sysmlc.logic.contract import (
     Conjunct,
     Contract,
     IntegerDomain,
+    drop_trivial,
 )
 from sysmlc.logic.expressions.elaboration import elaborate_condition
 from sysmlc.logic.formula import Const, Formula, Op
@@ -58,7 +59,7 @@ def derive_contract(graph: Graph, machine: Machine, component: str, sink: Sink) 
         *_derive_clocks(exploration),
         *_derive_memories(exploration),
     )
-    return Contract(component, machine.id, machine.variables, assumptions, guarantees)
+    return Contract(component, machine.id, machine.variables, assumptions, drop_trivial(guarantees))
 
 
 # -- initial states ----------------------------------------------------------------------------
@@ -127,7 +128,7 @@ def _initial_facts(exploration: Exploration, path: Path) -> dict[str, Formula]:
         if state.timer:
             facts[state.timer] = f.eq(f.var(state.timer), Const(0))
     for name, expression in machine.memories.items():
-        facts[name] = f.iff(f.var(name), elaborate_condition(expression, machine.scope))
+        facts[name] = f.fold_iff(f.var(name), elaborate_condition(expression, machine.scope))
     return facts
 
 
@@ -141,7 +142,7 @@ def _equality(exploration: Exploration, name: str, value: Formula, is_primed: bo
     if isinstance(value, Const) and isinstance(value.value, bool):
         return variable if value.value else f.negate(variable)
     if _is_boolean(exploration, name):
-        return f.iff(variable, value)
+        return f.fold_iff(variable, value)
     return f.eq(variable, value)
 
 
@@ -347,7 +348,7 @@ def _derive_memories(exploration: Exploration) -> Iterator[Conjunct]:
     machine = exploration.machine
     for name, expression in machine.memories.items():
         truth = elaborate_condition(expression, machine.scope)
-        formula = f.iff(f.prime(f.var(name)), truth)
+        formula = f.fold_iff(f.prime(f.var(name)), truth)
         yield Conjunct(
             formula, Class.SAFETY, _origin_of(exploration, name), texts.describe_memory(name, truth)
         )
@@ -356,7 +357,7 @@ def _derive_memories(exploration: Exploration) -> Iterator[Conjunct]:
             yield from _derive_history(exploration, region)
     for state in machine.list_states():
         if state.do:
-            formula = f.iff(f.var(state.do), is_active_formula(machine, state.id))
+            formula = f.fold_iff(f.var(state.do), is_active_formula(machine, state.id))
             text = texts.describe_do_behaviour(state)
             yield Conjunct(formula, Class.SAFETY, _origin_of(exploration, state.do), text)
 
