@@ -28,23 +28,46 @@ def component_name(graph: Graph, element: Element) -> str:
 
     A classifier behaviour specifies its classifier, a requirement its subject. Another behaviour
     is a component ``<Owner>.<behaviour>`` of its own, named by its qualified name if a package owns
-    it.
+    it. Elements without a name get a readable one, because the name becomes the name of a file.
     """
     subject = _find_subject(graph, element) if element.role == "requirement" else None
     component = subject or element
     if component.kind in BEHAVIORS:
         return _behavior_name(graph, component)
-    return graph.qualified_name(component)
+    return _readable_name(graph, component)
 
 
 def _behavior_name(graph: Graph, behavior: Element) -> str:
     owner = graph.owner(behavior)
     if owner is None or owner.kind in (Kind.PACKAGE, Kind.PROFILE):
-        return graph.qualified_name(behavior)
+        return _readable_name(graph, behavior)
     owner_name = component_name(graph, owner)
     if behavior in graph.targets(owner, Edge.CLASSIFIER_BEHAVIOR):
         return owner_name
-    return f"{owner_name}.{behavior.name or f'<{behavior.kind}>'}"
+    roles = (edge for edge in _PARTS_OF_MACHINES if behavior in graph.targets(owner, edge))
+    return f"{owner_name}.{behavior.name or next(roles, behavior.kind.lower())}"
+
+
+_PARTS_OF_MACHINES = (Edge.ENTRY, Edge.DO, Edge.EXIT, Edge.EFFECT)
+
+
+def _readable_name(graph: Graph, element: Element) -> str:
+    """Return the qualified name, with words in place of absent names.
+
+    A region without a name is omitted, and a transition is named by its ends.
+    """
+    path = [element, *graph.ancestors(element)]
+    words = (_find_word(graph, part) for part in reversed(path))
+    return "::".join(word for word in words if word)
+
+
+def _find_word(graph: Graph, element: Element) -> str:
+    if element.name or element.kind is Kind.REGION:
+        return element.name
+    if element.kind is not Kind.TRANSITION:
+        return element.kind.lower()
+    ends = (graph.target(element, edge) for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET))
+    return "_to_".join(end.name or end.subkind or end.kind.lower() for end in ends if end)
 
 
 def _find_subject(graph: Graph, requirement: Element) -> Element | None:
