@@ -13,6 +13,7 @@ from sysmlc.passes.activities import Activities
 LIMITS = {"SM455": {"max_markings": 3}, "SM479": {"max_depth": 1}}
 """Options with limits that the models of the rules about limits exceed."""
 RULES = {code: rule for code, rule in catalogue().items() if "SM450" <= code <= "SM479"}
+UNORDERED = "activity 'a' has nodes but no flows, so that nothing orders them; it gets no contract"
 WITH_GRAPHS = sorted(code for code, rule in RULES.items() if rule.read_page().language == "ir")
 """Rules whose examples are graphs; those in XMI or SysML v2 are compiled as files."""
 
@@ -233,3 +234,42 @@ def test_an_activity_that_binds_a_template_needs_no_nodes():
     assert list_codes(derive_token_graphs(text)[1]) == ["SM469"]
     binding = text + "  TemplateBinding b\n"
     assert list_codes(derive_token_graphs(binding)[1]) == []
+
+
+# -- unfinished activities ----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "nodes",
+    [
+        "action x\naction y",
+        "action x\n  pin p\naction y\naccept z\n  on-tool t",
+        "initial i\naction x\nfinal f",
+        "initial i",
+    ],
+)
+def test_an_unfinished_activity_without_flows_has_one_finding_and_no_contract(nodes):
+    token_graphs, sink = derive_token_graphs(sketch(nodes))
+    assert token_graphs == []
+    assert [(found.rule.code, found.message) for found in sink] == [("SM486", UNORDERED)]
+
+
+@pytest.mark.parametrize(
+    "nodes",
+    [
+        "action x",
+        "structured s\n  action x",
+        "action x\naction y\nx -> y",
+        "initial i\naction x\naction y\ni -> x",
+    ],
+)
+def test_one_action_or_one_flow_are_enough_for_a_contract(nodes):
+    token_graphs, sink = derive_token_graphs(sketch(nodes))
+    assert len(token_graphs) == 1
+    assert "SM486" not in list_codes(sink)
+
+
+def test_an_exception_handler_orders_the_two_actions_of_an_activity():
+    token_graphs, sink = derive_token_graphs(sketch("protected work\naction repair"))
+    assert len(token_graphs) == 1
+    assert "SM486" not in list_codes(sink)

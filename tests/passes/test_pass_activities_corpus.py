@@ -35,7 +35,7 @@ FILES = (
     "papyrus/tracker.uml",
     "papyrus/AllDiagrams.uml",
 )
-REASONS = ("SM450", "SM454", "SM455", "SM459", "SM460", "SM467", "SM469", "SM473", "SM479")
+REASONS = ("SM450", "SM454", "SM455", "SM459", "SM460", "SM467", "SM469", "SM473", "SM479", "SM486")
 """Rules that explain why an activity has no token graph."""
 _SAMPLE = 60
 """At most so many contracts of a file are played; of Alf.library every seventh."""

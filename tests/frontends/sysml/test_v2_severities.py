@@ -224,6 +224,13 @@ def test_states_without_a_first_one_are_no_error():
     ]
 
 
+def test_actions_without_successions_are_correct_but_have_no_contract():
+    reading = read("package P { action def A { action a; action b; } }", passes=ALL)
+    assert [(diagnostic.rule.code, diagnostic.severity) for diagnostic in reading.sink] == [
+        ("SM486", Severity.INFO)
+    ]
+
+
 def test_components_of_one_name_in_two_files_are_reported_with_both():
     text = "package P { action def A { first start; then action x; then done; } }"
     reading = read(text, text, passes=ALL)

@@ -54,6 +54,8 @@ substates needs no entry transition.
 SEVERITIES: dict[str, Severity | None] = {
     **dict.fromkeys(_CHECKED_BY_LANGUAGE.split(), None),
     **dict.fromkeys(_WEAKER_CONTRACT.split(), Severity.WARNING),
+    # Actions without successions are correct SysML v2: their order is not stated.
+    "SM486": Severity.INFO,
 }
 
 

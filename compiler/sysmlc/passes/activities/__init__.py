@@ -99,6 +99,7 @@ class Activities(Struct, frozen=True):
             if not any(part.kind is Kind.TEMPLATE_BINDING for part in graph.owned(activity)):
                 sink.report(rules.EMPTY, graph.subject(activity), activity=activity.name)
             raise activity_drawing.CannotPlayError
+        _check_order(graph, drawing, sink)
         # The order matters: the stores need the nodes, and the checks of guards need the stores.
         scope = Scope(graph, activity, self.assumed_range, sink)
         inputs = Inputs(graph, scope, sink)
@@ -124,6 +125,20 @@ class Activities(Struct, frozen=True):
                 subject, limit = graph.subject(element), self.max_depth
                 sink.report(rules.TOO_DEEP, subject, activity=activity.name, limit=limit)
                 raise activity_drawing.CannotPlayError
+
+
+def _check_order(graph: Graph, drawing: activity_drawing.Drawing, sink: Sink) -> None:
+    """Report an unfinished activity: it has nodes, but nothing orders or starts them.
+
+    By the letter of UML 2.5.1, 15.2.3, all its actions would start at once.
+    """
+    steps = drawing.list_steps()
+    is_single = len(steps) == 1 and steps[0].kind is not Kind.CONTROL
+    if not steps or is_single or drawing.flows or drawing.handlers:
+        return
+    activity = drawing.activity
+    sink.report(rules.UNORDERED, graph.subject(activity), activity=activity.name)
+    raise activity_drawing.CannotPlayError
 
 
 def _analyse_behaviours(graph: Graph) -> _OtherBehaviours:

@@ -71,6 +71,12 @@ class Drawing:
     labels: dict[str, str] = field(default_factory=dict)
     handlers: dict[str, list[Handler]] = field(default_factory=dict)
 
+    def list_steps(self) -> list[Element]:
+        """List the actions, structured nodes and control nodes outside of structured nodes."""
+        steps = (Kind.ACTION, Kind.STRUCTURED, Kind.CONTROL)
+        candidates = (node for node in self.nodes if node.kind in steps)
+        return [node for node in candidates if self.region[node.id] == ACTIVITY_REGION]
+
     def incoming(self, node: Element) -> list[Flow]:
         """Return the flows to the node or its pins, without flows from inside the node."""
         return [flow for flow in self.flows if flow.target is node and not flow.leaves]

@@ -1,4 +1,4 @@
-"""Rules about activities (SM450 to SM479)."""
+"""Rules about activities (SM450 to SM479, and SM486)."""
 
 from sysmlc.diagnostics import Severity, rule
 
@@ -202,5 +202,16 @@ TOO_DEEP = rule(
     help=(
         "move what is inside into activities of their own, or raise the limit (option "
         "max_depth of the pass activities)"
+    ),
+)
+UNORDERED = rule(
+    "SM486",
+    "activity-without-flows",
+    Severity.WARNING,
+    "activity '{activity}' has nodes but no flows, so that nothing orders them; it gets no "
+    "contract",
+    help=(
+        "connect the nodes with flows; if all actions start at once, lead a flow to each of them "
+        "from a fork"
     ),
 )
