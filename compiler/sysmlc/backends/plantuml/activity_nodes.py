@@ -9,6 +9,7 @@ from sysmlc.backends.plantuml.relations import list_node_allocations
 from sysmlc.backends.plantuml.state_machine import format_trigger
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, as_items, list_items
 from sysmlc.ir.query import has_generated_name
+from sysmlc.ir.query.classifiers import name_value_unit
 from sysmlc.support.plantuml_text import format_label, wrap_lines
 
 _CONTROL_SHAPES = {
@@ -199,6 +200,6 @@ def _format_pin(graph: Graph, pin: Element) -> tuple[str, ...]:
     direction = str(pin.attrs.get("direction", ""))
     name = pin.name or (pin.subkind if not graph.targets(pin, Edge.TYPED_BY) else "")
     value = f" = {labels.literal(pin.attrs['value'])}" if "value" in pin.attrs else ""
-    unit = f" {pin.attrs['value_unit']}" if "value_unit" in pin.attrs else ""
-    text = f"{direction} {labels.format_typed(graph, pin, name)}{value}{unit}".strip()
+    unit = name_value_unit(graph, pin, "value")
+    text = f"{direction} {labels.format_typed(graph, pin, name)}{value} {unit}".strip()
     return wrap_lines(text, _ROW_WIDTH)

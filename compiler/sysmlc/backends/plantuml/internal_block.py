@@ -20,7 +20,7 @@ from sysmlc.backends.plantuml.layout import find_port_sides, iter_port_guides
 from sysmlc.backends.plantuml.views import Aliases, Diagram, InternalView, Line, PartView, PortView
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import generals, opposite
-from sysmlc.ir.query.classifiers import unit_of
+from sysmlc.ir.query.classifiers import name_value_unit, unit_of
 from sysmlc.support.plantuml_text import escape_line, format_label, join_rows, shrink, wrap_lines
 
 FORMS = {"in": "portin", "out": "portout"}
@@ -334,7 +334,10 @@ def _format_slots(graph: Graph, slots: list[Element]) -> list[str]:
 
 
 def _format_unit(graph: Graph, slot: Element) -> str:
-    """Return the unit of the slot's feature, with a leading blank."""
+    """Return the unit of the slot's value, else of its feature, with a leading blank."""
+    own_unit = name_value_unit(graph, slot, "value")
+    if own_unit:
+        return f" {own_unit}"
     feature = graph.target(slot, Edge.INSTANCE_OF)
     unit = None if feature is None else unit_of(graph, feature)
     return "" if unit is None else f" {unit.attrs.get('symbol') or labels.name(unit)}"

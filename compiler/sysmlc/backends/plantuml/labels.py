@@ -9,6 +9,7 @@ from collections.abc import Iterable
 from sysmlc.backends.plantuml.views import Aliases, Note
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import applications, lineage, redefined_features, templates
+from sysmlc.ir.query.classifiers import name_value_unit
 from sysmlc.support.plantuml_text import format_label, join_rows, wrap_lines
 
 _TOOL_ID = re.compile(r"_\d+_\d+_\d+_[0-9a-f]+_\d+_\d+_\d+|(EAID)?_[\w-]{20,}")
@@ -165,10 +166,15 @@ def feature(graph: Graph, element: Element) -> str:
         _format_visibility(element),
         f"{direction} " if direction else "",
         slash + format_typed(graph, element),
-        "" if value is None else f" = {literal(value)}",
+        "" if value is None else f" = {_format_quantity(graph, element, 'default')}",
         _format_modifiers(graph, element),
     ]
     return "".join(parts)
+
+
+def _format_quantity(graph: Graph, element: Element, key: str) -> str:
+    """Return the value in an attribute, with the unit that it states itself."""
+    return f"{literal(element.attrs[key])} {name_value_unit(graph, element, key)}".rstrip()
 
 
 def literal(value: object) -> str:
@@ -215,7 +221,7 @@ def slot(graph: Graph, element: Element) -> str:
     features = ", ".join(name(item) for item in graph.targets(element, Edge.INSTANCE_OF))
     values = [name(item) for item in graph.targets(element, Edge.REFERENCES)]
     if element.attrs.get("value") is not None:
-        values.insert(0, literal(element.attrs["value"]))
+        values.insert(0, _format_quantity(graph, element, "value"))
     return f"{features or name(element)} = {', '.join(values)}"
 
 

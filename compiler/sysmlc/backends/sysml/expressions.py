@@ -4,6 +4,8 @@ A text that is not an expression of sysmlc's grammar, or that contains an unknow
 expression: the caller decides what the text becomes instead.
 """
 
+import re
+
 from sysmlc.backends.sysml.library import find_quantity, find_unit_name
 from sysmlc.backends.sysml.plan import Member, Plan
 from sysmlc.backends.sysml.printing import quote_name, quote_string
@@ -21,6 +23,12 @@ _WITHOUT_VALUE = frozenset({"transition", "succession", "flow", "comment", "depe
 _QUALIFIED = (Kind.ENUMERATION_LITERAL, Kind.PROPERTY, Kind.PORT, Kind.OPERATION, Kind.INSTANCE)
 """Kinds that an incomplete qualified name may denote."""
 _NUMBERS = frozenset({"Integer", "Real", "UnlimitedNatural", "Number"})
+SIGNS = {"bound": "=", "initial": ":=", "default": "default =", "default initial": "default :="}
+"""Words before a value, by its kind."""
+
+
+_QUALIFIED_NAME = re.compile(r"(?:\w+::)+(?:\w+|'[^'\\]+')")
+"""The name of a unit in a library, in which only the last segment may need quotes."""
 
 
 class UnknownNameError(ValueError):
@@ -171,7 +179,32 @@ def format_value(
         expression = format_expression(writer, scope, value)
         if expression is not None:
             return expression
+    unit = holder.attrs.get(f"{key}_unit")
+    if isinstance(unit, tuple) and isinstance(value, tuple):
+        numbers = zip(value, unit, strict=True)
+        return f"({', '.join(_format_quantity(writer, scope, *number) for number in numbers)})"
+    if isinstance(unit, str):
+        return _format_quantity(writer, scope, value, unit)
     return format_literal(writer, scope, feature, value)
+
+
+def _format_quantity(
+    writer: Writer, scope: Member | None, value: AttrValue, unit: AttrValue
+) -> str:
+    """Return a number, or several numbers in parentheses, with the unit that the value states."""
+    number = f"({', '.join(map(repr, value))})" if isinstance(value, tuple) else repr(value)
+    return f"{number} [{_refer_to_unit(writer, scope, str(unit))}]" if unit else number
+
+
+def _refer_to_unit(writer: Writer, scope: Member | None, unit: str) -> str:
+    """Return the name of a unit of the model or of a library, or the expression of a unit."""
+    element = writer.graph.get(unit)
+    if element is not None:
+        name = writer.refer_to(scope, element, Edge.REFERENCES, element)
+        return name or quote_name(element.name)
+    if not _QUALIFIED_NAME.fullmatch(unit):
+        return unit
+    return writer.refer_to_library(scope, unit.replace("'", ""))
 
 
 def format_literal(writer: Writer, scope: Member | None, feature: Element, value: AttrValue) -> str:
@@ -193,9 +226,6 @@ def _format_number(writer: Writer, scope: Member | None, feature: Element, value
     text = repr(value)
     if text in ("inf", "-inf", "nan"):
         return quote_string(text)
-    value_unit = feature.attrs.get("value_unit")
-    if isinstance(value_unit, str) and value_unit.isidentifier():
-        return f"{text} [{writer.refer_to_library(scope, f'SI::{value_unit}')}]"
     if type_ is None or find_quantity(writer.graph, type_) is None:
         return text
     unit = find_unit_name(unit_of(writer.graph, type_))

@@ -10,7 +10,7 @@ from sysmlc.backends.sysml.declarations import (
     make_feature_head,
 )
 from sysmlc.backends.sysml.definitions import write_contents
-from sysmlc.backends.sysml.expressions import format_value
+from sysmlc.backends.sysml.expressions import SIGNS, format_value
 from sysmlc.backends.sysml.plan import Member
 from sysmlc.backends.sysml.printing import Line, quote_name
 from sysmlc.backends.sysml.references import is_accessible
@@ -39,7 +39,8 @@ def write_feature(writer: Writer, member: Member) -> list[Line]:
     head = make_feature_head(writer, member)
     if "default" in element.attrs:
         default = format_value(writer, member.parent, element, element, "default")
-        head.value = f" default = {default}" if default else ""
+        sign = SIGNS[str(element.attrs.get("default_kind", "default"))]
+        head.value = f" {sign} {default}" if default else ""
     body = write_contents(writer, member)
     if element.attrs.get("aggregation") == "shared":
         body.insert(0, Line(f"@{writer.refer_to_sysmlc(member, 'shared')}", is_short=True))
@@ -144,7 +145,7 @@ def write_parameter(writer: Writer, member: Member) -> list[Line]:
     head = make_feature_head(writer, member)
     _add_direction(head)
     if "default" in element.attrs:
-        sign = ":=" if element.attrs.get("initial") else "default ="
+        sign = SIGNS[str(element.attrs.get("default_kind", "default"))]
         default = format_value(writer, member.parent, element, element, "default")
         head.value = f" {sign} {default}"
     return [Line(head.format(), write_contents(writer, member))]
@@ -169,7 +170,8 @@ def write_pin(writer: Writer, member: Member) -> list[Line]:
         _redefine_parameter(writer, member, parameter, head)
     value = format_value(writer, member.parent, element, element)
     value = value or _format_result(writer, member, element)
-    head.value = f" = {value}" if value else ""
+    sign = SIGNS[str(element.attrs.get("value_kind", "bound"))]
+    head.value = f" {sign} {value}" if value else ""
     return [Line(head.format(), write_contents(writer, member))]
 
 

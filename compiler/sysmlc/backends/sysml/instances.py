@@ -2,7 +2,7 @@
 
 from sysmlc.backends.sysml.annotations import is_part_of_class, make_annotation, write_annotations
 from sysmlc.backends.sysml.declarations import list_visibility, refer_to_type
-from sysmlc.backends.sysml.expressions import format_value
+from sysmlc.backends.sysml.expressions import SIGNS, format_value
 from sysmlc.backends.sysml.plan import Member
 from sysmlc.backends.sysml.preserved_facts import format_fact_value
 from sysmlc.backends.sysml.printing import Line, quote_name
@@ -106,11 +106,12 @@ def _write_child(writer: Writer, element: Element) -> list[Line]:
 
 def _format_slot_value(writer: Writer, member: Member, slot: Element, feature: Element) -> str:
     names = writer.refer_to_all(member, slot, Edge.REFERENCES, _list_values(writer, slot))
+    sign = SIGNS[str(slot.attrs.get("value_kind", "bound"))]
     if "value" in slot.attrs:
-        return f" = {format_value(writer, member, feature, slot)}"
+        return f" {sign} {format_value(writer, member, feature, slot)}"
     if not names:
         return ""
-    return f" = {names[0] if len(names) == 1 else '(' + ', '.join(names) + ')'}"
+    return f" {sign} {names[0] if len(names) == 1 else '(' + ', '.join(names) + ')'}"
 
 
 def _list_values(writer: Writer, slot: Element) -> list[Element]:

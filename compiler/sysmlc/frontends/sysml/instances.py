@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml import annotations, nodes, values
+from sysmlc.frontends.sysml import annotations, nodes, quantities, values
 from sysmlc.frontends.sysml.definitions import (
     foreign_attributes,
     lower_definition,
@@ -161,4 +161,5 @@ def _set_slot_value(lowering: "Lowering", slot: Element, value: Node) -> None:
     if target is None or is_literal or lowering.document_of(target) is None:
         values.set_value(lowering, slot, "value", value)
         return
+    quantities.set_kind(lowering, slot, "value", value)
     lowering.defer_until_elements(lambda: lowering.connect_node(Edge.REFERENCES, slot, target))

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml import annotations, nodes, values
+from sysmlc.frontends.sysml import annotations, nodes, quantities, values
 from sysmlc.frontends.sysml.definitions import read_kind, visibility_attributes
 from sysmlc.frontends.sysml.features import connect_types, describe_feature, lower_property
 from sysmlc.ir import AttrValue, Edge, Element, Kind
@@ -67,9 +67,6 @@ def _lower_parameter(lowering: "Lowering", node: Node, owner: Element) -> Elemen
         direction=direction,
         **visibility_attributes(node),
     )
-    value = nodes.value_of(node)
-    if direction != "in" and value is not None and value.role == ":=":
-        lowering.set_attributes(parameter, initial=True)
     describe_feature(lowering, node, parameter)
     return parameter
 
@@ -98,11 +95,10 @@ def _lower_pin(lowering: "Lowering", node: Node, action: Element) -> Element:
     lowering.defer_until_elements(lambda: connect_types(lowering, node, pin))
     value = nodes.value_of(node)
     if value is not None and direction == "out":
+        quantities.set_kind(lowering, pin, "value", value)
         lowering.defer_until_elements(lambda: _set_output(lowering, action, value))
     elif value is not None:
         values.set_value(lowering, pin, "value", value)
-        if unit := values.unit_of(value):
-            lowering.set_attributes(pin, value_unit=unit)
     lowering.lower_annotations(node, pin)
     return pin
 
@@ -126,6 +122,10 @@ def _set_output(lowering: "Lowering", action: Element, value: Node) -> None:
     target = nodes.find_target(value, "Membership") if is_reference else None
     if constant is not None:
         lowering.graph.set(action, subkind="value", value=constant)
+        if quantities.has_unit(value):
+            lowering.defer_until_edges(
+                lambda: quantities.set_unit(lowering, action, "value", value)
+            )
     elif target is not None and lowering.element_of(target) is not None:
         lowering.graph.set(action, subkind="read")
         lowering.connect_node(Edge.CALLS, action, target)

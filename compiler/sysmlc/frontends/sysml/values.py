@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml import expressions, nodes
+from sysmlc.frontends.sysml import expressions, nodes, quantities
 from sysmlc.ir import AttrValue, Edge, Element
 from sysmlc.language.tree import Node
 
@@ -16,11 +16,16 @@ def set_value(lowering: "Lowering", element: Element, key: str, expression: Node
     """Set the attribute *key* to the value of an expression.
 
     An enumeration value also sets ``<key>_instance``, any other expression that must be computed
-    ``<key>_language``.
+    ``<key>_language``. A quantity sets ``<key>_unit``, and ``:=`` sets ``<key>_kind``.
     """
+    quantities.set_kind(lowering, element, key, expression)
     constant = constant_of(expression)
     if constant is not None:
         lowering.graph.set(element, **{key: constant})
+        if quantities.has_unit(expression):
+            lowering.defer_until_edges(
+                lambda: quantities.set_unit(lowering, element, key, expression)
+            )
         return
     lowering.defer_until_edges(lambda: _set_computed(lowering, element, key, expression))
 
@@ -83,7 +88,7 @@ def _referenced_feature(expression: Node) -> Node | None:
 def constant_of(expression: Node) -> AttrValue:
     """Return the value of a literal, a quantity or a sequence; None if it must be computed.
 
-    The value of a quantity is its number. Its unit is the unit of the type, or ``unit_of``.
+    The value of a quantity is its number. Its unit is read by ``quantities``.
     """
     if expression.kind in _LITERALS:
         return expression.attributes.get("value")

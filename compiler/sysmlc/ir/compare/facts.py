@@ -177,7 +177,7 @@ def _slot_facts(side: Side, slot: Element) -> Iterator[Fact]:
         if name not in NOT_CONTENT:
             suffix = name.removeprefix("value")
             resolved = _resolve_ids(side, name, value)
-            yield Fact(("value", feature, name), resolved, label + suffix)
+            yield Fact(("value", feature, name), resolved, label + suffix.replace("_", " "))
     for target in edges.get(Edge.REFERENCES, ()):
         yield Fact(("value", feature, "of"), target, label)
     for nested in side.graph.owned(slot):

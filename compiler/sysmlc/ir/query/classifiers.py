@@ -1,5 +1,6 @@
 """Classifiers: generals, features, parameters, units, stereotypes, behaviour."""
 
+import re
 from collections.abc import Iterator
 
 from sysmlc.ir.element import AttrValue, Element
@@ -35,6 +36,8 @@ FLOW_DIRECTIONS = ("in", "out", "inout")
 STRUCTURAL_FEATURES = (Kind.PROPERTY, Kind.PORT, Kind.FLOW_PROPERTY)
 FEATURES = (*STRUCTURAL_FEATURES, Kind.OPERATION, Kind.RECEPTION)
 DOMAINS = ("physical", "information")
+_UNIT_KINDS = (Kind.UNIT, Kind.INSTANCE, Kind.DATA_TYPE, Kind.PROPERTY)
+_QUALIFIER = re.compile(r"(?:\w+|'[^']*')::")
 
 
 def generals(graph: Graph, classifier: Element) -> list[Element]:
@@ -155,6 +158,17 @@ def is_quantity_kind(element: Element) -> bool:
 def unit_of(graph: Graph, feature: Element) -> Element | None:
     """Return the unit of a feature or a value type: its own or the nearest inherited one."""
     return next(filter(is_unit, _iter_references(graph, feature)), None)
+
+
+def name_value_unit(graph: Graph, element: Element, key: str) -> str:
+    """Return the symbol of the unit that the value in an attribute states itself; '' without."""
+    unit = element.attrs.get(f"{key}_unit")
+    if not isinstance(unit, str):
+        return ""
+    unit_element = graph.get(unit)
+    if unit_element is not None and unit_element.kind in _UNIT_KINDS:
+        return str(unit_element.attrs.get("symbol") or unit_element.name)
+    return _QUALIFIER.sub("", unit).replace("'", "")
 
 
 def quantity_kind_of(graph: Graph, feature: Element) -> Element | None:

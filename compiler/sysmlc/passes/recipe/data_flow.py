@@ -8,6 +8,7 @@ from functools import cached_property
 from msgspec import Struct
 
 from sysmlc.ir import Edge, Element, Kind, query
+from sysmlc.ir.query.classifiers import name_value_unit
 from sysmlc.logic.expressions.expression import Expression, Literal
 from sysmlc.passes.recipe.context import Context, is_inlined
 from sysmlc.passes.recipe.expressions import (
@@ -184,9 +185,9 @@ class DataFlow(Struct, frozen=True, dict=True):
             return Literal(value)
         if isinstance(value, str):
             return self.read(value)
-        unit = pin.attrs.get("value_unit")
+        unit = name_value_unit(self.context.graph, pin, "value")
         if isinstance(value, bool | int | float):
-            return read_time(f"{value} {unit}") if isinstance(unit, str) else Literal(value)
+            return read_time(f"{value} {unit}") if unit else Literal(value)
         for flow in query.incoming(self.context.graph, pin):
             source = self.source_of(flow)
             if source is not None:

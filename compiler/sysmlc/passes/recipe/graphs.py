@@ -212,7 +212,7 @@ def _is_computed(parameter: Element) -> bool:
     """Whether an expression determines the value of an output, not only its initial value."""
     is_text = isinstance(parameter.attrs.get("default"), str)
     is_expression = is_text and "default_language" in parameter.attrs
-    return is_expression and not parameter.attrs.get("initial")
+    return is_expression and parameter.attrs.get("default_kind") != "initial"
 
 
 def _build_result(context: Context, parameter: Element, data: DataFlow, mark: str) -> Node:

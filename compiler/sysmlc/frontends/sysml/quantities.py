@@ -1,0 +1,116 @@
+"""Units and kinds of values: ``500 [kg]``, and ``=``, ``:=`` or ``default`` before it."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from sysmlc.frontends.sysml import expressions, nodes
+from sysmlc.ir import AttrValue, Edge, Element
+from sysmlc.ir.query.classifiers import unit_of
+from sysmlc.language.text.lexer import quote_name
+from sysmlc.language.tree import Node
+
+if TYPE_CHECKING:
+    from sysmlc.frontends.sysml.lowering import Lowering
+
+_KINDS = {
+    "=": "bound",
+    ":=": "initial",
+    "default": "default",
+    "default =": "default",
+    "default :=": "default initial",
+}
+"""Kinds of values by the words before their expression."""
+_UNIT_OPERATORS = ("*", "/", "**", "^")
+_USUAL_KINDS = {"default": "default", "value": "bound"}
+"""Kinds of the values of SysML v1, by attribute; they are not stated."""
+
+
+def set_kind(lowering: "Lowering", element: Element, key: str, expression: Node) -> None:
+    """Set ``<key>_kind`` unless the value is of the kind that values of SysML v1 have."""
+    kind = _KINDS.get(expression.role, "")
+    if kind and kind != _USUAL_KINDS.get(key):
+        lowering.graph.set(element, **{f"{key}_kind": kind})
+
+
+def set_unit(lowering: "Lowering", element: Element, key: str, expression: Node) -> None:
+    """Set ``<key>_unit`` to the unit of a constant, or to the unit of each of several numbers.
+
+    The unit is omitted if it is that of the type. The unit of a value type must be known.
+    """
+    units = _list_units(expression)
+    if not any(units):
+        return
+    names = tuple(_name_unit(lowering, unit) for unit in units)
+    if len(set(names)) > 1:
+        lowering.graph.set(element, **{f"{key}_unit": names})
+    elif not _is_unit_of_type(lowering, element, units[0]):
+        lowering.graph.set(element, **{f"{key}_unit": names[0]})
+
+
+def has_unit(expression: Node) -> bool:
+    """Whether a constant contains a quantity."""
+    return any(_list_units(expression))
+
+
+def _list_units(constant: Node) -> Sequence[Node | None]:
+    """Return the unit of each number of a constant; None for a number without a unit."""
+    if constant.kind != "OperatorExpression":
+        return () if constant.kind == "NullExpression" else (None,)
+    arguments = nodes.list_arguments(constant)
+    match constant.attributes.get("operator"), len(arguments):
+        case "-", 1:
+            return _list_units(arguments[0])
+        case "[", 2:
+            return (arguments[1],) * len(_list_units(arguments[0]))
+    units: list[Node | None] = []
+    while constant.attributes.get("operator") == ",":
+        first, constant = nodes.list_arguments(constant)
+        units += _list_units(first)
+    return [*units, *_list_units(constant)] if units else (None,)
+
+
+def _name_unit(lowering: "Lowering", unit: Node | None) -> str:
+    """Return the id of a unit of the model, else the qualified name or the expression of it."""
+    if unit is None:
+        return ""
+    target = _unit_element(unit)
+    element = lowering.element_of(target)
+    return _write_unit(lowering, unit) if element is None else element.id
+
+
+def _write_unit(lowering: "Lowering", unit: Node) -> str:
+    """Return a unit, or a product or power of units, with qualified names."""
+    target, arguments = _unit_element(unit), nodes.list_arguments(unit)
+    operator = unit.attributes.get("operator")
+    if operator in _UNIT_OPERATORS and len(arguments) == 2:
+        left, right = (_write_operand(lowering, argument) for argument in arguments)
+        return f"{left} {operator} {right}"
+    if target is None:
+        document = lowering.document_of(unit)
+        return expressions.write_expression(unit, "" if document is None else document.text)
+    name = quote_name(target.short_name or nodes.name_of(target))
+    package = "" if target.owner is None else nodes.qualified_name_of(target.owner)
+    return f"{package}::{name}" if package else name
+
+
+def _write_operand(lowering: "Lowering", unit: Node) -> str:
+    text = _write_unit(lowering, unit)
+    return f"({text})" if unit.kind == "OperatorExpression" else text
+
+
+def _unit_element(unit: Node) -> Node | None:
+    is_reference = unit.kind == "FeatureReferenceExpression"
+    return nodes.find_target(unit, "Membership") if is_reference else None
+
+
+def _is_unit_of_type(lowering: "Lowering", element: Element, unit: Node | None) -> bool:
+    """Whether the type of the feature already states the unit, as in SysML v1."""
+    feature = lowering.graph.target(element, Edge.INSTANCE_OF) or element
+    unit_of_type = unit_of(lowering.graph, feature)
+    target = None if unit is None else _unit_element(unit)
+    if unit_of_type is None or target is None:
+        return False
+    if unit_of_type is lowering.element_of(target):
+        return True
+    symbol: AttrValue = unit_of_type.attrs.get("symbol", "")
+    return target.short_name == symbol or unit_of_type.name in (target.name, target.short_name)
