@@ -54,7 +54,6 @@ def list_reported_losses(text):
         ),
         ("flow def F { end a; end b; }", "flow definition is not read"),
         ("part def Q { constraint { 1 < 2 } }", "a constraint that nothing asserts is read as"),
-        ("package A; private import A::*[@SysML::PartDefinition];", "an import with a filter"),
     ],
 )
 def test_losses_are_reported(text, beginning):

@@ -24,7 +24,8 @@ _ATTRIBUTES = """
     condition_languages relative port path represents data_type unit default_value category
     semantics version change_mode copyright ppr interface_ids associated_facet tag stereotype
     namespace lineage on diagram arguments message_kind description usage property_specific payload
-    value_unit value_kind default_unit default_kind variation variant portion individual caex_id
+    locale value_unit value_kind default_unit default_kind variation variant portion individual
+    caex_id
 """
 _EXPRESSED = frozenset(_ATTRIBUTES.split())
 """Attributes that the text expresses for most kinds, or that add nothing to what it expresses."""

@@ -32,11 +32,13 @@ def write_comment(writer: Writer, member: Member) -> list[Line]:
         construct = "a comment about nothing"
         writer.record_approximation(element, construct, "documentation of its owner")
     has_owner = member.parent is not None and element.role == ""
+    locale = element.attrs.get("locale")
+    suffix = f" locale {quote_string(str(locale))}" if locale else ""
     if annotated == [owner] or (not annotated and has_owner):
-        return [Line(f"doc{name}", text=text), *children]
+        return [Line(f"doc{name}{suffix}", text=text), *children]
     names = writer.refer_to_targets(member.parent, element, Edge.REFERENCES)
     about = f" about {', '.join(names)}" if names else ""
-    return [Line(f"comment{name}{about}", text=text), *children]
+    return [Line(f"comment{name}{about}{suffix}", text=text), *children]
 
 
 def _write_children(writer: Writer, member: Member) -> list[Line]:

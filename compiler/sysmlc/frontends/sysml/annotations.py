@@ -69,7 +69,9 @@ def lower_comment(lowering: "Lowering", node: Node, owner: Element | None) -> No
 
 def _add_comment(lowering: "Lowering", node: Node, owner: Element | None) -> Element:
     body = str(node.attributes.get("body", "")).strip()
-    return lowering.add_element(node, Kind.COMMENT, node.name or "", owner, body=body)
+    locale = node.attributes.get("locale", "")
+    name = node.name or ""
+    return lowering.add_element(node, Kind.COMMENT, name, owner, body=body, locale=locale)
 
 
 def lower_textual_representation(lowering: "Lowering", node: Node, owner: Element | None) -> None:

@@ -69,7 +69,10 @@ def _lower_literal(lowering: "Lowering", node: Node, owner: Element) -> Element:
 def _feature_attributes(node: Node, owner: Element) -> dict[str, AttrValue]:
     direction = node.attributes.get("direction")
     attributes = visibility_attributes(node) | foreign_attributes(node) | variation_attributes(node)
-    if direction is not None and owner.role != "constraint block":
+    if direction is not None and owner.role == "constraint block":
+        if direction != "in":
+            attributes["direction"] = direction
+    elif direction is not None:
         attributes["direction"] = direction
         attributes["role"] = "flow property" if owner.role in _ROLES_WITH_FLOWS else ""
     return attributes

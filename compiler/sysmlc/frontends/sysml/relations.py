@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml import annotations, nodes
+from sysmlc.frontends.sysml import annotations, filters, nodes
 from sysmlc.frontends.sysml.definitions import visibility_attributes
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.language.tree import Node
@@ -293,10 +293,17 @@ def lower_import(lowering: "Lowering", node: Node, owner: Element | None) -> Non
     import_ = lowering.add_element(node, Kind.IMPORT, "", owner, subkind=subkind)
     if node.visibility != "public":
         lowering.set_attributes(import_, visibility=node.visibility or "private")
+    lowering.set_attributes(
+        import_,
+        recursive=bool(imported.attributes.get("isRecursive")),
+        import_all=bool(node.attributes.get("isImportAll")),
+    )
     lowering.lower_annotations(node, import_)
     lowering.defer_until_elements(lambda: _connect_imported(lowering, import_, target))
     if imported is not node:
-        lowering.mark_approximated(node, "an import with a filter", "one without")
+        conditions = [member for member in inner if member.kind in nodes.EXPRESSIONS]
+        for condition in conditions:
+            filters.lower_filter(lowering, condition, import_)
         lowering.skipped.update(id(member) for member in node.walk() if member is not node)
 
 

@@ -153,7 +153,8 @@ def format_detail(side: Side, detail: Element) -> str:
         return _format_trigger(side, detail)
     body = detail.attrs.get("body")
     if isinstance(body, str):
-        return _join_lines(body)
+        locale = detail.attrs.get("locale")
+        return _join_lines(body) + (f" (locale {locale})" if locale else "")
     is_import = detail.kind is Kind.IMPORT
     imported = side.edges.get(detail.id, {}).get(Edge.REFERENCES, ()) if is_import else ()
     texts = [qualified_title(side, element) for element in imported] + [
