@@ -54,7 +54,7 @@ KNOWN_RULES = {
         {"SM281"},
         "a feature subsets one of its own owner with fewer values",
     ),
-    "papyrus/AssertionLibrary.uml": ({"SM225", "SM283"}, "flows across structured nodes"),
+    "papyrus/AssertionLibrary.uml": ({"SM283"}, "flows across structured nodes"),
     "papyrus/TankBarrelExample.uml": (
         {"SM249"},
         "the target of a call is no parameter of the operation",

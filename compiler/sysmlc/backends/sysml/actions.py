@@ -138,7 +138,7 @@ def _write_send(writer: Writer, member: Member, element: Element) -> Line:
     port = writer.graph.get(str(element.attrs.get("on_port", element.attrs.get("port", ""))))
     port_name = ""
     if port is not None:
-        port_name = writer.refer_to(member.parent, element, Edge.ROLE, port) or ""
+        port_name = writer.refer_to_feature(member.parent, element, Edge.ROLE, port) or ""
     payload = f" send new {signal_name}()" if signal_name is not None else " send"
     via = f" via {port_name}" if port_name else ""
     return Line(f"{_format_head(writer, member, element)}{payload}{via}", body)

@@ -15,7 +15,12 @@ from sysmlc.backends.sysml.elided_elements import find_step_after_merge
 from sysmlc.backends.sysml.expressions import format_literal
 from sysmlc.backends.sysml.plan import Member
 from sysmlc.backends.sysml.printing import Line, quote_name
-from sysmlc.backends.sysml.references import format_element_reference
+from sysmlc.backends.sysml.references import (
+    format_element_reference,
+    format_reference,
+    visible_members,
+)
+from sysmlc.backends.sysml.relocation import find_common_namespace, find_object_node
 from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import AttrValue, Edge, Element, Kind
@@ -23,6 +28,8 @@ from sysmlc.ir import AttrValue, Edge, Element, Kind
 _WAITING = "a step that waits for several flows, one of them with a guard,"
 _PAST_CONTROL = "an object flow between a store and a control node"
 _NUMBER = re.compile(r"-?\d+(\.\d+)?")
+_ScopedLine = tuple[Member | None, Line]
+"""The line of a flow, and the namespace in which it is written."""
 _STORES = (Kind.OBJECT_NODE, Kind.DATA_STORE, Kind.ACTIVITY_PARAMETER)
 
 
@@ -83,26 +90,40 @@ def _orders_nodes(writer: Writer, flow: Element) -> bool:
 
 
 def _write_succession(writer: Writer, member: Member, flow: Element) -> Line | None:
-    """Write a succession after its source as ``then``; one with a name states its source."""
+    """Write a succession after its source as ``then``; one with a name states its source.
+
+    A succession that leaves the action around its source stands around both its ends.
+    """
     writer.expressed.add(flow.id)
     target = writer.graph.target(flow, Edge.FLOW_TARGET)
-    end = None if target is None else _refer_to_node(writer, member.parent, target)
+    scope = _find_succession_scope(writer, member, target)
+    end = None if target is None else _refer_to_node(writer, scope, target)
     if end is None:
         if target is None or target.kind not in _STORES:
             writer.record_unreachable(flow, "flow-target")
         return None
     flow_member = writer.plan.find(flow)
     name = flow_member.name if flow_member is not None else ""
-    if flow_member is not None and flow_member.parent is not member.parent:
+    if flow_member is not None and flow_member.parent is not scope:
         construct = "a flow that another node owns"
         writer.record_approximation(flow, construct, "a succession beside its source")
     body = [] if flow_member is None else write_contents(writer, flow_member)
     if flow.kind is not Kind.CONTROL_FLOW:
         body = [_annotate_pins(writer, member, flow), *body]
     is_decision = member.shape.keyword == "decide"
-    guard = _format_guard(writer, member, flow)
+    guard = _format_guard(writer, member, scope, flow)
     if guard is not None:
         _record_waiting(writer, target)
+    if scope is not None and scope is not member.parent:
+        if guard == "else":
+            guard = format_condition(writer, scope, flow, guard)
+        source = format_reference(writer.plan, scope, member)
+        condition = "" if guard is None else f"if {guard} "
+        words = f"first {source} {condition}then {end}"
+        if flow_member is not None and _take_name(writer, scope, flow_member):
+            words = f"succession {quote_name(name)} {words}"
+        scope.added_lines.append(Line(words, body))
+        return None
     if guard == "else" and not name and is_decision:
         return Line(f"else {end}", body, depth=1)
     condition = "" if guard in (None, "else") else f"if {guard} "
@@ -110,6 +131,23 @@ def _write_succession(writer: Writer, member: Member, flow: Element) -> Line | N
         start = f"succession {quote_name(name)} first {quote_name(member.name)}"
         return Line(f"{start} {condition}then {end}", body)
     return Line(f"{condition}then {end}", body, depth=1 if is_decision else 0)
+
+
+def _find_succession_scope(writer: Writer, member: Member, target: Element | None) -> Member | None:
+    """Return the innermost namespace around a node that contains the target of a flow, too."""
+    step = find_step_after_merge(writer.graph, target) or target
+    if step is not None and step.kind is Kind.PIN:
+        step = writer.graph.owner(step)
+    if writer.plan.find(step) is None:
+        return member.parent
+    return find_common_namespace(writer.plan, member, (member.element, step)) or member.parent
+
+
+def _take_name(writer: Writer, scope: Member, flow: Member) -> bool:
+    """Whether a flow can have its name in another namespace; from then on, it is taken."""
+    if not flow.name:
+        return False
+    return visible_members(writer.plan, scope).setdefault(flow.name, flow) is flow
 
 
 def _record_waiting(writer: Writer, step: Element | None) -> None:
@@ -137,7 +175,9 @@ def _annotate_pins(writer: Writer, member: Member, flow: Element) -> Line:
 # -- guards --------------------------------------------------------------------------------------
 
 
-def _format_guard(writer: Writer, member: Member, flow: Element) -> str | None:
+def _format_guard(
+    writer: Writer, member: Member, scope: Member | None, flow: Element
+) -> str | None:
     """Return the guard of a flow; a literal is compared with the input of the decision."""
     guard = flow.attrs.get("guard")
     if guard is None:
@@ -145,14 +185,14 @@ def _format_guard(writer: Writer, member: Member, flow: Element) -> str | None:
     if isinstance(guard, str) and guard.strip() == "else":
         return "else"
     if flow.attrs.get("guard_literal") and member.element is not None:
-        decision_input = _format_decision_input(writer, member, member.element)
+        decision_input = _format_decision_input(writer, scope, member.element)
         if decision_input is not None:
             return f"{decision_input} == {_format_guard_literal(writer, member, guard)}"
     if isinstance(guard, str) and _NUMBER.fullmatch(guard.strip()):
-        return declare_condition(writer, member.parent, flow, guard)
+        return declare_condition(writer, scope, flow, guard)
     if not isinstance(guard, str):
         return _format_guard_literal(writer, member, guard)
-    return format_condition(writer, member.parent, flow, guard)
+    return format_condition(writer, scope, flow, guard)
 
 
 def _format_guard_literal(writer: Writer, member: Member, guard: object) -> str:
@@ -162,7 +202,7 @@ def _format_guard_literal(writer: Writer, member: Member, guard: object) -> str:
     return format_literal(writer, member.parent, member.require_element(), value)
 
 
-def _format_decision_input(writer: Writer, member: Member, decision: Element) -> str | None:
+def _format_decision_input(writer: Writer, scope: Member | None, decision: Element) -> str | None:
     """Return the only object that flows into a decision, or that the decision names."""
     flow = writer.graph.get(str(decision.attrs.get("decision_input_flow", "")))
     if flow is None:
@@ -174,7 +214,7 @@ def _format_decision_input(writer: Writer, member: Member, decision: Element) ->
     source = writer.graph.target(flow, Edge.FLOW_SOURCE)
     if source is None or source.kind is Kind.CONTROL:
         return None
-    return _refer_to_object_node(writer, member.parent, source)
+    return _refer_to_object_node(writer, scope, source)
 
 
 # -- references to nodes -------------------------------------------------------------------------
@@ -213,10 +253,8 @@ def _refer_to_start_or_done(writer: Writer, scope: Member | None, node: Element)
 
 def _refer_to_object_node(writer: Writer, scope: Member | None, node: Element) -> str | None:
     """Return how a flow names an object node; the node of a parameter by the parameter."""
-    if node.kind is Kind.ACTIVITY_PARAMETER and writer.plan.find(node) is None:
-        node_parameter = writer.graph.target(node, Edge.REFERENCES)
-        return format_element_reference(writer.plan, scope, node_parameter)
-    return format_element_reference(writer.plan, scope, node)
+    member = find_object_node(writer.plan, node)
+    return None if member is None else format_reference(writer.plan, scope, member)
 
 
 # -- object flows --------------------------------------------------------------------------------
@@ -227,63 +265,83 @@ def write_object_flow(writer: Writer, member: Member) -> list[Line]:
 
     An object flow that starts at a control node has no lines: the flows to the node include it.
     """
+    lines = []
+    for scope, line in _list_flow_lines(writer, member):
+        if scope is member.parent or scope is None:
+            lines.append(line)
+        else:
+            scope.added_lines.append(line)
+    return lines
+
+
+def _list_flow_lines(writer: Writer, member: Member) -> list[_ScopedLine]:
     element = member.require_element()
     source = writer.graph.target(element, Edge.FLOW_SOURCE)
     target = writer.graph.target(element, Edge.FLOW_TARGET)
     if source is None or target is None:
-        return writer.drop(member, "flow ends")
+        writer.drop(member, "flow ends")
+        return []
     if source.kind is Kind.CONTROL:
         if target.kind in _STORES:
             writer.record_approximation(element, _PAST_CONTROL, "bindings past it")
         return []
     if target.kind is Kind.CONTROL:
-        return _write_flow_over_control_nodes(writer, member, source, target)
+        return _list_lines_over_control_nodes(writer, member, source, target)
     if "guard" in element.attrs:
         facts = {"attribute": "guard", "kind": "ObjectFlow"}
         writer.losses.record(UNSAID_ATTRIBUTE, element, **facts)
-    lines = _write_flow_lines(writer, member, source, [target], member.name)
-    if lines:
-        lines[0].body += write_contents(writer, member)
-    return lines
+    return _add_contents(writer, member, source, [target])
 
 
-def _write_flow_over_control_nodes(
+def _list_lines_over_control_nodes(
     writer: Writer, member: Member, source: Element, control_node: Element
-) -> list[Line]:
-    """Write the flows from a source to all object nodes behind a control node.
+) -> list[_ScopedLine]:
+    """Return the flows from a source to all object nodes behind a control node.
 
     Together with successions, flows from pin to pin express the object flow completely. The
     succession then has its name and annotations.
     """
     targets = list(_iter_targets_behind(writer, control_node))
     if targets and all(end.kind is Kind.PIN for end in (source, *targets)):
-        lines = _write_flow_lines(writer, member, source, targets, "")
-        for line in lines:
+        lines = _format_flow_lines(writer, member, source, targets, "")
+        for _, line in lines:
             line.body.append(make_annotation(writer, member, "Through", {}))
         return lines
     writer.record_approximation(member.require_element(), _PAST_CONTROL, "bindings past it")
     if source.kind not in _STORES:
-        return _write_flow_lines(writer, member, source, targets, "")
-    lines = _write_flow_lines(writer, member, source, targets, member.name)
+        return _format_flow_lines(writer, member, source, targets, "")
+    return _add_contents(writer, member, source, targets)
+
+
+def _add_contents(
+    writer: Writer, member: Member, source: Element, targets: list[Element]
+) -> list[_ScopedLine]:
+    """Return a line for each target; the first has the name and the contents of the flow."""
+    lines = _format_flow_lines(writer, member, source, targets, member.name)
     if lines:
-        lines[0].body += write_contents(writer, member)
+        lines[0][1].body += write_contents(writer, member)
     return lines
 
 
-def _write_flow_lines(
+def _format_flow_lines(
     writer: Writer, member: Member, source: Element, targets: list[Element], name: str
-) -> list[Line]:
-    """Write a line for each target; the first line has the name."""
+) -> list[_ScopedLine]:
+    """Return a line for each target, in a namespace that contains both ends; the first is named.
+
+    The flow has a name of its own in its namespace only.
+    """
     flow = member.require_element()
-    source_name = _refer_to_object_node(writer, member.parent, source)
-    lines: list[Line] = []
+    lines: list[_ScopedLine] = []
     for target in targets:
-        target_name = _refer_to_object_node(writer, member.parent, target)
+        scope = find_common_namespace(writer.plan, member, (source, target)) or member.parent
+        source_name = _refer_to_object_node(writer, scope, source)
+        target_name = _refer_to_object_node(writer, scope, target)
         if source_name is None or target_name is None:
             writer.drop(member, "flow ends")
             continue
         ends = ((source, source_name), (target, target_name))
-        lines.append(Line(_format_object_flow(writer, flow, name, *ends)))
+        line_name = name if scope is member.parent else ""
+        lines.append((scope, Line(_format_object_flow(writer, flow, line_name, *ends))))
         name = ""
     return lines
 

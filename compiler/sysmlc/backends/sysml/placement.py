@@ -10,6 +10,7 @@ from sysmlc.backends.sysml.elided_elements import find_specific_feature, find_st
 from sysmlc.backends.sysml.library import SHIPPED, find_scalar_type
 from sysmlc.backends.sysml.plan import Member, Plan
 from sysmlc.backends.sysml.profiles import is_standard
+from sysmlc.backends.sysml.relocation import move_members
 from sysmlc.backends.sysml.rules import APPROXIMATED, Losses
 from sysmlc.backends.sysml.shapes import PACKAGES, Shape, find_shape
 from sysmlc.ir import Edge, Element, Graph, Kind
@@ -56,8 +57,7 @@ def make_plan(graph: Graph, losses: Losses, dropped: frozenset[str]) -> Plan:
             _place_library(plan, root, used)
         elif root.id in used:
             outside.place(root, used)
-    _move_item_flows(plan)
-    _move_messages(plan)
+    move_members(plan)
     return plan
 
 
@@ -233,46 +233,3 @@ class _OutsidePlacement:
                 self._packages[key] = self._plan.add(shape, package, name or "External", None)
             package = self._packages[key]
         return package
-
-
-# -- members whose ends have a name only elsewhere -----------------------------------------------
-
-
-def _move_item_flows(plan: Plan) -> None:
-    """Move item flows to the namespace of their connectors, where their ends have names."""
-    for flow in plan.graph.of_kind(Kind.ITEM_FLOW):
-        member = plan.find(flow)
-        connectors = [plan.find(target) for target in plan.graph.targets(flow, Edge.REALIZING)]
-        namespaces = [connector.parent for connector in connectors if connector is not None]
-        if member is None or not namespaces:
-            continue
-        namespace = namespaces[0]
-        if namespace is None or namespace is member.parent:
-            continue
-        if all(other is namespace for other in namespaces):
-            _move(plan, member, namespace)
-            facts = {
-                "construct": "the owner of an item flow",
-                "replacement": "that of its connector",
-            }
-            plan.losses.record(APPROXIMATED, flow, **facts)
-
-
-def _move_messages(plan: Plan) -> None:
-    """Move messages to the operand that owns their events."""
-    for message in plan.graph.of_kind(Kind.MESSAGE):
-        member = plan.find(message)
-        event = plan.graph.target(message, Edge.SEND_EVENT)
-        if event is None or event.kind is not Kind.OCCURRENCE:
-            event = plan.graph.target(message, Edge.RECEIVE_EVENT)
-        operand = None if event is None else plan.find(plan.graph.owner(event))
-        if member is None or member.parent is None or operand is None:
-            continue
-        if operand is not member.parent:
-            _move(plan, member, operand)
-
-
-def _move(plan: Plan, member: Member, namespace: Member) -> None:
-    (plan.roots if member.parent is None else member.parent.members).remove(member)
-    member.parent = namespace
-    namespace.members.append(member)

@@ -10,6 +10,7 @@ from sysmlc.backends.sysml.references import (
     format_library_name,
     format_qualified_name,
     format_redefined_name,
+    is_path_accessible,
     visible_members,
 )
 from sysmlc.backends.sysml.rules import APPROXIMATED, UNREACHABLE, Losses
@@ -73,6 +74,17 @@ class Writer:
         if text is None:
             self.record_unreachable(holder, str(edge.value))
         return text
+
+    def refer_to_feature(
+        self, scope: Member | None, holder: Element, edge: Edge, feature: Element
+    ) -> str | None:
+        """Return the text that names a feature; None, with a loss, if no type around has it."""
+        member = self.plan.find(feature)
+        is_usage = member is not None and member.shape.is_usage
+        if member is not None and is_usage and not is_path_accessible(self.plan, scope, member):
+            self.record_unreachable(holder, str(edge.value))
+            return None
+        return self.refer_to(scope, holder, edge, feature)
 
     def refer_to_targets(self, scope: Member | None, holder: Element, edge: Edge) -> list[str]:
         """Return the qualified names of the targets of all edges of a kind."""
