@@ -1,4 +1,4 @@
-"""An error withholds the outputs of the elements it concerns, not those of the whole file."""
+"""An error withholds contracts, and marks diagrams, of the elements it concerns only."""
 
 import pytest
 
@@ -19,36 +19,40 @@ TEXT = """package P {{
 """
 
 
-def list_withheld(tmp_path, *, inside="", state="", beside=""):
+def compile_text(tmp_path, *, inside="", state="", beside=""):
+    """Return the names of the withheld files, and of the diagrams with a mark."""
     (tmp_path / "m.sysml").write_text(TEXT.format(inside=inside, state=state, beside=beside))
     backends = tuple(select_backends(("contracts", "plantuml")))
     compilation = compile_model(Request((tmp_path / "m.sysml",), backends=backends))
-    assert [
-        diagnostic.rule.code for diagnostic in compilation.diagnostics if diagnostic.is_error
-    ] in (
-        [],
-        ["SM205"],
-    )
-    written = {output.path.rpartition("/")[2] for output in compilation.list_published()}
-    return {name for name in NAMES if name not in written}
+    errors = [item.rule.code for item in compilation.diagnostics if item.is_error]
+    assert errors in ([], ["SM205"])
+    published = {output.path.rpartition("/")[2]: output.text for output in compilation.artefacts}
+    withheld = {path.rpartition("/")[2] for path in compilation.withheld}
+    marked = {name for name, text in published.items() if "⚠" in text}
+    return {name for name in withheld if name.endswith(".json")}, marked
 
 
-NAMES = {"P.bdd.puml", "P.Moves.stm.puml", "P.Moves.contract.json", "P.Work.act.puml"}
+def test_a_right_model_has_all_outputs_without_marks(tmp_path):
+    assert compile_text(tmp_path) == (set(), set())
 
 
-def test_a_right_model_has_all_outputs(tmp_path):
-    assert list_withheld(tmp_path) == set()
+CONTRACTS = {"P.Moves.contract.json", "P.Work.contract.json"}
+DIAGRAMS = {"P.bdd.puml", "P.Moves.stm.puml", "P.Work.act.puml"}
 
 
 @pytest.mark.parametrize(
-    ("backends", "expected"),
+    ("fault", "withheld", "marked"),
     [
-        ({"inside": '@Unknown { url = "x"; }'}, set()),
-        ({"inside": "part p : Unknown;"}, {"P.bdd.puml"}),
-        ({"state": "entry send Unknown() to gate;"}, {"P.Moves.stm.puml", "P.Moves.contract.json"}),
-        ({"beside": "private import Unknown::*;"}, NAMES),
+        ({"inside": '@Unknown { url = "x"; }'}, set(), set()),
+        ({"inside": "part p : Unknown;"}, set(), {"P.bdd.puml"}),
+        (
+            {"state": "entry send Unknown() to gate;"},
+            {"P.Moves.contract.json"},
+            {"P.Moves.stm.puml"},
+        ),
+        ({"beside": "private import Unknown::*;"}, CONTRACTS, DIAGRAMS),
     ],
+    ids=["metadata", "part", "state", "import"],
 )
-def test_an_unknown_name_withholds_what_holds_it(tmp_path, backends, expected):
-    assert expected <= list_withheld(tmp_path, **backends)
-    assert "P.Work.act.puml" not in list_withheld(tmp_path, **backends) or "beside" in backends
+def test_an_unknown_name_concerns_what_holds_it(tmp_path, fault, withheld, marked):
+    assert compile_text(tmp_path, **fault) == (withheld, marked)
