@@ -229,11 +229,15 @@ def test_two_flows_that_reach_the_merge_before_the_end_at_once_are_two_tokens():
     assert list_codes(sink) == ["SM454"]
 
 
-def test_an_activity_that_binds_a_template_needs_no_nodes():
+def test_an_activity_that_binds_a_template_is_not_asked_to_be_drawn():
     text = 'Activity a "a"\n'
-    assert list_codes(derive_token_graphs(text)[1]) == ["SM469"]
-    binding = text + "  TemplateBinding b\n"
-    assert list_codes(derive_token_graphs(binding)[1]) == []
+    (diagnostic,) = derive_token_graphs(text)[1]
+    assert (diagnostic.rule.code, diagnostic.help) == ("SM469", "draw it, or give it a body")
+    (diagnostic,) = derive_token_graphs(text + "  TemplateBinding b\n")[1]
+    assert (diagnostic.rule.code, diagnostic.help) == (
+        "SM469",
+        "no contract is derived from the nodes of the template that it binds",
+    )
 
 
 # -- unfinished activities ----------------------------------------------------------------------

@@ -124,7 +124,8 @@ def check_compositions(
             for _, composition in decided
         )
         # A violation in one group is a verdict even if another group is undecided.
-        is_satisfied = None if len(decided) < len(results) and not is_broken else not is_broken
+        is_undecided = len(decided) < len(results) or any(c.undecided for _, c in decided)
+        is_satisfied = None if is_undecided and not is_broken else not is_broken
         witnesses = tuple(
             witness
             for group, composition in decided
@@ -167,6 +168,15 @@ def _compose(
         )
     for loss in composition.losses:
         report_failure(LOST, loss, composite.component, place(composite.origin), sink)
+    if composition.undecided:
+        names = ", ".join(f"'{name}'" for name in composition.undecided)
+        sink.report(
+            NOT_COMPOSED,
+            place(composite.origin),
+            component=composite.component,
+            reason=f"no part decides {names}, which guarantees of the block are about",
+            help="let a part assign the feature, or a behaviour of the block",
+        )
     return composition
 
 

@@ -115,12 +115,13 @@ def test_a_part_alone_keeps_what_the_block_promises_and_the_others_do_not_matter
     assert [diagnostic.rule.code for diagnostic in diagnostics] == ["SM595", "SM597"]
 
 
-def test_a_guarantee_about_a_variable_of_no_part_is_not_kept():
+def test_a_guarantee_about_a_variable_of_no_part_is_not_checked():
     nobody = together_rules.OPEN.read_page().right.replace("bind picker.taken = taken;", "")
     (result,), diagnostics = check_model(nobody)
-    assert result.text() == "Line::Cell: its 2 parts together violate its contract"
+    assert result.text() == "Line::Cell: the composition of its parts is not checked"
     assert [diagnostic.message for diagnostic in diagnostics] == [
-        "the parts of 'Line::Cell' together do not guarantee 'taken' ('Works' demands it)"
+        "the composition of the parts of 'Line::Cell' is not checked: no part decides 'taken', "
+        "which guarantees of the block are about"
     ]
 
 

@@ -95,9 +95,10 @@ class Activities(Struct, frozen=True):
         self._check_depth(graph, activity, sink)
         drawing = activity_drawing.read_drawing(graph, activity, sink)
         if not drawing.nodes:
-            # An activity that binds a template has the nodes of the template.
-            if not any(part.kind is Kind.TEMPLATE_BINDING for part in graph.owned(activity)):
-                sink.report(rules.EMPTY, graph.subject(activity), activity=activity.name)
+            is_bound = any(part.kind is Kind.TEMPLATE_BINDING for part in graph.owned(activity))
+            advice = "no contract is derived from the nodes of the template that it binds"
+            subject, name = graph.subject(activity), activity.name
+            sink.report(rules.EMPTY, subject, help=advice if is_bound else "", activity=name)
             raise activity_drawing.CannotPlayError
         _check_order(graph, drawing, sink)
         # The order matters: the stores need the nodes, and the checks of guards need the stores.

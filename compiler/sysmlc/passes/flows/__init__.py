@@ -173,7 +173,9 @@ def _runs_inside(graph: Graph, flow: Element, port: Element) -> bool:
     block = graph.owner(port)
     flow_ends = (*graph.targets(flow, Edge.FLOW_SOURCE), *graph.targets(flow, Edge.FLOW_TARGET))
     # Another port of the block is outside, too.
-    if any(graph.owner(end) is not block and block in graph.ancestors(end) for end in flow_ends):
+    if block is not None and any(
+        graph.owner(end) is not block and block in graph.ancestors(end) for end in flow_ends
+    ):
         return True
     for connector in graph.targets(flow, Edge.REALIZING):
         connector_ends = ends(graph, connector)

@@ -42,7 +42,9 @@ class Composition(Struct, frozen=True):
     ``contract`` is the contract of the parts together. ``open`` contains the assumptions of parts
     that neither other parts nor the whole entail, ``failures`` the guarantees of the whole that the
     parts violate, ``losses`` the runs in which a sent event is lost. If no run satisfies the
-    guarantees of all parts, ``conflict`` is a minimal set of contradicting conjuncts.
+    guarantees of all parts, ``conflict`` is a minimal set of contradicting conjuncts. ``undecided``
+    has the variables that guarantees of the whole are about although no part decides them; these
+    guarantees are not checked.
     """
 
     contract: Contract
@@ -50,6 +52,7 @@ class Composition(Struct, frozen=True):
     failures: tuple[Failure, ...] = ()
     losses: tuple[Failure, ...] = ()
     conflict: tuple[Conjunct, ...] = ()
+    undecided: tuple[str, ...] = ()
 
 
 class DriverError(Exception):
@@ -95,13 +98,24 @@ def _compose(composite: Composite, manager: Manager) -> Composition:
     endings = _find_possible_endings(reduced_composite, assumed, universe)
     discharge_result = discharge(reduced_composite, (*assumed, *endings), universe)
     runs = Entailment(universe, universe.system(discharge_result.facts))
-    failures = tuple(_find_violations(_list_demands(composite, whole_contract), runs))
+    undecided = _find_undecided(composite, whole_contract)
+    demands = [
+        conjunct
+        for conjunct in _list_demands(whole_contract)
+        if undecided.isdisjoint(_list_variables(conjunct))
+    ]
+    failures = tuple(_find_violations(demands, runs))
     losses = tuple(_find_violations(composite.exclusions, runs))
     # An assumption that the compiler derives is no demand on those who wrote the model.
     open_assumptions = tuple(
         assumption for assumption in discharge_result.open if not assumption.conjunct.is_derived
     )
-    return Composition(contract, open_assumptions, failures, losses)
+    unchecked = {
+        name for conjunct in whole_contract.guarantees for name in _list_variables(conjunct)
+    } & undecided
+    return Composition(
+        contract, open_assumptions, failures, losses, undecided=tuple(sorted(unchecked))
+    )
 
 
 def _find_possible_endings(
@@ -122,23 +136,26 @@ def _find_possible_endings(
     return endings if Entailment(universe, universe.system(conjuncts)).is_possible else ()
 
 
-def _list_demands(composite: Composite, whole: Contract) -> list[Conjunct]:
-    """List the guarantees of the whole that its parts have to satisfy.
-
-    These are not the initial values of declarations, and no conjuncts about variables of the whole
-    that no part decides: nothing in the composition restricts such a variable.
-    """
-    variables = () if composite.whole is None else composite.whole.variables
-    decided = {name for part in composite.parts for name in outputs_of(part)}
-    own = {variable.name for variable in variables if variable.owner is Owner.SYSTEM}
-    undecided = own - decided - _list_defined_names(whole)
+def _list_demands(whole: Contract) -> list[Conjunct]:
+    """List the guarantees of the whole without the initial values of declarations."""
     is_required = any(not conjunct.is_derived for conjunct in whole.guarantees)
     return [
         conjunct
         for conjunct in whole.guarantees
         if not (is_required and conjunct.is_derived and conjunct.class_ is Class.INIT)
-        and not {variable.name for variable in f.variables(conjunct.formula)} & undecided
     ]
+
+
+def _find_undecided(composite: Composite, whole: Contract) -> set[str]:
+    """Return the variables of the whole that no part decides: nothing restricts them here."""
+    variables = () if composite.whole is None else composite.whole.variables
+    decided = {name for part in composite.parts for name in outputs_of(part)}
+    own = {variable.name for variable in variables if variable.owner is Owner.SYSTEM}
+    return own - decided - _list_defined_names(whole)
+
+
+def _list_variables(conjunct: Conjunct) -> set[str]:
+    return {variable.name for variable in f.variables(conjunct.formula)}
 
 
 def _list_defined_names(whole: Contract) -> set[str]:
