@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from sysmlc.diagnostics.renderers import Finding
     from sysmlc.logic.contract import Composite, Contract
     from sysmlc.logic.requirements.checked_behaviours import CheckedBehaviour
-    from sysmlc.logic.requirements.stated_requirements import StatedRequirement
+    from sysmlc.logic.requirements.statements import StatedRequirement
     from sysmlc.sources import Source
     from sysmlc.synthesis.decision import Place
 
@@ -82,7 +82,7 @@ def _read_model(file: Path, config: "Config", settings: "Settings") -> ContractF
     from sysmlc.logic.composition.derivation import compose_blocks
     from sysmlc.logic.contract import Contract
     from sysmlc.logic.requirements.checked_behaviours import list_checked_behaviours
-    from sysmlc.logic.requirements.stated_requirements import list_stated_requirements
+    from sysmlc.logic.requirements.statements import list_stated_requirements
 
     compilation = session.compile_unit((file,), config, settings)
     findings = tuple(reports.list_findings(compilation, only_errors=not settings.verbose))

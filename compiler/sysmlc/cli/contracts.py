@@ -1,5 +1,6 @@
 """``sysmlc contracts``: checks of contracts, by themselves and against one another."""
 
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -9,13 +10,13 @@ from msgspec.structs import replace
 from sysmlc.cli import options
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from sysmlc.cli.contract_files import ContractFile
     from sysmlc.cli.session import Settings
     from sysmlc.logic.contract import Composite
+    from sysmlc.logic.requirements.statements import StatedRequirement
     from sysmlc.synthesis.contract_checks import CheckedContract
     from sysmlc.synthesis.decision import Options
+    from sysmlc.synthesis.requirement_verdicts import RequirementVerdict
 
 
 @click.group("contracts", short_help="Check contracts, by themselves and against one another.")
@@ -92,7 +93,6 @@ def _check(
 ) -> int:
     from sysmlc.cli.contract_files import select_contracts, show_results
     from sysmlc.cli.reports import write_files
-    from sysmlc.cli.requirement_reports import list_verdicts
     from sysmlc.diagnostics import Severity
     from sysmlc.synthesis.composition_check import check_compositions
     from sysmlc.synthesis.contract_checks import check_contracts
@@ -158,8 +158,6 @@ def _without_demands(composite: "Composite") -> "Composite":
 
 def _format_result(result: "CheckedContract", is_verbose: bool) -> "Iterator[str]":
     """Yield the line of a contract, and the lines of its requirements that do not simply hold."""
-    from sysmlc.cli.requirement_reports import describe_verdicts
-
     words = {None: "not decided", True: "realizable", False: "unrealizable"}
     verdict = result.verdict
     text = words[verdict.is_realizable]
@@ -179,3 +177,71 @@ def _summarise_requirements(result: "CheckedContract") -> str:
     if "holds-if-actions-end" in answers:
         return ", satisfies its requirements if its actions end"
     return ", satisfies its requirements" if answers else ""
+
+
+# -- verdicts on requirements ----------------------------------------------------------------------
+
+_WORDS = {
+    "holds": "holds",
+    "holds-if-actions-end": "holds if its actions end",
+    "broken": "broken",
+    "not-decided": "not decided",
+}
+_NO_BEHAVIOUR = "'{component}' has no behaviour to check"
+
+
+def describe_verdicts(result: "CheckedContract", is_verbose: bool) -> Iterator[str]:
+    """Yield a line for each requirement of a component that does not simply hold.
+
+    With *is_verbose* those that hold are shown, too.
+    """
+    from sysmlc.synthesis.witnesses import print_temporal
+
+    for verdict in result.requirements:
+        if is_verbose or verdict.answer != "holds":
+            name = f"{verdict.conjunct.viewpoint}: " if verdict.conjunct.viewpoint else ""
+            yield f"  {name}{_WORDS[verdict.answer]}: {print_temporal(verdict.conjunct)}"
+
+
+def list_verdicts(
+    requirements: "Sequence[StatedRequirement]", results: "Iterable[CheckedContract]"
+) -> list[dict[str, object]]:
+    """Return an entry for each conjunct of each requirement, in the order of the model."""
+    verdicts: dict[tuple[str, str], list[RequirementVerdict]] = {}
+    for result in results:
+        for verdict in result.requirements:
+            key = result.verdict.component, verdict.conjunct.origin
+            verdicts.setdefault(key, []).append(verdict)
+    return [
+        entry
+        for requirement in requirements
+        for entry in _list_entries(
+            requirement, verdicts.get((requirement.component, requirement.constraint), ())
+        )
+    ]
+
+
+def _list_entries(
+    requirement: "StatedRequirement", verdicts: "Sequence[RequirementVerdict]"
+) -> Iterator[dict[str, object]]:
+    from sysmlc.synthesis.witnesses import print_temporal
+
+    for verdict in verdicts:
+        trace = verdict.trace
+        yield {
+            "requirement": requirement.name,
+            "component": requirement.component,
+            "formula": print_temporal(verdict.conjunct),
+            "verdict": str(verdict.answer),
+            "witness": trace and {"steps": [*map(dict, trace.steps)], "loop": trace.loop},
+            "reason": verdict.reason or None,
+        }
+    if not verdicts:
+        yield {
+            "requirement": requirement.name,
+            "component": requirement.component or None,
+            "formula": requirement.text,
+            "verdict": "not-decided",
+            "witness": None,
+            "reason": requirement.reason or _NO_BEHAVIOUR.format(component=requirement.component),
+        }

@@ -5,9 +5,8 @@ The checks are those of the thesis, REC001 to REC012 (SM601 to SM612), and more.
 
 from sysmlc.diagnostics import Sink
 from sysmlc.recipe import check_data, check_graphs, check_resources, check_tasks, recipe_times
-from sysmlc.recipe.findings import Check, Locate, report_findings
 from sysmlc.recipe.model import Model
-from sysmlc.recipe.tables import Tables
+from sysmlc.recipe.tables import Check, Locate, Tables, report_findings
 
 CHECKS: tuple[Check, ...] = (
     check_tasks.check_references,

@@ -15,7 +15,6 @@ from sysmlc.recipe.expression import (
     iter_variables,
     resolve_literals,
 )
-from sysmlc.recipe.findings import Finding
 from sysmlc.recipe.flow import list_forward_edges
 from sysmlc.recipe.model import (
     EnumType,
@@ -30,7 +29,7 @@ from sysmlc.recipe.model import (
     Task,
     ValueType,
 )
-from sysmlc.recipe.tables import Tables
+from sysmlc.recipe.tables import Finding, Tables
 
 GUARDS = rule(
     "SM605",

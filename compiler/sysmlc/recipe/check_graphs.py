@@ -5,10 +5,9 @@ from collections.abc import Iterator
 from sysmlc.diagnostics import Severity, rule
 from sysmlc.ir.algorithms import sort_topologically
 from sysmlc.recipe.durations import find_unbounded_loops
-from sysmlc.recipe.findings import Finding
 from sysmlc.recipe.flow import STEPS, find_cycles, find_reachable, list_forward_edges
 from sysmlc.recipe.model import FlowGraph, Model, Node
-from sysmlc.recipe.tables import Tables
+from sysmlc.recipe.tables import Finding, Tables
 
 NO_WAY = rule(
     "SM603",

@@ -10,10 +10,9 @@ from sysmlc.recipe.durations import (
     find_refined_duration,
     format_range,
 )
-from sysmlc.recipe.findings import Finding
 from sysmlc.recipe.flow import find_reachable
 from sysmlc.recipe.model import FlowGraph, Model, Provider, Range, Service, Task
-from sysmlc.recipe.tables import Tables
+from sysmlc.recipe.tables import Finding, Tables
 
 TASK_TIME = rule(
     "SM608",

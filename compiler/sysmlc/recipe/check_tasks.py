@@ -4,10 +4,9 @@ import re
 from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, rule
-from sysmlc.recipe.findings import Finding
 from sysmlc.recipe.flow import find_cycles
 from sysmlc.recipe.model import Function, Model, OpcUa, Provider, Service, Task
-from sysmlc.recipe.tables import Tables
+from sysmlc.recipe.tables import Finding, Tables
 
 BROKEN_REFERENCE = rule(
     "SM601",

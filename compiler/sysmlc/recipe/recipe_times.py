@@ -6,10 +6,9 @@ from typing import Literal as OneOf
 from sysmlc.diagnostics import Severity, rule
 from sysmlc.ir.algorithms import sort_topologically
 from sysmlc.recipe.durations import find_full_duration, format_range
-from sysmlc.recipe.findings import Finding
 from sysmlc.recipe.flow import find_cycles, find_reachable
 from sysmlc.recipe.model import Derived, Model, Number, Range, Recipe, Task, TimeLimit
-from sysmlc.recipe.tables import Tables
+from sysmlc.recipe.tables import Finding, Tables
 
 TIME_LIMIT = rule(
     "SM641",

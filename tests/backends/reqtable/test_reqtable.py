@@ -9,8 +9,12 @@ from backend_runs import emit
 from examples.compiling import ROOT, compile_example, outputs
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.reqtable import BACKEND
-from sysmlc.backends.reqtable.backend import BAD_TEMPLATE, format_markdown_cell
-from sysmlc.backends.reqtable.open_requirements import UNSATISFIED, UNVERIFIED
+from sysmlc.backends.reqtable.backend import (
+    BAD_TEMPLATE,
+    UNSATISFIED,
+    UNVERIFIED,
+    format_markdown_cell,
+)
 from sysmlc.backends.reqtable.table import Cell
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text

@@ -10,7 +10,7 @@ from sysmlc.backends.aml.node import Node
 from sysmlc.backends.aml.rules import Losses
 from sysmlc.ir import Edge, Element, Graph, list_items
 from sysmlc.ir.element import derived_id
-from sysmlc.ir.query.caex_ids import find_caex_id, find_extended_id
+from sysmlc.ir.query.names import find_caex_id, find_extended_id
 
 _BRACKETED = frozenset("/@[]")
 """A path whose names contain one of these has its names in brackets (IEC 62424, A.2)."""

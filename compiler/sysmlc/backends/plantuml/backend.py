@@ -1,10 +1,11 @@
-"""The back end ``plantuml``: build views, assign file names, render templates."""
+"""The back end ``plantuml``: build views, mark faults, assign file names, render templates."""
 
 from collections.abc import Callable, Collection, Iterable, Iterator
 from itertools import groupby
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from msgspec import Struct
+from msgspec.structs import fields, replace
 
 from sysmlc.backends.base import AUTHOR, DERIVED, EmitOptions
 from sysmlc.backends.plantuml import (
@@ -19,7 +20,6 @@ from sysmlc.backends.plantuml import (
     use_case,
 )
 from sysmlc.backends.plantuml.author_diagrams import FOLDER, draw_author_diagrams
-from sysmlc.backends.plantuml.fault_marks import mark_faults
 from sysmlc.backends.plantuml.undrawn import report_overtaken_messages
 from sysmlc.backends.plantuml.views import Diagram
 from sysmlc.backends.templates import TemplateError, Templates
@@ -103,7 +103,7 @@ def _write(
         for kind, group in groupby(traced, lambda item: item.diagram.kind):
             try:
                 for (diagram, trace), file in _assign_files(list(group)):
-                    marked = mark_faults(graph, diagram, trace, options.faulty)
+                    marked = _mark_faults(graph, diagram, trace, options.faulty)
                     text = _render(graph, marked, templates)
                     path = f"diagrams/{folder}{file}.{kind}.puml"
                     output.add(path, text, trace, "plantuml", marks_faults=True)
@@ -144,3 +144,41 @@ def _list_header_comments(diagram: Diagram, source: str) -> tuple[str, ...]:
     parts = [f"{kind} of {name}", f"from {source}" if source else ""]
     parts.append("made by sysmlc; change the model, not this file")
     return tuple(format_comment(part) for part in parts if part)
+
+
+# -- marks of faults -------------------------------------------------------------------------------
+
+_MARK = "<color:#C53030>⚠</color> "
+_TEXT_FIELDS = ("label", "text")
+
+
+def _mark_faults(
+    graph: Graph, diagram: Diagram, trace: Collection[str], faulty: frozenset[str]
+) -> Diagram:
+    """Return the diagram with a mark on each shape and line that shows an element in *faulty*.
+
+    *trace* has the ids of all elements of the diagram. If one of them has an error but no label, or
+    if an owner of the diagram's subject has an error, the mark is on the frame.
+    """
+    if not faulty:
+        return diagram
+    view = diagram.view if faulty.isdisjoint(trace) else _mark(diagram.view, faulty)
+    subject = graph.get(diagram.about)
+    owners = [] if subject is None else [subject, *graph.ancestors(subject)]
+    concerned = {*trace, *(owner.id for owner in owners)}
+    if view != diagram.view or faulty.isdisjoint(concerned):
+        return replace(diagram, view=view)
+    return replace(diagram, frame=f"{_MARK}{diagram.frame}")
+
+
+def _mark(view: Any, faulty: frozenset[str]) -> Any:  # noqa: ANN401 - any struct of a view
+    """Return the view or a part of it with the marks."""
+    if isinstance(view, tuple):
+        return tuple(_mark(item, faulty) for item in view)
+    if not isinstance(view, Struct):
+        return view
+    marked = {field.name: _mark(getattr(view, field.name), faulty) for field in fields(view)}
+    label = next((name for name in _TEXT_FIELDS if marked.get(name)), None)
+    if label is not None and not faulty.isdisjoint(marked.get("shows", ())):
+        marked[label] = f"{_MARK}{marked[label]}"
+    return replace(view, **marked)

@@ -1,17 +1,16 @@
-"""Two files for each root of the model with requirements: a CSV and a Markdown table."""
+"""Two files for each root with requirements, a CSV and a Markdown table; open requirements."""
 
 import csv
 import io
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from msgspec import Struct
 
 from sysmlc.backends.base import EmitOptions
-from sysmlc.backends.reqtable.open_requirements import report_open_requirements
-from sysmlc.backends.reqtable.table import Cell, Table, make_tables
+from sysmlc.backends.reqtable.table import Cell, Table, is_listed, make_tables
 from sysmlc.backends.templates import TemplateError, Templates
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
-from sysmlc.ir import Graph
+from sysmlc.ir import Edge, Element, Graph
 from sysmlc.support.escapes import escape_markdown
 from sysmlc.support.output import Output, assign_file_names
 
@@ -112,3 +111,63 @@ def format_markdown_cell(cell: Cell) -> str:
     """Return the values on separate lines, with all markup escaped."""
     lines = (line for value in cell.values for line in value.splitlines())
     return "<br>".join(escape_markdown(line) for line in lines if line.strip())
+
+
+# -- open requirements -----------------------------------------------------------------------------
+
+UNSATISFIED = rule(
+    "SM715",
+    "unsatisfied-requirement",
+    Severity.INFO,
+    "nothing satisfies requirement '{requirement}'",
+    help="draw «satisfy» from the block or behaviour to the requirement",
+)
+UNVERIFIED = rule(
+    "SM716",
+    "unverified-requirement",
+    Severity.INFO,
+    "nothing verifies requirement '{requirement}'",
+    help="draw «verify» from a test case to the requirement",
+)
+
+
+def report_open_requirements(graph: Graph, requirements: list[Element], sink: Sink) -> None:
+    """Report each requirement that nothing satisfies, and each that nothing verifies."""
+    for open_rule, edge in ((UNSATISFIED, Edge.SATISFIES), (UNVERIFIED, Edge.VERIFIES)):
+        closed = _find_closed(graph, requirements, edge)
+        for requirement in requirements:
+            if requirement.id not in closed:
+                name = graph.qualified_name(requirement)
+                sink.report(open_rule, graph.subject(requirement), requirement=name)
+
+
+def _find_closed(graph: Graph, requirements: Iterable[Element], edge: Edge) -> frozenset[str]:
+    """Return the ids of the requirements with a relation *edge*, directly or by implication.
+
+    A compound requirement is satisfied if all requirements in it are (SysML 1.6 clause 16.3.1), and
+    a requirement is satisfied if one derived from it is.
+    """
+    worklist = [element for element in requirements if _has_relation(graph, element, edge)]
+    closed = {requirement.id for requirement in worklist}
+    for requirement in worklist:
+        for implied in _iter_implied(graph, requirement, closed):
+            if implied.id not in closed:
+                closed.add(implied.id)
+                worklist.append(implied)
+    return frozenset(closed)
+
+
+def _has_relation(graph: Graph, requirement: Element, edge: Edge) -> bool:
+    # A SysML v2 requirement leads to its subject itself.
+    has_subject = edge is Edge.SATISFIES and bool(graph.targets(requirement, Edge.SUBJECT))
+    return has_subject or bool(graph.sources(requirement, edge))
+
+
+def _iter_implied(graph: Graph, requirement: Element, closed: set[str]) -> Iterator[Element]:
+    """Yield the requirements that have the relation because *requirement* has it."""
+    yield from graph.targets(requirement, Edge.DERIVES)
+    owner = graph.owner(requirement)
+    if owner is not None and is_listed(owner):
+        contained = [element for element in graph.owned(owner) if is_listed(element)]
+        if all(element.id in closed for element in contained):
+            yield owner

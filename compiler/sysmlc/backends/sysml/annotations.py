@@ -18,7 +18,7 @@ from sysmlc.backends.sysml.shapes import is_part_port
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import AttrValue, Edge, Element, Kind, list_items
 from sysmlc.ir.query import CLASSIFIERS
-from sysmlc.ir.query.caex_ids import find_caex_id
+from sysmlc.ir.query.names import find_caex_id
 
 _STRUCTURAL_SUBKINDS = frozenset({"part", "model", "caex", "internal-link", "alias", "variable"})
 """Subkinds that follow from the place of an element, so that no metadata states them."""

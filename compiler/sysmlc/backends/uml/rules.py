@@ -10,7 +10,7 @@ from sysmlc.backends.losses import LossCounter
 from sysmlc.backends.uml.hrefs import make_href
 from sysmlc.diagnostics import Rule, Severity, Sink, rule
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
-from sysmlc.ir.query.caex_ids import CAEX_ID, find_caex_id
+from sysmlc.ir.query.names import CAEX_ID, find_caex_id
 from sysmlc.ir.round_trip import Record, StoredElement, encode_record
 
 UNSUPPORTED_KIND = rule(

@@ -8,7 +8,7 @@ from sysmlc.frontends.sysml.annotations import apply_levels, is_recipe_level
 from sysmlc.frontends.sysml.kinds import CLASSIFIERS, KINDS_BY_METADATA
 from sysmlc.frontends.sysml.libraries import FILES, LOWERED
 from sysmlc.ir import AttrValue, Edge, Element, Kind
-from sysmlc.ir.query.caex_ids import CAEX_ID
+from sysmlc.ir.query.names import CAEX_ID
 from sysmlc.language.tree import Node, Reference
 
 if TYPE_CHECKING:

@@ -10,7 +10,6 @@ from sysmlc.frontends.sysml import (
     control_structures,
     definitions,
     features,
-    filters,
     instances,
     interactions,
     nodes,
@@ -173,7 +172,7 @@ def _lower_expression(lowering: Lowering, node: Node, owner: Element | None) -> 
     if node.membership == "ResultExpressionMembership" and owner is not None:
         requirements.lower_result(lowering, node, owner)
     elif node.membership == "ElementFilterMembership":
-        filters.lower_filter(lowering, node, owner)
+        relations.lower_filter(lowering, node, owner)
 
 
 def _ignore(lowering: Lowering, node: Node, owner: Element | None) -> None:
@@ -259,8 +258,8 @@ HANDLERS: dict[str, Handler] = {
     "MetadataFeature": annotations.lower_metadata,
     "Multiplicity": _ignore,
     "MultiplicityRange": _ignore,
-    "Expose": filters.lower_expose,
-    "MembershipExpose": filters.lower_expose,
-    "NamespaceExpose": filters.lower_expose,
+    "Expose": relations.lower_expose,
+    "MembershipExpose": relations.lower_expose,
+    "NamespaceExpose": relations.lower_expose,
 }
 """The handler of each metaclass. A metaclass without a handler is reported as not read."""

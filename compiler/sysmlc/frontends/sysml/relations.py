@@ -1,10 +1,10 @@
-"""Dependencies, derivations, allocations, imports and aliases."""
+"""Dependencies, derivations, allocations, imports and aliases; filters and exposed elements."""
 
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml import annotations, filters, nodes
+from sysmlc.frontends.sysml import annotations, nodes, values
 from sysmlc.frontends.sysml.definitions import visibility_attributes
-from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.ir import AttrValue, Edge, Element, Kind, list_items
 from sysmlc.language.tree import Node
 
 if TYPE_CHECKING:
@@ -303,7 +303,7 @@ def lower_import(lowering: "Lowering", node: Node, owner: Element | None) -> Non
     if imported is not node:
         conditions = [member for member in inner if member.kind in nodes.EXPRESSIONS]
         for condition in conditions:
-            filters.lower_filter(lowering, condition, import_)
+            lower_filter(lowering, condition, import_)
         lowering.skipped.update(id(member) for member in node.walk() if member is not node)
 
 
@@ -324,3 +324,33 @@ def lower_alias(lowering: "Lowering", node: Node, owner: Element | None) -> None
     lowering.lower_annotations(node, alias)
     reference = nodes.find_reference(node, "Membership")
     lowering.connect_reference(Edge.REFERENCES, alias, reference)
+
+
+# -- filters and exposed elements ------------------------------------------------------------------
+
+_EXPOSE = "expose "
+
+
+def lower_filter(lowering: "Lowering", condition: Node, owner: Element | None) -> None:
+    """Add the condition that the members of a package or view fulfil to its ``filters``."""
+    if owner is None:
+        lowering.mark_ignored(condition)
+    else:
+        _append_text(lowering, owner, "filters", values.expression_text(condition, lowering))
+
+
+def lower_expose(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+    """Add what a view exposes to its ``exposed``, with the condition in brackets."""
+    if owner is None:
+        lowering.mark_ignored(node)
+        return
+    document = lowering.document_of(node)
+    source = "" if document is None else nodes.quote_source(node, document.text)
+    names = ", ".join(str(relation.reference) for relation in node.relations)
+    text = source.partition(_EXPOSE)[2].removesuffix(";") or names
+    _append_text(lowering, owner, "exposed", text)
+
+
+def _append_text(lowering: "Lowering", element: Element, key: str, text: str) -> None:
+    texts = list_items(element.attrs.get(key))
+    lowering.graph.set(element, **{key: (*texts, text)})

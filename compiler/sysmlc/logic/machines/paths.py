@@ -295,7 +295,7 @@ class PathExplorer(Struct, frozen=True):
     def _start_region(self, path: Path, region: str) -> list[Path]:
         """Start a region with its initial transition.
 
-        A region without one is never entered by default (``default_entry``).
+        A region without one is never entered by default (``well_formedness``).
         """
         started = replace(path, guard_values=path.values)
         outgoing = self.machine.outgoing.get(self.machine.regions[region].initial, ())

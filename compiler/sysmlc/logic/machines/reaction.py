@@ -239,7 +239,7 @@ def start_region(
 ) -> list[Reaction]:
     """Start a region with its initial transition.
 
-    A region without one is never entered by default (``default_entry``).
+    A region without one is never entered by default (``well_formedness``).
     """
     outgoing = machine.outgoing.get(machine.regions[region].initial, ())
     start = replace(run, guard_values=run.store)

@@ -184,7 +184,7 @@ def _explain_bad_start(graph: Graph, machine: Element, region: Element) -> str:
     """Return why the region cannot start, or an empty text.
 
     Nested regions without initial pseudostate are correct unless a transition enters them by
-    default, which ``default_entry`` decides for the complete machine.
+    default, which ``well_formedness`` decides for the complete machine.
     """
     initial = find_initial(graph, region)
     starts = [] if initial is None else graph.sources(initial, Edge.FLOW_SOURCE)
