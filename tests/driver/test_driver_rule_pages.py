@@ -107,7 +107,7 @@ def test_a_right_example_can_be_written_as_interchange(rule, tmp_path):
 SEARCH_TEXTS = {
     "SM188": "test_the_first_200_violations_are_reported_and_the_rest_is_counted",
     "SM700": "import BAD_TEMPLATE",
-    "SM717": "reqtable.backend import BAD_TEMPLATE",
+    "SM717": "BAD_TEMPLATE,\n    UNSATISFIED",
     **dict.fromkeys(
         [rule.code for rule in RULES if "SM320" <= rule.code <= "SM340"], "range(320, 341)"
     ),
