@@ -41,6 +41,18 @@ READ_ONLY = {
 NEVER_WRITTEN = {
     # The type of a machine's variable can be a material, but no model has such a variable.
     "sysmlc-recipe#/valueType/material",
+    # Only flows with «Probability» have expected times, and no requirement states a shortest time.
+    "sysmlc-recipe#/derivedDuration/expected",
+    "sysmlc-recipe#/flowGraph/edges/probability",
+    "sysmlc-recipe#/timeLimits/min",
+    # ``contracts check`` writes these, not ``build``; tests/cli checks them.
+    *(
+        f"sysmlc-diagnostics#/requirements/{member}"
+        for member in (
+            *("requirement", "component", "formula", "verdict", "reason"),
+            *("witness", "witness/loop", "witness/steps"),
+        )
+    ),
 }
 
 

@@ -116,7 +116,9 @@ def iter_valid_pilot_models(folder, step=1):
         text = path.read_bytes().decode("utf-8", "replace")
         document = parse(text, path.name.removesuffix(".xt"), language, sink)
         resolve([document], library, sink)
-        if not sink.has_errors():
+        # Interchange files state the visibility that an import in an older text omits (SM197).
+        is_older = any(diagnostic.rule.code == "SM197" for diagnostic in sink)
+        if not sink.has_errors() and not is_older:
             yield path, document, write(document, [document, *library.loaded_documents()], sink)
 
 
