@@ -115,6 +115,13 @@ def test_a_configuration_accepts_findings_of_files(check, tmp_path):
     assert "info[SM410" in heads
 
 
+@pytest.mark.parametrize("pattern", [".", "/", "[", "**"])
+def test_a_strange_pattern_of_files_is_no_fault(check, tmp_path, pattern):
+    entry = f'[[suppress]]\nrule = "SM197"\nfile = "{pattern}"\nreason = "none"\n'
+    (tmp_path / "sysmlc.toml").write_text(entry)
+    assert check()[0] == 0
+
+
 # -- comments in the model -------------------------------------------------------------------------
 
 

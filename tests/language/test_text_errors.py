@@ -251,6 +251,11 @@ def test_a_misspelt_keyword_is_one_error_and_is_read_as_the_keyword(text, word, 
     assert list_diagnostics(text.replace(word, keyword)) == []
 
 
+def test_a_very_long_word_is_not_compared_with_keywords():
+    (diagnostic,) = list_diagnostics(f"{'p' * 100_000}art def A;")
+    assert "SM191" in diagnostic
+
+
 def test_a_word_that_resembles_no_keyword_is_no_misspelt_one():
     assert list_diagnostics("part def A { foo bar; }") == [
         "1:18 SM190 unexpected 'bar'; expected ';', '{', '}', '::' or something else"

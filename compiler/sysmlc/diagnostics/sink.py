@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
-from pathlib import PurePosixPath
 from typing import NamedTuple
 
 from msgspec import Struct
@@ -150,7 +149,7 @@ class Suppression(Struct, frozen=True):
             return False
         place = diagnostic.subject.place
         file = "" if place is None else place.file
-        is_in_file = self.file == "*" or PurePosixPath(file).match(self.file)
+        is_in_file = self.file == "*" or fnmatchcase(f"/{file}", f"*/{self.file}")
         return is_in_file and fnmatchcase(diagnostic.subject.name, self.element)
 
 

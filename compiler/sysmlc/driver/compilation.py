@@ -319,8 +319,9 @@ class _CompilationRun:
         remaining, unused = suppress(self._sink, self._request.config.suppress)
         configuration = Sink(self._request.config.rules)
         for entry in unused:
+            place = entry.file if entry.element == "*" else entry.element
             configuration.report(
-                faults.UNUSED_SUPPRESSION, Subject(), name=entry.rule, element=entry.element
+                faults.UNUSED_SUPPRESSION, Subject(), name=entry.rule, element=place
             )
         for name, advice in self._find_unknown_level_elements():
             configuration.report(

@@ -41,6 +41,8 @@ _EXPECTED_WORDS = {
     "importedNamespace": "a namespace",
 }
 _IMPORT_RELATIONS = frozenset({"importedNamespace", "importedMembership"})
+_MAX_ADVICE_FROM_IMPORTS = 50
+"""Diagnostics of a unit after which names of imported packages are no longer suggested."""
 _NOT_GIVEN = "give the file that has it as an input too, or the folder of all files"
 _UNNAMED = "declare it, or import the package that has it"
 _TYPES_OF_LIBRARY = ("ScalarValues", "ISQ")
@@ -56,6 +58,8 @@ def _make_advice(
     names: tuple[str, ...],
     context: contexts.LookupContext,
     container: Node | None,
+    *,
+    searches_imports: bool = True,
 ) -> str:
     """Return the help for a name that is not found; ``container`` is the element before a dot."""
     relation = use[1]
@@ -78,7 +82,9 @@ def _make_advice(
         candidates = [name for name in model.packages() if name not in scope_names]
         suggestion = did_you_mean(names[0], candidates) if candidates else ""
         return suggestion if suggestion.startswith("did you mean") else _NOT_GIVEN
-    known_names = _list_known_names(model, use, names, context, container)
+    known_names = _list_known_names(
+        model, use, names, context, container, searches_imports=searches_imports
+    )
     roots = model.packages() if len(names) > 1 else []
     return did_you_mean(names[-1], known_names or roots) if known_names or roots else _UNNAMED
 
@@ -182,6 +188,8 @@ def _list_known_names(
     names: tuple[str, ...],
     context: contexts.LookupContext,
     container: Node | None,
+    *,
+    searches_imports: bool,
 ) -> list[str]:
     """Return the names of elements of the kind that is needed, else of all elements.
 
@@ -196,11 +204,13 @@ def _list_known_names(
         scopes = lookup.known_ancestors(context.scope)
     elif container is not None:
         scopes = [container, *lookup.known_ancestors(container)]
-        scopes += _list_imported_namespaces(lookup, [container])
+        scopes += _list_imported_namespaces(lookup, [container]) if searches_imports else []
     else:
         outward = _list_scopes(context)
-        scopes = [*outward, *_list_imported_namespaces(lookup, outward)]
-        if _is_unit(node):
+        scopes = [*outward]
+        if searches_imports:
+            scopes += _list_imported_namespaces(lookup, outward)
+        if searches_imports and _is_unit(node):
             scopes += filter(None, map(model.find, _UNITS_OF_LIBRARY))
     is_last = names == relation.reference.chain[-1]
     kinds = contexts.TARGET_KINDS.get(relation.kind) if is_last else None
@@ -284,7 +294,15 @@ def report_unresolved(
         make_subject(document, node, _find_link_offset(document, reference, index)),
         name=name,
         inside=inside,
-        advice=_make_advice(model, (node, relation), reference.chain[index], context, container),
+        advice=_make_advice(
+            model,
+            (node, relation),
+            reference.chain[index],
+            context,
+            container,
+            # Libraries have thousands of names to compare with.
+            searches_imports=len(sink) < _MAX_ADVICE_FROM_IMPORTS,
+        ),
     )
 
 

@@ -53,6 +53,7 @@ _SEPARATORS = ("", ";", "{", "}")
 _MIN_KEYWORD_LENGTH = 5
 """Length of the shortest word that is taken for a misspelt keyword; shorter ones are names."""
 _MIN_MISSPELT_LENGTH = 3
+_MAX_MISSPELT_LENGTH = 30
 _MIN_SIMILARITY = 0.7
 """Ratio of ``difflib`` from which the first word of a member counts as a misspelt keyword."""
 _DOUBLED_OPERATORS = {"&": "'and'", "|": "'or'"}
@@ -113,7 +114,8 @@ def _advise_first_word(tokens: Tokens, index: int, beginnings: Collection[str]) 
 
 def list_similar_keywords(word: str, keywords: Collection[str]) -> list[str]:
     """Return the keywords that *word* may misspell, most similar first."""
-    if len(word) < _MIN_MISSPELT_LENGTH or word in _FIRST_WORDS:
+    # The comparison takes quadratic time, and a hostile text may have words of megabytes.
+    if not _MIN_MISSPELT_LENGTH <= len(word) <= _MAX_MISSPELT_LENGTH or word in _FIRST_WORDS:
         return []
     candidates = sorted(keyword for keyword in keywords if keyword.isalpha())
     ratios = {
