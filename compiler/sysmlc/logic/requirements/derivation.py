@@ -2,12 +2,21 @@
 
 from collections.abc import Iterable, Iterator
 
+from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.ir import Element, Graph
+from sysmlc.ir import Element, Graph, Kind
 from sysmlc.logic import formula as f
 from sysmlc.logic.classification import classify
+from sysmlc.logic.components.component import Component
+from sysmlc.logic.components.derivation import (
+    ComponentBehaviour,
+    add_stated_conjuncts,
+    describe_component,
+)
+from sysmlc.logic.components.names import ComponentNames
+from sysmlc.logic.components.objects import ComponentError
 from sysmlc.logic.contract import Class, Conjunct, Contract, Source
 from sysmlc.logic.expressions.context import context_of, report_range
 from sysmlc.logic.expressions.elaboration import ElaborationError, Fault, elaborate_condition
@@ -15,9 +24,10 @@ from sysmlc.logic.expressions.expression import ExpressionError
 from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.formal_texts import describe_error, is_formal, read_formal
 from sysmlc.logic.formula import Formula, Literal
+from sysmlc.logic.machines.reader import MachineOptions, find_context_classifier
 from sysmlc.logic.printing import print_literal
 from sysmlc.logic.reduction.contract_reduction import add_history_bits
-from sysmlc.logic.requirements.scope import Scope, scope_of
+from sysmlc.logic.requirements.scope import Scope, replace_meanings, scope_of
 from sysmlc.logic.requirements.statements import (
     Statement,
     collect_statements,
@@ -38,19 +48,27 @@ NOT_FORMAL = rule(
     "SM523",
     "requirement-not-formal",
     Severity.INFO,
-    "'{constraint}' of requirement '{requirement}' is in no contract: {reason}{further}",
+    "{constraint} of requirement '{requirement}' is in no contract: {reason}{further}",
+    help="compare Booleans, enumerations and Integers of the subject for a contract about it",
 )
 _EXPRESSION_LANGUAGES = ("", "kerml", "sysml", "ocl", "alf")
 
 
+class RequiredContract(Struct, frozen=True):
+    """The contract of a subject's requirements, and the behaviour that has to satisfy it."""
+
+    contract: Contract
+    behaviour: ComponentBehaviour | None
+
+
 def derive(
-    graph: Graph, behaviours: Iterable[Contract], assumed_range: tuple[int, int], sink: Sink
-) -> Iterator[Contract]:
+    graph: Graph, behaviours: Iterable[Contract], options: MachineOptions, sink: Sink
+) -> Iterator[RequiredContract]:
     """Yield the contract of each subject: the assumptions and demands of its requirements.
 
     *behaviours* are the contracts of behaviours. If the subject has one, formulas may use its
     variables, and the contract of the requirements is named ``<component>.requirements``; the
-    behaviour implements it. An Integer without a range gets *assumed_range*.
+    behaviour implements it.
     """
     behaviour_by_component = {contract.component: contract for contract in behaviours}
     informal = _InformalStatements()
@@ -60,18 +78,36 @@ def derive(
         context = context_of(
             graph,
             definition_of(graph, subject),
-            assumed_range,
+            options.assumed_range,
             find_redefining_operation(graph, subject),
         )
-        scope = scope_of(context, behaviour)
+        own_variables = () if behaviour is None else behaviour.variables
+        scope = scope_of(context, own_variables)
+        described, whole, obstacle = None, None, ""
+        is_machine = behaviour is not None and graph[behaviour.origin].kind is Kind.STATE_MACHINE
+        try:
+            described = _open_component(graph, subject, options)
+        except ComponentError as problem:
+            obstacle = str(problem)
+            whole = _describe_alone(behaviour, obstacle, is_machine=is_machine)
+        if described is not None:
+            scope = replace(scope, names=ComponentNames(described))
+        formulas = [
+            (statement, formula)
+            for statement in statements
+            if (formula := _read_statement(graph, scope, statement, informal, sink, obstacle))
+            is not None
+        ]
+        if described is not None:
+            whole = _describe_component(described, component, behaviour, is_machine=is_machine)
+        if whole is not None:
+            scope = replace(scope, variables=scope_of(context, whole.contract.variables).variables)
         assumptions: list[Conjunct] = []
         demands: list[Conjunct] = []
-        for statement in statements:
-            formula = _read_statement(graph, scope, statement, informal, sink)
-            if formula is not None:
-                is_assumed = _is_assumed(scope, statement, formula)
-                conjuncts = assumptions if is_assumed else demands
-                conjuncts += _classify(scope, statement, formula, is_assumed)
+        for statement, formula in formulas:
+            is_assumed = _is_assumed(scope, statement, formula)
+            conjuncts = assumptions if is_assumed else demands
+            conjuncts += _classify(scope, statement, formula, is_assumed)
         if demands:
             name = component if behaviour is None else f"{component}.requirements"
             inputs, outputs = _state_initial_values(
@@ -80,10 +116,50 @@ def derive(
             # Initial values of outputs belong to the behaviour, whose first entries may assign
             # other values.
             initial_values = () if behaviour is not None else outputs
-            yield _make_contract(
+            contract = _make_contract(
                 name, subject, scope, (*inputs, *assumptions), (*initial_values, *demands)
             )
+            yield RequiredContract(contract, whole)
     informal.report(graph, sink)
+
+
+def _open_component(graph: Graph, subject: Element, options: MachineOptions) -> Component | None:
+    """Return the component whose behaviour a subject is or has, or None if it has none."""
+    if subject.kind is Kind.STATE_MACHINE:
+        subject = find_context_classifier(graph, subject) or subject
+    if subject.kind not in (Kind.CLASS, Kind.COMPONENT, Kind.ACTIVITY):
+        return None
+    component = Component(graph, subject, options)
+    # An action without steps is one node: only its contract says what it does.
+    has_steps = len(component.performances.nodes) > (subject.kind is Kind.ACTIVITY)
+    return component if component.machines or has_steps else None
+
+
+def _describe_component(
+    component: Component, name: str, behaviour: Contract | None, *, is_machine: bool
+) -> ComponentBehaviour | None:
+    try:
+        whole = describe_component(component, name)
+    except ComponentError as problem:
+        return _describe_alone(behaviour, str(problem), is_machine=is_machine)
+    if behaviour is None:
+        return replace(whole, is_of_parts=True)
+    return add_stated_conjuncts(whole, behaviour)
+
+
+def _describe_alone(
+    behaviour: Contract | None, reason: str, *, is_machine: bool
+) -> ComponentBehaviour | None:
+    """Return a behaviour as its own contract describes it, which refutes nothing.
+
+    The contract of an activity describes one that starts again, so that it proves nothing either.
+    """
+    if behaviour is None:
+        return None
+    if not is_machine:
+        stated = tuple(item for item in behaviour.guarantees if not item.is_derived)
+        behaviour = replace(behaviour, guarantees=stated)
+    return ComponentBehaviour(behaviour, gaps={"": reason})
 
 
 def add_features(contract: Contract, scope: Scope, formula: Formula) -> Contract:
@@ -124,14 +200,14 @@ class _InformalStatements:
     def report(self, graph: Graph, sink: Sink) -> None:
         """Report each statement once, with the reason for its first subject."""
         for statement, reasons in self._reasons.values():
-            others = len(reasons) - 1
+            others, name = len(reasons) - 1, statement.constraint.name
             further = (
                 f"; the same holds for {others} more subject{'s' * (others > 1)}" if others else ""
             )
             sink.report(
                 NOT_FORMAL,
                 graph.subject(statement.constraint),
-                constraint=_name_constraint(statement),
+                constraint=f"constraint '{name}'" if name else "the constraint",
                 requirement=statement.requirement.name,
                 reason=reasons[0],
                 further=further,
@@ -139,14 +215,25 @@ class _InformalStatements:
 
 
 def _read_statement(
-    graph: Graph, scope: Scope, statement: Statement, informal: _InformalStatements, sink: Sink
+    graph: Graph,
+    scope: Scope,
+    statement: Statement,
+    informal: _InformalStatements,
+    sink: Sink,
+    obstacle: str = "",
 ) -> Formula | None:
-    """Return the formula of a statement, or record why it has none."""
+    """Return the formula of a statement, or record why it has none.
+
+    *obstacle* is the reason if the names of states, actions and parts are not available.
+    """
     constraint = statement.constraint
     # Tools append a version: "OCL2.0", "KerML 1.0".
     language = _language_of(constraint).rstrip("0123456789. ")
     if _is_temporal(constraint):
-        formula = _read_temporal(graph, scope, statement, sink)
+        # Without the names of the component, an unknown name may be one of them.
+        formula = _read_temporal(graph, scope, statement, Sink() if obstacle else sink)
+        if formula is None and obstacle:
+            informal.add(statement, obstacle)
     elif language in _EXPRESSION_LANGUAGES:
         formula = _read_condition(scope, statement, informal)
     else:
@@ -170,9 +257,9 @@ def _read_temporal(graph: Graph, scope: Scope, statement: Statement, sink: Sink)
     constraint = statement.constraint
     body = str(constraint.attrs["body"])
     try:
-        formula = read_formal(
-            scope.replace_dotted_names(body), _language_of(constraint), scope.domains
-        )
+        text, meanings = scope.replace_names(body)
+        domains = {name: meaning.domain for name, meaning in meanings.items()}
+        formula = read_formal(text, _language_of(constraint), {**scope.domains, **domains})
     except FormulaError as error:
         sink.report(
             NOT_A_FORMULA,
@@ -184,7 +271,7 @@ def _read_temporal(graph: Graph, scope: Scope, statement: Statement, sink: Sink)
             reason=describe_error(error, body),
         )
         return None
-    return scope.substitute_constants(formula)
+    return replace_meanings(scope.substitute_constants(formula), meanings)
 
 
 def _read_condition(
@@ -193,16 +280,15 @@ def _read_condition(
     try:
         expression = parse_expression(str(statement.constraint.attrs["body"]))
         return elaborate_condition(expression, scope.find_symbol)
-    except (ExpressionError, ElaborationError) as error:
+    except (ExpressionError, ElaborationError, ComponentError) as error:
         informal.add(statement, _explain(scope, error))
         return None
 
 
 def _explain(scope: Scope, error: Exception) -> str:
     if isinstance(error, ElaborationError) and error.fault is Fault.UNKNOWN:
-        return (
-            f"'{error.name}' is not a feature of '{scope.context.name}' with finitely many values"
-        )
+        context = scope.context.name
+        return f"'{error.name}' is not a feature of '{context}' itself, or has no finite type"
     return str(error)
 
 

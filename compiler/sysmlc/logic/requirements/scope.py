@@ -6,14 +6,20 @@ from collections.abc import Iterable, Mapping
 from msgspec import Struct
 
 from sysmlc.ir import Kind
-from sysmlc.logic.contract import Contract, Domain, Owner, Variable
+from sysmlc.logic.components.names import ComponentNames, Meaning
+from sysmlc.logic.components.objects import ComponentError
+from sysmlc.logic.contract import Domain, Owner, Variable
 from sysmlc.logic.expressions.context import Context
 from sysmlc.logic.expressions.elaboration import Symbol, find_literal
 from sysmlc.logic.expressions.features import Feature
-from sysmlc.logic.formula import Apply, Const, Formula, Literal, Var, var, variables
+from sysmlc.logic.formula import Apply, Const, Formula, Literal, Var, prime, var, variables
 from sysmlc.logic.simplification import rebuild
+from sysmlc.logic.syntax import FormulaError
 
-_DOTTED_NAME = re.compile(r"[^\W\d]\w*(?:\.[^\W\d]\w*)+")
+_NAME = re.compile(
+    r"(?:running|finished)\(\s*[\w.]+\s*\)|[^\W\d]\w*(?:(?:\.|\#\(\d+\)\.)[^\W\d]\w*)*"
+)
+"""A name in a formula: of an action, dotted, or plain."""
 
 
 class Scope(Struct, frozen=True):
@@ -22,6 +28,8 @@ class Scope(Struct, frozen=True):
     context: Context
     variables: Mapping[str, Variable]
     constants: Mapping[str, Literal]
+    names: ComponentNames | None = None
+    """Names of actions, states and parts; None if the subject has no behaviour to describe."""
 
     @property
     def domains(self) -> dict[str, Domain]:
@@ -37,6 +45,9 @@ class Scope(Struct, frozen=True):
 
         The name of the subject may precede the name of the feature.
         """
+        meaning = self._find_meaning(name)
+        if meaning is not None:
+            return Symbol(meaning.formula, meaning.domain)
         feature = self.find_feature(name)
         if feature is not None:
             constant = self.constants.get(feature.variable)
@@ -52,17 +63,41 @@ class Scope(Struct, frozen=True):
         features = self.context.features
         return features.get(name) or features.get(name.partition(".")[2])
 
-    def replace_dotted_names(self, text: str) -> str:
-        """Replace dotted names (``level.value``, ``tank.filling``) by variables.
+    def _find_meaning(self, name: str) -> Meaning | None:
+        """Return what a name, or the name after its first dot, denotes in the component.
 
-        A variable is padded with blanks to the length of the name, so that columns in messages are
-        those of *text*; they are not if a variable is longer than the name.
+        The name of the subject may precede any name.
         """
-        return _DOTTED_NAME.sub(self._pad_variable, text)
+        if self.names is None:
+            return None
+        rest = name.partition(".")[2]
+        return self.names.find(name) or (self.names.find(rest) if rest else None)
 
-    def _pad_variable(self, match: re.Match[str]) -> str:
-        feature = self.find_feature(match[0])
-        return match[0] if feature is None else feature.variable.ljust(len(match[0]))
+    def replace_names(self, text: str) -> tuple[str, dict[str, Meaning]]:
+        """Replace names that are no variables (``tank.filling``, ``running(pick)``) by variables.
+
+        The second result tells what the new variables mean. A variable is padded with blanks to the
+        length of the name, so that columns in messages are those of *text*; they are not if a
+        variable is longer than the name. Raises FormulaError for a name with several meanings.
+        """
+        meanings: dict[str, Meaning] = {}
+        return _NAME.sub(lambda match: self._replace_name(match, meanings), text), meanings
+
+    def _replace_name(self, match: re.Match[str], meanings: dict[str, Meaning]) -> str:
+        name = match[0]
+        try:
+            meaning = self._find_meaning(name)
+        except ComponentError as problem:
+            raise FormulaError(str(problem), match.start()) from None
+        is_plain = name.isidentifier()
+        if meaning is None:
+            feature = None if is_plain else self.find_feature(name)
+            return name if feature is None else feature.variable.ljust(len(name))
+        if is_plain and (name in self.variables or isinstance(meaning.formula, Const)):
+            return name
+        variable = f"__{len(meanings)}"
+        meanings[variable] = meaning
+        return variable.ljust(len(name))
 
     def substitute_constants(self, formula: Formula) -> Formula:
         """Replace constants by their values, also where they are primed."""
@@ -85,8 +120,20 @@ class Scope(Struct, frozen=True):
         return owners == {Owner.ENVIRONMENT}
 
 
-def scope_of(context: Context, behaviour: Contract | None) -> Scope:
-    """Return the scope of a subject; variables of its behaviour's contract hide its features."""
+def replace_meanings(formula: Formula, meanings: Mapping[str, Meaning]) -> Formula:
+    """Replace the variables that stand for names by what the names mean."""
+    match formula:
+        case Var(name, primed) if name in meanings:
+            meaning = meanings[name].formula
+            return prime(meaning) if primed else meaning
+        case Apply(op, args):
+            return rebuild(op, tuple(replace_meanings(arg, meanings) for arg in args))
+        case _:
+            return formula
+
+
+def scope_of(context: Context, behaviour_variables: Iterable[Variable]) -> Scope:
+    """Return the scope of a subject; variables of its behaviour hide its features."""
     constants: dict[str, Literal] = {}
     feature_variables: dict[str, Variable] = {}
     for feature in context.features.values():
@@ -96,8 +143,7 @@ def scope_of(context: Context, behaviour: Contract | None) -> Scope:
             feature_variables[feature.variable] = Variable(
                 feature.variable, _find_owner(feature), feature.domain, feature.element.id
             )
-    variables_of_behaviour = () if behaviour is None else behaviour.variables
-    by_name = {variable.name: variable for variable in variables_of_behaviour}
+    by_name = {variable.name: variable for variable in behaviour_variables}
     return Scope(context, feature_variables | by_name, constants)
 
 

@@ -1,0 +1,276 @@
+"""The behaviours of a component and when they run.
+
+A state machine and the activities that an object performs by itself start with the object. The do
+behaviour of a state starts when the state is entered and stops when it is left. The environment may
+start an activity that nothing in the component performs.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.logic import formula as f
+from sysmlc.logic.activities.step_formulas import PerformanceFormulas
+from sysmlc.logic.components.machines import PlacedMachine, find_machines, place_machine
+from sysmlc.logic.components.objects import ComponentError, ComponentObject, ObjectTree
+from sysmlc.logic.components.performances import ActionPath, Caller, Performances
+from sysmlc.logic.components.signals import check_signal_names
+from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Owner, Source, Variable
+from sysmlc.logic.expressions.context import context_of
+from sysmlc.logic.expressions.expression import ExpressionError, last_name, name_of
+from sysmlc.logic.expressions.parsing import parse_expression
+from sysmlc.logic.formula import Formula
+from sysmlc.logic.identifiers import Names, identifier
+from sysmlc.logic.machines.machine import Vertex
+from sysmlc.logic.machines.reader import MachineOptions, find_context_classifier
+
+
+@dataclass(slots=True)
+class Root:
+    """A performance: its node, when it starts and stops, and whether it runs in the first step."""
+
+    id: str
+    start: Formula
+    stop: Formula
+    first: Formula
+    machine: PlacedMachine | None = None
+
+
+class Component:
+    """Builds the step relation of one component. Names are resolved before it is complete."""
+
+    def __init__(self, graph: Graph, subject: Element, options: MachineOptions) -> None:
+        """Collect the objects and behaviours. Raises ComponentError."""
+        self.graph = graph
+        self.subject = subject
+        self._options = options
+        is_activity = subject.kind is Kind.ACTIVITY
+        type_ = (find_context_classifier(graph, subject) or subject) if is_activity else subject
+        context = context_of(graph, type_, options.assumed_range)
+        self.names = Names("event", "none", *context.variables.values())
+        self.tree = ObjectTree(graph, type_, options.assumed_range, self.names)
+        self.performances = Performances(self.tree)
+        self.machines: list[PlacedMachine] = []
+        self.events: dict[str, str] = {}
+        self.roots: list[Root] = []
+        self.conjuncts: list[Conjunct] = []
+        """Steps of the do behaviours; ``finish_variable`` stands for the end of a performance."""
+        self.variables: list[Variable] = []
+        self.ends: dict[str, Formula] = {}
+        """Formulas for the machines' variables that tell when a do behaviour ends."""
+        self.released: set[str] = set()
+        """Ids of writers whose writes are not described everywhere."""
+        self.end_aliases: dict[str, str] = {}
+        """Nodes of do behaviours by the input that would end them in the machine alone."""
+        if is_activity:
+            self._add_offered(self.tree.root, subject, prefix="", is_started=True)
+        else:
+            for object_ in self.tree.objects:
+                self._add_machines(object_)
+            for object_ in self.tree.objects:
+                self._add_own_activities(object_)
+            for object_ in self.tree.objects:
+                self._add_services(object_)
+        check_signal_names(self)
+
+    @cached_property
+    def formulas(self) -> PerformanceFormulas:
+        """The formulas of all performances."""
+        tokens = self.performances.build("", self.subject.id, iter(()))
+        starts = {root.id: root.start for root in self.roots}
+        return PerformanceFormulas(tokens, starts, {root.id: root.stop for root in self.roots})
+
+    # -- behaviours --------------------------------------------------------------------------------
+
+    def _add_machines(self, object_: ComponentObject) -> None:
+        main = query.classifier_behavior(self.graph, object_.type_)
+        elements = find_machines(self.tree, object_)
+        for element in elements:
+            is_main = not object_.path and (element is main or len(elements) == 1)
+            prefix = (
+                ""
+                if is_main
+                else _join_names(
+                    object_.path, "" if element is main or len(elements) == 1 else element.name
+                )
+            )
+            event = self.events.setdefault(
+                object_.path, self.names.new(f"{object_.path}_event") if object_.path else "event"
+            )
+            machine = place_machine(self.tree, object_, element, prefix, event, self._options)
+            if machine is None:
+                raise ComponentError(f"no steps can be derived from state machine '{element.name}'")
+            self.machines.append(machine)
+            for state, behaviours in machine.list_do_states(self.tree):
+                self._add_do(machine, state, behaviours, prefix)
+            self._release_instant_behaviours(machine)
+
+    def _add_do(
+        self, machine: PlacedMachine, state: Vertex, behaviours: list[Element], prefix: str
+    ) -> None:
+        if len(behaviours) != 1:
+            raise ComponentError(f"state '{state.literal}' has several do behaviours")
+        behaviour = behaviours[0]
+        object_, activity = self._find_performed(machine.owner, behaviour) or (
+            machine.owner,
+            behaviour,
+        )
+        name = state.do.removeprefix("do_")
+        names = (*machine.owner.path.split("."), name) if machine.owner.path else (name,)
+        run = self.performances.name_variable(f"run_{name}", prefix)
+        caller = Caller(object_, names, _join_names(prefix, name))
+        id = self.performances.add(activity, caller, run)
+        place = (*names[:-1], state.literal, name)
+        self.performances.paths.append(ActionPath(place, id))
+        is_first = machine.active_formula(state)
+        entered, left = machine.entered_formula(state), machine.left_formula(state)
+        self.roots.append(Root(id, entered, left, is_first, machine))
+        if state.done:
+            self.end_aliases[_join_names(prefix, state.done)] = id
+            self._remember_end(machine, state, id, entered, left)
+
+    def _release_instant_behaviours(self, machine: PlacedMachine) -> None:
+        """Record the writers in activities that entries, exits and effects perform.
+
+        The machine performs them within its step, which is not described.
+        """
+        for element in self.graph.subtree(machine.element):
+            for edge in (Edge.ENTRY, Edge.EXIT, Edge.EFFECT):
+                for behaviour in self.graph.targets(element, edge):
+                    performed = self._find_performed(machine.owner, behaviour)
+                    if performed is None:
+                        continue
+                    if any(
+                        self.graph.targets(action, Edge.CALLS)
+                        for action in self.graph.subtree(performed[1])
+                    ):
+                        raise ComponentError(f"'{performed[1].name}' is performed within a step")
+                    self.released.update(action.id for action in self.graph.subtree(performed[1]))
+
+    def _remember_end(
+        self, machine: PlacedMachine, state: Vertex, id: str, entered: Formula, left: Formula
+    ) -> None:
+        """Define when a state's do behaviour has ended: now, or in an earlier step of the state."""
+        name = self.names.new(f"over_{machine.variables[state.do]}")
+        self.variables.append(Variable(name, Owner.SYSTEM, BooleanDomain(), state.id))
+        self.ends[machine.variables[state.done]] = f.either(f.var(name), finish_variable(id))
+        is_over = f.either(f.var(name), finish_variable(id))
+        remains = f.both(is_over, f.negate(left), f.negate(entered))
+        self.add(f.negate(f.var(name)), Class.INIT, state.id)
+        self.add(f.fold_iff(f.prime(f.var(name)), remains), Class.SAFETY, state.id)
+
+    def _find_performed(
+        self, object_: ComponentObject, behaviour: Element
+    ) -> tuple[ComponentObject, Element] | None:
+        """Return the activity that a behaviour of a state performs, and the object that has it."""
+        if self.performances.find_tokens(behaviour) is not None:
+            return object_, behaviour
+        called = self.graph.targets(behaviour, Edge.CALLS)
+        if called:
+            performer = self.performances.find_performer(object_, called[0])
+            return None if performer is None else (performer, called[0])
+        try:
+            path = name_of(parse_expression(str(behaviour.attrs.get("body", "")))) or ""
+        except ExpressionError:
+            return None
+        *parts, name = path.split(".")
+        holder: ComponentObject | None = object_
+        if parts:
+            holder = self.tree.find_object(".".join(filter(None, (object_.path, *parts))))
+        while holder is not None:
+            scopes = (*holder.list_family(self.graph), *self.graph.ancestors(holder.type_))
+            for scope in scopes:
+                for activity in self.graph.owned(scope):
+                    if activity.kind is Kind.ACTIVITY and activity.name == name and name:
+                        return holder, activity
+            holder = None if parts else holder.owner
+        return None
+
+    def _add_own_activities(self, object_: ComponentObject) -> None:
+        for classifier in object_.list_family(self.graph)[::-1]:
+            for activity in self.graph.targets(classifier, Edge.CLASSIFIER_BEHAVIOR):
+                if activity.kind is not Kind.ACTIVITY:
+                    continue
+                is_main = not object_.path and activity is query.classifier_behavior(
+                    self.graph, object_.type_
+                )
+                names = (
+                    (*object_.path.split("."), activity.name) if object_.path else (activity.name,)
+                )
+                prefix = "" if is_main else _join_names(object_.path, activity.name)
+                run = self.names.new(_join_names(object_.path, f"run_{activity.name or 'it'}"))
+                id = self.performances.add(activity, Caller(object_, names, prefix), run)
+                self.roots.append(Root(id, f.FALSE, f.FALSE, f.TRUE))
+
+    def _add_services(self, object_: ComponentObject) -> None:
+        """Add the activities of an object that something outside the component may perform.
+
+        The environment may start them. Raises ComponentError for an activity without token game
+        that calls or sends something.
+        """
+        for classifier in object_.list_family(self.graph):
+            for activity in self.graph.owned(classifier):
+                if activity.kind is not Kind.ACTIVITY or not self.performances.has_steps(activity):
+                    continue
+                if self.performances.find_tokens(activity) is None:
+                    self._check_isolated(activity)
+                elif self._is_offered(object_, activity):
+                    prefix = _join_names(object_.path, activity.name)
+                    self._add_offered(object_, activity, prefix, is_started=False)
+
+    def _check_isolated(self, activity: Element) -> None:
+        for action in self.graph.subtree(activity):
+            if action.kind is Kind.ACTION and self.graph.targets(action, Edge.CALLS):
+                raise ComponentError(f"'{activity.name}' has no token game")
+
+    def _is_offered(self, object_: ComponentObject, activity: Element) -> bool:
+        """Whether nothing in the component performs the activity, or something outside does."""
+        if (object_.path, activity.id) not in self.performances.performed:
+            return True
+        inside = {copy.activity.id for copy in self.performances.copies.values()}
+        inside |= {machine.element.id for machine in self.machines}
+        return any(
+            inside.isdisjoint(element.id for element in (user, *self.graph.ancestors(user)))
+            for user in self._iter_users(activity)
+        )
+
+    def _iter_users(self, activity: Element) -> Iterator[Element]:
+        """Yield the actions that call an activity, and the bodies of states that name it."""
+        yield from self.graph.sources(activity, Edge.CALLS)
+        for behaviour in self.graph.of_kind(Kind.ACTIVITY):
+            body = behaviour.attrs.get("body")
+            if isinstance(body, str) and last_name(body) == activity.name:
+                yield behaviour
+
+    def _add_offered(
+        self, object_: ComponentObject, activity: Element, prefix: str, *, is_started: bool
+    ) -> None:
+        """Add an activity that the environment starts; *is_started*: also in the first step."""
+        names = (*object_.path.split("."), activity.name) if object_.path else (activity.name,)
+        run = self.names.new(_join_names(object_.path, f"run_{activity.name or 'it'}"))
+        id = self.performances.add(activity, Caller(object_, names, prefix), run)
+        start = self.names.new(_join_names(object_.path, f"start_{activity.name or 'it'}"))
+        self.variables.append(Variable(start, Owner.ENVIRONMENT, BooleanDomain(), activity.id))
+        may_start = f.both(f.var(start), f.either(f.negate(f.var(run)), finish_variable(id)))
+        # Where nothing says so, the environment may have started it before the first step.
+        first = f.TRUE if is_started else f.var(run)
+        self.roots.append(Root(id, may_start, f.FALSE, first))
+
+    def add(self, formula: Formula, class_: Class, origin: str) -> None:
+        """Add a fact about all runs."""
+        self.conjuncts.append(Conjunct(formula, class_, origin, source=Source.DERIVED))
+
+
+def finish_name(id: str) -> str:
+    """Return the name that stands for the end of a performance until all are placed."""
+    return f"finished {id}"
+
+
+def finish_variable(id: str) -> Formula:
+    """Return the placeholder for the end of the performance with a node."""
+    return f.var(finish_name(id))
+
+
+def _join_names(*names: str) -> str:
+    return "_".join(identifier(name) for name in names if name)

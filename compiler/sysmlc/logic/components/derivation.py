@@ -1,0 +1,381 @@
+"""The step relation of a component: all its behaviours, one relation for each feature, and names.
+
+A step is one valuation; all behaviours react to the same step and their reactions are visible in
+the next (synchronous composition). A feature has one next-state relation with all its writers:
+it gets the value of one of those that write in the step, or else keeps its value.
+"""
+
+from collections.abc import Iterator, Mapping
+
+from msgspec import Struct
+from msgspec.structs import replace
+
+from sysmlc.logic import formula as f
+from sysmlc.logic.activities.assumptions import derive_assumptions
+from sysmlc.logic.activities.derivation import derive_run_update, derive_token_updates
+from sysmlc.logic.activities.step_formulas import PerformanceFormulas
+from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.components.arguments import derive_arguments, equals
+from sysmlc.logic.components.component import Component, finish_name
+from sysmlc.logic.components.machines import MachineWrite, PlacedMachine
+from sysmlc.logic.components.objects import Slot
+from sysmlc.logic.components.signals import derive_events
+from sysmlc.logic.composition.structure import join_path
+from sysmlc.logic.contract import (
+    BooleanDomain,
+    Class,
+    Conjunct,
+    Contract,
+    Owner,
+    Source,
+    Variable,
+)
+from sysmlc.logic.feature_writes import WriterIndex, find_label
+from sysmlc.logic.formula import Const, Formula
+from sysmlc.logic.machines.machine import element_id
+from sysmlc.logic.simplification import substitute
+
+
+class Writer(Struct, frozen=True):
+    """A writer of a feature: when it writes, and which value."""
+
+    condition: Formula
+    value: Formula
+    origin: str
+
+
+class PlaceInBehaviour(Struct, frozen=True):
+    """A state or action, its name in the component, and the formula that it is active."""
+
+    name: str
+    origin: str
+    is_active: Formula
+
+
+class ComponentBehaviour(Struct, frozen=True):
+    """The behaviour of a component with everything that it performs, calls and consists of.
+
+    ``contract`` has its runs: guarantees that the compiler derives, and the assumptions that
+    actions end. A variable in ``gaps`` is restricted by the model, but not here; the value is the
+    reason in words. Variables in ``ends`` are gaps too: they tell when an action ends that may take
+    as long as the environment wants. ``writers`` are the writers of the features with several.
+    ``places`` are its states and actions.
+    ``is_of_parts`` is true if the component has no contract of a behaviour of its own.
+    """
+
+    contract: Contract
+    gaps: Mapping[str, str] = {}
+    ends: frozenset[str] = frozenset()
+    writers: Mapping[str, tuple[Writer, ...]] = {}
+    places: tuple[PlaceInBehaviour, ...] = ()
+    is_of_parts: bool = False
+
+
+def describe_component(component: Component, name: str) -> ComponentBehaviour:
+    """Return the behaviour of a component with all features that were named so far.
+
+    *name* is the qualified name of the component. Raises ComponentError.
+    """
+    return _Description(component).describe(name)
+
+
+class _Description:
+    """The step relation of a component in progress."""
+
+    def __init__(self, component: Component) -> None:
+        self.component = component
+        self.graph = component.graph
+        self.tree = component.tree
+        self.performances = component.performances
+        self.machines = component.machines
+        self._roots = component.roots
+        self._conjuncts = list(component.conjuncts)
+
+    def _add(self, formula: Formula, class_: Class, origin: str, text: str = "") -> None:
+        if formula != f.TRUE:
+            self._conjuncts.append(Conjunct(formula, class_, origin, text, source=Source.DERIVED))
+
+    def describe(self, name: str) -> ComponentBehaviour:
+        """Return the behaviour with all features that were named so far. Raises ComponentError."""
+        tree, performances = self.tree, self.performances
+        machine_writes = [
+            (machine, write) for machine in self.machines for write in machine.iter_writes()
+        ]
+        outputs = derive_arguments(tree, performances)
+        written = {write.slot for _, write in machine_writes}
+        written |= {write.slot for write in performances.writes}
+        written |= {slot for slot, *_ in outputs.writes}
+        variables = [tree.read_slot(slot).variable for slot in written]
+        tokens = performances.build(name, self.component.subject.id, iter(variables))
+        starts = {root.id: root.start for root in self._roots}
+        stops = {root.id: root.stop for root in self._roots}
+        formulas = PerformanceFormulas(tokens, starts, stops)
+        finishes = {
+            finish_name(root.id): f.both(
+                f.var(tokens.node(root.id).run), formulas.done_formula(tokens.node(root.id))
+            )
+            for root in self._roots
+        }
+        self._derive_performances(formulas)
+        for machine in self.machines:
+            self._conjuncts += machine.iter_steps()
+        self._conjuncts += outputs.derive(formulas)
+        gaps = dict(performances.gaps) | outputs.gaps
+        writers = self._list_writers(formulas, machine_writes, outputs.writes)
+        gaps |= self._derive_starts(writers, written)
+        gaps |= self._derive_updates(writers, outputs.origins)
+        wiring = derive_events(self.component)
+        self._conjuncts += wiring.conjuncts
+        gaps |= wiring.gaps
+        endings = [
+            replace(conjunct, source=Source.DERIVED) for conjunct in derive_assumptions(formulas)
+        ]
+        replacements = finishes
+        ends = {name: substitute(end, replacements) for name, end in self.component.ends.items()}
+
+        def complete(conjunct: Conjunct) -> Conjunct:
+            formula = substitute(substitute(conjunct.formula, ends), replacements)
+            return replace(conjunct, formula=formula, source=Source.DERIVED)
+
+        all_variables = self._list_variables(
+            formulas, written, wiring.variables, ends, outputs.variables
+        )
+        contract = Contract(
+            name,
+            self.component.subject.id,
+            tuple(all_variables.values()),
+            tuple(endings),
+            tuple(map(complete, self._conjuncts)),
+        )
+        shared = {
+            tree.read_slot(slot).variable.name: tuple(
+                replace(
+                    writer,
+                    condition=substitute(substitute(writer.condition, ends), replacements),
+                )
+                for writer in group
+            )
+            for slot, group in writers.items()
+            if len(group) > 1
+        }
+        return ComponentBehaviour(
+            contract,
+            gaps | performances.long_ends,
+            frozenset(performances.long_ends),
+            shared,
+            tuple(self._list_places(tokens)),
+        )
+
+    def _list_places(self, tokens: TokenGraph) -> Iterator[PlaceInBehaviour]:
+        for machine in self.machines:
+            for state in machine.machine.list_states():
+                element = self.graph[element_id(state.id)]
+                name = join_path(machine.owner.path, element.name)
+                yield PlaceInBehaviour(name, element.id, machine.active_formula(state))
+        names: dict[str, tuple[str, ...]] = {}
+        for action in self.performances.paths:
+            names.setdefault(action.node, action.names)
+        for id, path in names.items():
+            node = tokens.node(id)
+            yield PlaceInBehaviour(".".join(path), node.origin, f.var(node.run))
+
+    def _derive_performances(self, formulas: PerformanceFormulas) -> None:
+        graph = formulas.graph
+        self._conjuncts += derive_token_updates(formulas)
+        first = {root.id: root.first for root in self._roots}
+        for edge in graph.edges:
+            is_first = first.get(edge.region, f.FALSE) if edge.marked else f.FALSE
+            self._add(f.fold_iff(f.var(edge.variable), is_first), Class.INIT, edge.origin)
+        for node in graph.workers():
+            self._add(
+                f.fold_iff(f.var(node.run), first.get(node.id, f.FALSE)), Class.INIT, node.origin
+            )
+            if node.id in first:
+                runs = f.fold_iff(f.prime(f.var(node.run)), formulas.run_formula(node))
+                self._add(runs, Class.SAFETY, node.origin)
+            else:
+                self._conjuncts.append(derive_run_update(formulas, node))
+
+    def _list_writers(
+        self,
+        formulas: PerformanceFormulas,
+        machine_writes: list[tuple[PlacedMachine, MachineWrite]],
+        bound: list[tuple[Slot, str, Formula]],
+    ) -> dict[Slot, list[Writer]]:
+        """Return the writers of each slot. A machine overrides the do behaviours of its states."""
+        writers: dict[Slot, list[Writer]] = {}
+        machine_of_root = {root.id: root.machine for root in self._roots}
+        done_writes: dict[str, list[tuple[Slot, Formula, Formula]]] = {}
+        for write in self.performances.writes:
+            machine = machine_of_root.get(write.root)
+            finishes = formulas.finish_formula(formulas.graph.node(write.node))
+            for condition, value in write.values:
+                when = f.both(finishes, condition)
+                if machine is not None:
+                    done_writes.setdefault(machine.element.id + machine.owner.path, []).append(
+                        (write.slot, when, value)
+                    )
+                    later = [
+                        other.condition
+                        for owner, other in machine_writes
+                        if owner is machine and other.slot == write.slot
+                    ]
+                    when = f.both(when, f.negate(f.either(*later)))
+                writers.setdefault(write.slot, []).append(Writer(when, value, write.origin))
+        for machine, machine_write in machine_writes:
+            earlier = done_writes.get(machine.element.id + machine.owner.path, [])
+            for condition, value in self._follow_writes(machine_write.value, earlier):
+                writers.setdefault(machine_write.slot, []).append(
+                    Writer(f.both(machine_write.condition, condition), value, machine.element.id)
+                )
+        for slot, node, value in bound:
+            finishes = formulas.finish_formula(formulas.graph.node(node))
+            origin = formulas.graph.node(node).origin
+            writers.setdefault(slot, []).append(Writer(finishes, value, origin))
+        return writers
+
+    def _follow_writes(
+        self, value: Formula, earlier: list[tuple[Slot, Formula, Formula]]
+    ) -> Iterator[tuple[Formula, Formula]]:
+        """Yield the cases of a machine's value: after a write of a do behaviour, or without one."""
+        names = {variable.name for variable in f.variables(value)}
+        others: list[Formula] = []
+        for slot, when, written in earlier:
+            name = self.tree.read_slot(slot).variable.name
+            if name in names:
+                yield when, substitute(value, {name: written})
+                others.append(when)
+        yield f.negate(f.either(*others)), value
+
+    def _derive_starts(
+        self, writers: Mapping[Slot, list[Writer]], written: set[Slot]
+    ) -> dict[str, str]:
+        """Add the initial values; return the features that two machines set at their start."""
+        gaps: dict[str, str] = {}
+        decided: set[str] = set()
+        for machine in self.machines:
+            names = [machine.variables[name] for name in machine.list_start_writes()]
+            clash = [name for name in names if name in decided]
+            decided.update(names)
+            for conjunct in machine.iter_starts():
+                read = {variable.name for variable in f.variables(conjunct.formula)}
+                if read.isdisjoint(clash):
+                    self._conjuncts.append(conjunct)
+            for name in clash:
+                gaps[name] = f"several behaviours set '{name}' at their start"
+        for slot in writers:
+            feature = self.tree.read_slot(slot)
+            name = feature.variable.name
+            if feature.default is not None and name not in decided:
+                self._add(
+                    equals(feature.variable, Const(feature.default)),
+                    Class.INIT,
+                    feature.variable.origin,
+                )
+        for store, _ in self.performances.locals:
+            if store.first is not None:
+                self._add(
+                    equals(store.variable, Const(store.first)), Class.INIT, store.variable.origin
+                )
+        return gaps
+
+    def _derive_updates(
+        self, writers: Mapping[Slot, list[Writer]], bound: set[str]
+    ) -> dict[str, str]:
+        """Add the next-state relation of each feature; return those with other writers."""
+        index = WriterIndex(self.graph)
+        described = bound | {write.origin for write in self.performances.writes}
+        described |= {id for machine in self.machines for id in machine.written}
+        described -= self.component.released
+        gaps: dict[str, str] = {}
+        for slot, feature in self.tree.used_slots.items():
+            name = feature.variable.name
+            others = (
+                writer
+                for element in feature.elements
+                for writer in index.iter_writers(element)
+                if writer.id not in described
+            )
+            other = next(others, None)
+            if other is not None:
+                label = find_label(self.graph, other)
+                gaps[name] = (
+                    f"'{name}' is assigned by '{label}', which the check does not combine with it"
+                )
+                continue
+            group = writers.get(slot, [])
+            if group:
+                when = f.either(*(writer.condition for writer in group))
+                values = (
+                    f.both(writer.condition, equals(feature.variable, writer.value, is_next=True))
+                    for writer in group
+                )
+                keeps = f.both(f.negate(when), equals(feature.variable, f.var(name), is_next=True))
+                text = f"'{name}' keeps its value unless it is assigned."
+                self._add(f.either(*values, keeps), Class.SAFETY, feature.variable.origin, text)
+        return gaps
+
+    def _list_variables(
+        self,
+        formulas: PerformanceFormulas,
+        written: set[Slot],
+        events: list[Variable],
+        ends: Mapping[str, Formula],
+        arguments: list[Variable],
+    ) -> dict[str, Variable]:
+        variables = [*events, *self.component.variables, *arguments]
+        for slot, feature in self.tree.used_slots.items():
+            owner = Owner.SYSTEM if slot in written else Owner.ENVIRONMENT
+            variables.append(replace(feature.variable, owner=owner))
+        for machine in self.machines:
+            variables += (
+                object_ for object_ in machine.list_variables() if object_.name not in ends
+            )
+        graph = formulas.graph
+        variables += graph.inputs
+        variables += (store.variable for store, _ in self.performances.locals)
+        for name, origin in (
+            *((node.run, node.origin) for node in graph.workers()),
+            *((edge.variable, edge.origin) for edge in graph.edges),
+            *((name, graph.activity) for _, name in graph.quiets),
+        ):
+            variables.append(Variable(name, Owner.SYSTEM, BooleanDomain(), origin))
+        by_name: dict[str, Variable] = {}
+        for variable in variables:
+            by_name.setdefault(variable.name, variable)
+        return by_name
+
+
+def add_stated_conjuncts(behaviour: ComponentBehaviour, stated: Contract) -> ComponentBehaviour:
+    """Return the behaviour with the formulas that the author wrote on its own contract.
+
+    *stated* is the contract of the component's own behaviour. Formulas about variables that the
+    behaviour of the component does not have are left out; they prove nothing.
+    """
+    contract = behaviour.contract
+    names = {variable.name for variable in contract.variables}
+    formulas = (*stated.assumptions, *stated.guarantees)
+    origins = {conjunct.origin for conjunct in formulas if not conjunct.is_derived}
+    # History bits store the past for a formula of the author.
+    bits = [
+        variable
+        for variable in stated.variables
+        if variable.name not in names and variable.origin in origins
+    ]
+    variables = names | {variable.name for variable in bits}
+
+    def select(conjuncts: tuple[Conjunct, ...]) -> tuple[Conjunct, ...]:
+        return tuple(
+            conjunct
+            for conjunct in conjuncts
+            if conjunct.origin in origins
+            and variables.issuperset(variable.name for variable in f.variables(conjunct.formula))
+        )
+
+    merged = replace(
+        contract,
+        variables=(*contract.variables, *bits),
+        assumptions=(*contract.assumptions, *select(stated.assumptions)),
+        guarantees=(*contract.guarantees, *select(stated.guarantees)),
+    )
+    return replace(behaviour, contract=merged)

@@ -1,0 +1,253 @@
+"""State machines of the objects of a component: moves, writes of features, and do behaviours."""
+
+from collections.abc import Iterator, Mapping
+
+from msgspec import Struct
+from msgspec.structs import replace
+
+from sysmlc.diagnostics import Sink
+from sysmlc.ir import Edge, Element, Kind
+from sysmlc.logic import formula as f
+from sysmlc.logic.components.objects import (
+    ComponentError,
+    ComponentObject,
+    ObjectTree,
+    Slot,
+    is_value,
+)
+from sysmlc.logic.composition.naming import rename_variables
+from sysmlc.logic.contract import Class, Conjunct, EnumerationDomain, Variable
+from sysmlc.logic.formula import Const, Formula, Literal
+from sysmlc.logic.machines.derivation import (
+    describe_exploration,
+    iter_change_conditions,
+    iter_choices_on_path,
+)
+from sysmlc.logic.machines.machine import Assign, Machine, Vertex, element_id
+from sysmlc.logic.machines.moves import (
+    Exploration,
+    explore_machine,
+    is_active_formula,
+    is_chosen_formula,
+)
+from sysmlc.logic.machines.reader import MachineOptions, read_machine
+
+EVENT = "event"
+"""The variable of a machine that names the event which occurs."""
+
+
+class MachineWrite(Struct, frozen=True):
+    """A write of a slot by a machine: the condition about a step, and the value."""
+
+    slot: Slot
+    condition: Formula
+    value: Formula
+
+
+class PlacedMachine(Struct, frozen=True):
+    """A state machine of an object, with its variables in the component."""
+
+    owner: ComponentObject
+    element: Element
+    exploration: Exploration
+    variables: Mapping[str, str]
+    slots: Mapping[str, Slot]
+    """The slots of the features that the machine names, by its own variables."""
+    written: frozenset[str]
+    """Ids of the effects, entries and exits whose assignments ``iter_writes`` yields."""
+
+    @property
+    def machine(self) -> Machine:
+        """The machine, in its own variables."""
+        return self.exploration.machine
+
+    def rename(self, formula: Formula) -> Formula:
+        """Return a formula about the machine in the variables of the component."""
+        return rename_variables(formula, self.variables)
+
+    @property
+    def events(self) -> tuple[str, ...]:
+        """The literals of the events to which the machine reacts."""
+        for variable in self.machine.variables:
+            if variable.name == EVENT and isinstance(variable.domain, EnumerationDomain):
+                return variable.domain.literals
+        return ()
+
+    def list_variables(self) -> Iterator[Variable]:
+        """Yield the variables of the machine other than features and the event."""
+        for variable in self.machine.variables:
+            if variable.name not in self.slots and variable.name != EVENT:
+                yield replace(variable, name=self.variables[variable.name])
+
+    def iter_steps(self) -> Iterator[Conjunct]:
+        """Yield how the machine moves, without the values of features and without its start."""
+        for conjunct in describe_exploration(self._drop_features(), "").guarantees:
+            if conjunct.class_ is not Class.INIT:
+                yield replace(conjunct, formula=self.rename(conjunct.formula))
+
+    def iter_starts(self) -> Iterator[Conjunct]:
+        """Yield how the machine starts, with the values that its first entries write."""
+        start = replace(
+            self.exploration,
+            moves=(),
+            machine=replace(self.machine, assigned=tuple(self.list_start_writes())),
+        )
+        for conjunct in describe_exploration(start, "").guarantees:
+            if conjunct.class_ is Class.INIT:
+                yield replace(conjunct, formula=self.rename(conjunct.formula))
+
+    def list_start_writes(self) -> list[str]:
+        """List the machine's own variables that its start sets to other values than the default."""
+        initial: Mapping[str, Literal] = self.machine.initial
+        return [
+            name
+            for name in self.machine.assigned
+            if name in initial
+            and any(
+                path.values.get(name) != Const(initial[name]) for path in self.exploration.starts
+            )
+        ]
+
+    def _drop_features(self) -> Exploration:
+        moves = tuple(
+            replace(move, paths=tuple(replace(path, values={}) for path in move.paths))
+            for move in self.exploration.moves
+        )
+        machine = replace(self.machine, assigned=())
+        return replace(self.exploration, moves=moves, machine=machine)
+
+    def iter_writes(self) -> Iterator[MachineWrite]:
+        """Yield the writes of features by the transitions of the machine."""
+        for move in self.exploration.moves:
+            for path in move.paths:
+                choices = (
+                    is_chosen_formula(*pick)
+                    for pick in iter_choices_on_path(self.exploration, move, path)
+                )
+                condition = self.rename(f.both(move.fires, path.when, *choices))
+                for name, value in path.values.items():
+                    yield MachineWrite(self.slots[name], condition, self.rename(value))
+
+    # -- states ------------------------------------------------------------------------------------
+
+    def active_formula(self, state: Vertex) -> Formula:
+        """The state is active."""
+        return self.rename(is_active_formula(self.machine, state.id))
+
+    def entered_formula(self, state: Vertex) -> Formula:
+        """A transition enters the state in this step."""
+        region = self.machine.regions[state.region].variable
+        changes = (
+            change
+            for move in self.exploration.moves
+            for change in iter_change_conditions(
+                self.exploration,
+                move,
+                region,
+                lambda path, name: path.entered.get(name) == state.literal,
+            )
+        )
+        return self.rename(f.either(*changes))
+
+    def left_formula(self, state: Vertex) -> Formula:
+        """A transition leaves the state in this step."""
+        changes = (
+            change
+            for move in self.exploration.moves
+            for change in iter_change_conditions(
+                self.exploration, move, state.id, lambda path, id: id in path.left_states
+            )
+        )
+        return self.rename(f.either(*changes))
+
+    def list_do_states(self, tree: ObjectTree) -> Iterator[tuple[Vertex, list[Element]]]:
+        """Yield the states with do behaviours."""
+        for state in self.machine.list_states():
+            if state.do:
+                yield state, list(tree.graph.targets(tree.graph[element_id(state.id)], Edge.DO))
+
+
+def find_machines(tree: ObjectTree, object_: ComponentObject) -> list[Element]:
+    """Return the state machines of an object, which its type has or inherits.
+
+    Raises ComponentError if a type has machines and inherits others.
+    """
+    groups: list[list[Element]] = []
+    for classifier in object_.list_family(tree.graph):
+        machines = [
+            element
+            for element in tree.graph.owned(classifier)
+            if element.kind is Kind.STATE_MACHINE
+            and element.subkind != "protocol"
+            and any(region.kind is Kind.REGION for region in tree.graph.owned(element))
+            and not any(user.kind is Kind.STATE for user in tree.graph.sources(element, Edge.CALLS))
+        ]
+        groups += [machines] if machines else []
+    if len(groups) > 1:
+        raise ComponentError(f"'{object_.type_.name}' has state machines and inherits others")
+    return groups[0] if groups else []
+
+
+def place_machine(
+    tree: ObjectTree,
+    object_: ComponentObject,
+    element: Element,
+    prefix: str,
+    event: str,
+    options: MachineOptions,
+) -> PlacedMachine | None:
+    """Read a machine of an object; return None if no steps can be derived from it.
+
+    *prefix* stands before its own variables; *event* is the variable of the object's event. Raises
+    ComponentError.
+    """
+    machine = read_machine(tree.graph, element, Sink(), options, classifier=object_.type_)
+    exploration = None if machine is None else explore_machine(tree.graph, machine, Sink())
+    if machine is None or exploration is None:
+        return None
+    variables: dict[str, str] = {EVENT: event}
+    slots: dict[str, Slot] = {}
+    for variable in machine.variables:
+        slot = _find_slot(tree, object_, element, variable)
+        if slot is not None:
+            slots[variable.name] = slot
+            variables[variable.name] = tree.read_slot(slot).variable.name
+        elif variable.name != EVENT:
+            name = f"{prefix}_{variable.name}" if prefix else variable.name
+            variables[variable.name] = tree.names.new(name)
+    for state in machine.list_states():
+        if state.done:
+            # What the state does decides its end, not the environment.
+            variables[state.done] = f"end of {prefix} {state.done}"
+    return PlacedMachine(
+        object_, element, exploration, variables, slots, frozenset(_list_written_ids(machine))
+    )
+
+
+def _find_slot(
+    tree: ObjectTree, object_: ComponentObject, machine: Element, variable: Variable
+) -> Slot | None:
+    element = tree.graph.get(variable.origin)
+    if element is None or not is_value(element) or machine in tree.graph.ancestors(element):
+        return None
+    slot = tree.find_slot(object_, element, variable.name)
+    if slot is not None and tree.read_slot(slot).variable.domain != variable.domain:
+        raise ComponentError(f"'{variable.name}' has other values in '{machine.name}'")
+    return slot
+
+
+def _list_written_ids(machine: Machine) -> Iterator[str]:
+    actions = [
+        action
+        for state in machine.vertices.values()
+        for group in (state.entry, state.exit)
+        for action in group
+    ]
+    actions += [action for move in machine.list_transitions() for action in move.effect]
+    actions += [
+        action
+        for move in machine.list_transitions()
+        for partner in move.join_partners
+        for action in partner.effect
+    ]
+    return (action.origin for action in actions if isinstance(action, Assign))

@@ -1,0 +1,400 @@
+"""Performances: the token games of activities, each call expanded to a copy of what it calls.
+
+The performance of an activity is a structured node that others start and stop: the state whose do
+behaviour it is, the object whose own behaviour it is, or the environment. A call action is a
+structured node too, with a copy of the token game of the called activity as its content (fUML
+creates an execution for each call). All performances of a component are one token graph.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from msgspec import Struct
+from msgspec.structs import replace
+
+from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.logic import formula as f
+from sysmlc.logic.activities.token_graph import (
+    ACTIVITY_REGION,
+    Duration,
+    Guard,
+    Interruptible,
+    NodeKind,
+    Store,
+    TokenEdge,
+    TokenGraph,
+    TokenNode,
+    Write,
+)
+from sysmlc.logic.components.objects import (
+    ComponentError,
+    ComponentObject,
+    ObjectTree,
+    Slot,
+    is_value,
+)
+from sysmlc.logic.composition.naming import rename_variables
+from sysmlc.logic.composition.structure import find_drawn_activity
+from sysmlc.logic.contract import BooleanDomain, Owner, Variable
+from sysmlc.logic.expressions.expression import Assignment, ExpressionError
+from sysmlc.logic.expressions.parsing import parse_effect
+from sysmlc.logic.formula import Formula
+from sysmlc.logic.identifiers import identifier
+
+_COPY_SEPARATOR = "\x1e"
+"""Separates the id of a copy from the id of an element in it."""
+
+
+class Caller(Struct, frozen=True):
+    """Where an activity is performed: the object, the call action if any, and the names so far."""
+
+    owner: ComponentObject
+    names: tuple[str, ...]
+    prefix: str = ""
+    """Prefix of the variables; empty for the behaviour whose contract the component has."""
+    call: Element | None = None
+    parent: "Copy | None" = None
+
+
+@dataclass(slots=True)
+class Copy:
+    """One copy of an activity in the token graph: its root node, and its names for variables."""
+
+    id: str
+    activity: Element
+    caller: Caller
+    variables: dict[str, str] = field(default_factory=dict)
+    """Variables of the component by the names in the activity's own token graph."""
+    parameters: dict[str, Variable] = field(default_factory=dict)
+    """Variables of the parameters by name."""
+
+
+class PlacedWrite(Struct, frozen=True):
+    """A write of a slot by a node of a performance; ``root`` is the id of the performance."""
+
+    slot: Slot
+    node: str
+    values: tuple[tuple[Formula, Formula], ...]
+    origin: str
+    root: str
+
+
+class ActionPath(Struct, frozen=True):
+    """An action with the names of the performances around it, outermost first."""
+
+    names: tuple[str, ...]
+    node: str
+
+
+class Performances:
+    """Collects the performances of a component as one token graph."""
+
+    def __init__(self, tree: ObjectTree) -> None:
+        self._tree = tree
+        self._graph: Graph = tree.graph
+        self._tokens = {tokens.activity: tokens for tokens in self._graph.derived(TokenGraph)}
+        self.nodes: list[TokenNode] = []
+        self.edges: list[TokenEdge] = []
+        self.interruptibles: list[Interruptible] = []
+        self.quiets: list[tuple[str, str]] = []
+        self.rests: set[str] = set()
+        self.inputs: dict[str, Variable] = {}
+        self.locals: list[tuple[Store, str]] = []
+        """Variables of activities, each with the id of the node that starts them."""
+        self.writes: list[PlacedWrite] = []
+        self.paths: list[ActionPath] = []
+        self.copies: dict[str, Copy] = {}
+        self.performed: set[tuple[str, str]] = set()
+        """The activities that something in the component performs: paths of objects, and ids."""
+        self.aliases: dict[str, str] = {}
+        """Nodes by the inputs that would end them if nothing in the model did."""
+        self.gaps: dict[str, str] = {}
+        self.long_ends: dict[str, str] = {}
+
+    def find_tokens(self, activity: Element) -> TokenGraph | None:
+        """Return the token game of an activity, its own or that of the activity it is drawn as."""
+        own = self._tokens.get(activity.id)
+        return own or self._tokens.get(find_drawn_activity(self._graph, activity).id)
+
+    def add(self, activity: Element, caller: Caller, run: str) -> str:
+        """Add the performance of an activity and return the id of its node.
+
+        *run* is the variable that is true while the performance runs. An activity without steps
+        ends when the environment ends it.
+        """
+        id = self._new_id(activity.id)
+        tokens = self.find_tokens(activity)
+        label, name = f"action '{activity.name}'", caller.names[-1] if caller.names else ""
+        done = None
+        kind = NodeKind.ACTION if tokens is None else NodeKind.STRUCTURED
+        if tokens is None:
+            done = f.var(self._declare_input(f"done_{name or 'do'}", caller.prefix, activity.id))
+        self.nodes.append(TokenNode(id, kind, label, activity.id, run=run, done=done))
+        self.paths.append(ActionPath(caller.names, id))
+        if tokens is not None:
+            self._expand(tokens, activity, caller, id, (activity.id,))
+        return id
+
+    def build(self, component: str, origin: str, written: Iterator[Variable]) -> TokenGraph:
+        """Return the token graph; *written* are the variables that the component writes."""
+        return TokenGraph(
+            activity=origin,
+            component=component,
+            label="the component",
+            nodes=tuple(self.nodes),
+            edges=tuple(self.edges),
+            inputs=tuple(self.inputs.values()),
+            interruptibles=tuple(self.interruptibles),
+            rests=frozenset(self.rests),
+            quiets=tuple(self.quiets),
+            stores=(
+                *(Store(variable, ()) for variable in written),
+                *(store for store, _ in self.locals),
+            ),
+        )
+
+    # -- names -------------------------------------------------------------------------------------
+
+    def _new_id(self, id: str) -> str:
+        return f"{len(self.copies)}.{len(self.nodes)}{_COPY_SEPARATOR}{id}"
+
+    def name_variable(self, name: str, prefix: str) -> str:
+        """Return a new name for a variable of a behaviour."""
+        return self._tree.names.new(f"{prefix}_{name}" if prefix else name)
+
+    def _declare_input(self, name: str, prefix: str, origin: str) -> str:
+        variable = self.name_variable(name, prefix)
+        self.inputs[variable] = Variable(variable, Owner.ENVIRONMENT, BooleanDomain(), origin)
+        return variable
+
+    # -- copies ------------------------------------------------------------------------------------
+
+    def _expand(
+        self,
+        tokens: TokenGraph,
+        activity: Element,
+        caller: Caller,
+        root: str,
+        around: tuple[str, ...],
+    ) -> None:
+        copy = Copy(root, activity, caller)
+        self.copies[root] = copy
+        self.performed.add((caller.owner.path, activity.id))
+        ids = {node.id: f"{root}{_COPY_SEPARATOR}{node.id}" for node in tokens.nodes}
+        regions = {**ids, ACTIVITY_REGION: root}
+        self._name_variables(tokens, copy)
+        for node in tokens.nodes:
+            self._add_node(node, ids, regions, copy, around)
+        rests = tokens.regions() if tokens.rests is None else tokens.rests
+        self.rests.update(regions[region] for region in rests)
+        for edge in tokens.edges:
+            self.edges.append(
+                replace(
+                    edge,
+                    id=f"{root}{_COPY_SEPARATOR}{edge.id}",
+                    variable=copy.variables[edge.variable],
+                    source=ids[edge.source],
+                    target=ids[edge.target],
+                    region=regions[edge.region],
+                    guard=_rename_guard(edge.guard, copy),
+                    interrupts=f"{root}{_COPY_SEPARATOR}{edge.interrupts}" * bool(edge.interrupts),
+                    listens=f"{root}{_COPY_SEPARATOR}{edge.listens}" * bool(edge.listens),
+                )
+            )
+        for group in tokens.interruptibles:
+            self.interruptibles.append(
+                replace(
+                    group,
+                    id=f"{root}{_COPY_SEPARATOR}{group.id}",
+                    nodes=tuple(ids[node] for node in group.nodes),
+                )
+            )
+        self.quiets += [(regions[region], copy.variables[name]) for region, name in tokens.quiets]
+        for store in (*tokens.stores, *tokens.shared):
+            self._add_store(store, copy, ids)
+
+    def _name_variables(self, tokens: TokenGraph, copy: Copy) -> None:
+        prefix, variables = copy.caller.prefix, copy.variables
+        for name in (
+            *(node.run for node in tokens.workers()),
+            *(edge.variable for edge in tokens.edges),
+            *(name for _, name in tokens.quiets),
+        ):
+            variables[name] = self.name_variable(name, prefix)
+        stored = (store.variable for store in (*tokens.stores, *tokens.shared))
+        for variable in (*stored, *tokens.inputs, *tokens.shared_inputs):
+            if variable.name not in variables:
+                variables[variable.name] = self._find_variable(variable, tokens, copy)
+
+    def _find_variable(self, variable: Variable, tokens: TokenGraph, copy: Copy) -> str:
+        """Return the variable of the component for an input or a written variable of an activity.
+
+        A feature has the variable of the object to which it belongs.
+        """
+        element = self._graph.get(variable.origin)
+        is_own = element is not None and copy.activity in self._graph.ancestors(element)
+        if element is not None and is_value(element) and variable.name not in tokens.pulses:
+            slot = self._tree.find_slot(copy.caller.owner, element, variable.name)
+            if slot is not None:
+                shared = self._tree.read_slot(slot).variable
+                if shared.domain == variable.domain:
+                    return shared.name
+                reason = f"'{variable.name}' has other values in '{copy.activity.name}'"
+                self.gaps[shared.name] = reason
+            elif not is_own and self._is_of_object(element):
+                self.gaps[variable.name] = f"it is not known whose feature '{variable.name}' is"
+        name = self.name_variable(variable.name, copy.caller.prefix)
+        self.inputs[name] = replace(variable, name=name, owner=Owner.ENVIRONMENT)
+        if is_own and element is not None and is_value(element):
+            copy.parameters[element.name] = self.inputs[name]
+        return name
+
+    def _is_of_object(self, feature: Element) -> bool:
+        """Whether an object has the feature, and not what an event or a flow brings."""
+        owner = self._graph.owner(feature)
+        return owner is not None and owner.kind in (Kind.CLASS, Kind.COMPONENT)
+
+    def _add_store(self, store: Store, copy: Copy, ids: Mapping[str, str]) -> None:
+        name = copy.variables[store.variable.name]
+        element = self._graph.get(store.variable.origin)
+        slot: Slot | None = None
+        if element is not None:
+            slot = self._tree.find_slot(copy.caller.owner, element, store.variable.name)
+        writes = [_rename_write(write, copy, ids) for write in store.writes]
+        if slot is not None and self._tree.read_slot(slot).variable.name == name:
+            for write in writes:
+                origin = write.node.rpartition(_COPY_SEPARATOR)[2]
+                root = _COPY_SEPARATOR.join(copy.id.split(_COPY_SEPARATOR)[:2])
+                self.writes.append(PlacedWrite(slot, write.node, write.values, origin, root))
+        elif slot is None and name in self.inputs:
+            variable = replace(self.inputs.pop(name), owner=Owner.SYSTEM)
+            if element is not None:
+                copy.parameters[element.name] = variable
+            self.locals.append((Store(variable, tuple(writes), store.first, local=True), copy.id))
+
+    # -- nodes -------------------------------------------------------------------------------------
+
+    def _add_node(
+        self,
+        node: TokenNode,
+        ids: Mapping[str, str],
+        regions: Mapping[str, str],
+        copy: Copy,
+        around: tuple[str, ...],
+    ) -> None:
+        element = self._graph[node.origin]
+        run = copy.variables[node.run] if node.run else ""
+        done = None if node.done is None else rename_variables(node.done, copy.variables)
+        new = replace(node, id=ids[node.id], region=regions[node.region], run=run, done=done)
+        is_work = node.kind is NodeKind.ACTION and bool(node.run)
+        names = (*copy.caller.names, element.name)
+        if is_work and element.name:
+            self.paths.append(ActionPath(names, new.id))
+        if is_work and self._graph.targets(element, Edge.CALLS) and _is_call(element):
+            new = self._add_call(new, element, copy, names, around)
+        elif is_work and node.done is not None and takes_one_step(element):
+            self._drop_end(new)
+            new = replace(new, duration=Duration.PULSE, done=None)
+        self.nodes.append(new)
+
+    def _add_call(
+        self,
+        node: TokenNode,
+        element: Element,
+        copy: Copy,
+        names: tuple[str, ...],
+        around: tuple[str, ...],
+    ) -> TokenNode:
+        """Return the node of a call, with a copy of what it calls as its content if possible."""
+        called = self._graph.targets(element, Edge.CALLS)
+        activity = called[0] if len(called) == 1 else None
+        tokens = None if activity is None else self.find_tokens(activity)
+        has_steps = any(self.has_steps(behaviour) for behaviour in called)
+        object_ = None if activity is None else self.find_performer(copy.caller.owner, activity)
+        reason = ""
+        if node.duration is not Duration.TIMED:
+            reason = f"'{node.label}' does not wait for its end"
+        elif activity is None or tokens is None or object_ is None:
+            reason = f"the check does not know when {node.label} ends, which has steps of its own"
+        elif activity.id in around:
+            raise ComponentError(f"'{activity.name}' calls itself")
+        if reason:
+            if has_steps:
+                self.gaps[node.run] = reason
+                for variable in f.variables(node.done) if node.done is not None else ():
+                    self.long_ends[variable.name] = reason
+            return node
+        assert activity is not None
+        assert tokens is not None
+        assert object_ is not None
+        self._drop_end(node)
+        if object_.path != copy.caller.owner.path:
+            self.paths.append(ActionPath((*object_.path.split("."), activity.name), node.id))
+        elif activity.name != element.name:
+            self.paths.append(ActionPath((*names[:-1], activity.name), node.id))
+        prefix = "_".join(
+            filter(None, (copy.caller.prefix, identifier(element.name or activity.name)))
+        )
+        caller = Caller(object_, names, prefix, element, copy)
+        self._expand(tokens, activity, caller, node.id, (*around, activity.id))
+        return replace(node, kind=NodeKind.STRUCTURED, done=None)
+
+    def _drop_end(self, node: TokenNode) -> None:
+        """Remove the input that ends a node, unless something else reads it."""
+        for variable in f.variables(node.done) if node.done is not None else ():
+            if "done_" in variable.name and variable.name in self.inputs:
+                del self.inputs[variable.name]
+                self.aliases[variable.name] = node.id
+
+    def has_steps(self, behaviour: Element) -> bool:
+        """Whether an activity is drawn with actions."""
+        drawn = find_drawn_activity(self._graph, behaviour)
+        return any(element.kind is Kind.ACTION for element in self._graph.owned(drawn))
+
+    def find_performer(self, start: ComponentObject, activity: Element) -> ComponentObject | None:
+        """Return the object that performs an activity which an object calls.
+
+        It is the object itself or one around it that has the activity, or else the only part that
+        has it. An activity of no classifier is performed by the caller.
+        """
+        owner = self._graph.owner(activity)
+        if owner is None or owner.kind is Kind.PACKAGE:
+            return start
+        object_: ComponentObject | None = start
+        while object_ is not None:
+            if owner in object_.list_family(self._graph) or owner in self._graph.ancestors(
+                object_.type_
+            ):
+                return object_
+            object_ = object_.owner
+        parts = [part for part in self._tree.objects if owner in part.list_family(self._graph)]
+        return parts[0] if len(parts) == 1 else None
+
+
+def _is_call(element: Element) -> bool:
+    return element.subkind in ("call-behavior", "call-operation", "")
+
+
+def takes_one_step(action: Element) -> bool:
+    """Whether the body of an action consists of assignments alone."""
+    body = action.attrs.get("body")
+    if not isinstance(body, str) or ":=" not in body:
+        return False
+    try:
+        return all(isinstance(statement, Assignment) for statement in parse_effect(body))
+    except ExpressionError:
+        return False
+
+
+def _rename_guard(guard: Guard | None, copy: Copy) -> Guard | None:
+    if guard is None or guard.condition is None:
+        return guard
+    return replace(guard, condition=rename_variables(guard.condition, copy.variables))
+
+
+def _rename_write(write: Write, copy: Copy, ids: Mapping[str, str]) -> Write:
+    values = tuple(
+        (rename_variables(condition, copy.variables), rename_variables(value, copy.variables))
+        for condition, value in write.values
+    )
+    return replace(write, node=ids[write.node], values=values)

@@ -1,0 +1,385 @@
+"""Random blocks in SysML v2, and an explicit-state interpreter that reads no contract.
+
+A block has two Booleans, a state machine whose states perform activities, and may perform an
+activity by itself. A step of an activity is an elementary action, an assignment, a call of another
+activity, or a fork of two such steps and their join.
+"""
+
+from collections.abc import Iterator
+from itertools import chain, combinations, product
+from random import Random
+
+from msgspec import Struct
+
+FEATURES = ("b0", "b1")
+EVENTS = ("E0", "E1")
+
+
+class Step(Struct, frozen=True):
+    """A step of an activity: ``kind`` is elementary, assign, call or fork."""
+
+    kind: str
+    name: str
+    feature: str = ""
+    value: bool = False
+    called: str = ""
+    branches: tuple["Step", ...] = ()
+
+
+class Move(Struct, frozen=True):
+    """A transition; without event it is a completion transition."""
+
+    source: str
+    target: str
+    event: str
+    guard: str
+    effect: tuple[str, str] | None
+
+
+class Block(Struct, frozen=True):
+    """A random block."""
+
+    activities: dict[str, tuple[Step, ...]]
+    do: dict[str, str]
+    moves: tuple[Move, ...]
+    own: str
+    states: tuple[str, ...]
+
+
+def make_block(random: Random) -> Block:
+    """Return a random block."""
+    names = [f"a{number}" for number in range(3)]
+    activities = {
+        name: tuple(
+            _make_step(random, f"{name}s{position}", names[index + 1 :], can_fork=True)
+            for position in range(random.randint(1, 2))
+        )
+        for index, name in enumerate(names)
+    }
+    states = ("S0", "S1", "S2")[: random.randint(2, 3)]
+    # Each activity is performed in one place, so that its name is unique; calls have copies.
+    roots = random.sample(names, 3)
+    do = {state: roots.pop() for state in states[:2] if random.random() < 0.7}
+    moves = tuple(_make_move(random, states) for _ in range(random.randint(2, 3)))
+    # A feature that nothing assigns counts as an input.
+    moves += tuple(
+        Move(
+            random.choice(states), random.choice(states), random.choice(EVENTS), "", (name, "true")
+        )
+        for name in FEATURES
+    )
+    own = roots.pop() if random.random() < 0.4 else ""
+    used = _list_performed(activities, [*do.values(), own])
+    performed = {name: activities[name] for name in names if name in used}
+    return Block(performed, do, moves, own, states)
+
+
+def _list_performed(activities: dict[str, tuple[Step, ...]], roots: list[str]) -> set[str]:
+    """Return the activities that are performed or called."""
+    used, worklist = set(), [name for name in roots if name]
+    while worklist:
+        name = worklist.pop()
+        used.add(name)
+        steps = activities[name]
+        inner = [branch for step in steps for branch in step.branches]
+        worklist += [step.called for step in (*steps, *inner) if step.called]
+    return used
+
+
+def _make_step(random: Random, name: str, others: list[str], *, can_fork: bool) -> Step:
+    kinds = ["elementary", "assign", *(["call"] if others else []), *(["fork"] * can_fork)]
+    kind = random.choice(kinds)
+    if kind == "fork":
+        branches = tuple(
+            _make_step(random, f"{name}{letter}", others, can_fork=False) for letter in "xy"
+        )
+        return Step(kind, name, branches=branches)
+    called = random.choice(others) if kind == "call" else ""
+    return Step(kind, name, random.choice(FEATURES), random.random() < 0.5, called)
+
+
+def _make_move(random: Random, states: tuple[str, ...]) -> Move:
+    guards = ("", "", "b0", "b1", "not b0")
+    values = ("true", "false", "b0", "b1", "not b1")
+    effect = (random.choice(FEATURES), random.choice(values)) if random.random() < 0.6 else None
+    event = random.choice(("", *EVENTS))
+    return Move(random.choice(states), random.choice(states), event, random.choice(guards), effect)
+
+
+# -- text --------------------------------------------------------------------------------------
+
+
+def write_block(block: Block) -> str:
+    """Return the block as SysML v2, with a requirement that names all its features."""
+    lines = ["package P {", "private import ScalarValues::*;", "item def E0; item def E1;"]
+    lines += ["part def B {", *(f"attribute {name} : Boolean := false;" for name in FEATURES)]
+    for name, steps in block.activities.items():
+        own = "perform " if name == block.own else ""
+        lines += [f"{own}action {name} {{", *_write_steps(steps), "}"]
+    lines += ["exhibit state M {", "entry; then S0;"]
+    for state in block.states:
+        do = f" do {block.do[state]};" if state in block.do else ""
+        lines.append(f"state {state} {{{do} }}")
+    for move in block.moves:
+        accept = f" accept {move.event}" if move.event else ""
+        guard = f" if {move.guard}" if move.guard else ""
+        effect = f" do assign {move.effect[0]} := {move.effect[1]}" if move.effect else ""
+        lines.append(f"transition first {move.source}{accept}{guard}{effect} then {move.target};")
+    return "\n".join([*lines, "}", "}", "}", ""])
+
+
+def _write_steps(steps: tuple[Step, ...]) -> Iterator[str]:
+    """Yield the lines of an activity: each step is reached from the end of the one before."""
+    yield f"first start then {_entry_of(steps[0])};"
+    for position, step in enumerate(steps):
+        following = "done" if position + 1 == len(steps) else _entry_of(steps[position + 1])
+        if step.kind == "fork":
+            join = f"j_{step.name}"
+            yield f"fork {_entry_of(step)}; join {join};"
+            for branch in step.branches:
+                yield _write_action(branch)
+                yield f"first {_entry_of(step)} then {branch.name};"
+                yield f"first {branch.name} then {join};"
+            yield f"first {join} then {following};"
+        else:
+            yield _write_action(step)
+            yield f"first {step.name} then {following};"
+
+
+def _entry_of(step: Step) -> str:
+    return f"f_{step.name}" if step.kind == "fork" else step.name
+
+
+def _write_action(step: Step) -> str:
+    if step.kind == "assign":
+        return f"action {step.name} assign {step.feature} := {str(step.value).lower()};"
+    if step.kind == "call":
+        return f"perform action {step.name} references {step.called};"
+    return f"action {step.name};"
+
+
+# -- activities --------------------------------------------------------------------------------
+
+# A performance is a set of marks. A mark is a position and what is there: a token on the flow into
+# the step ("flow"), the performance of the step ("run", with the inner performance of a call), or a
+# token that waits for the join ("wait"). A position is the index of a step, and of a branch or -1.
+
+
+def start(block: Block, name: str) -> frozenset:
+    """Return the first state of a performance."""
+    return frozenset({(0, -1, "flow", None)})
+
+
+def _step_at(steps: tuple[Step, ...], mark: tuple) -> Step:
+    step = steps[mark[0]]
+    return step if mark[1] < 0 else step.branches[mark[1]]
+
+
+def list_running(block: Block, name: str, marks: frozenset, path: tuple) -> Iterator[tuple]:
+    """Yield the paths of the running actions of a performance, each with its step."""
+    for mark in marks:
+        if mark[2] == "run":
+            step = _step_at(block.activities[name], mark)
+            yield (*path, step.name), step
+            if step.kind == "call":
+                yield from list_running(block, step.called, mark[3], (*path, step.name))
+
+
+def advance(
+    block: Block, name: str, marks: frozenset, path: tuple, ended: frozenset
+) -> tuple[frozenset, bool, list, set]:
+    """Return the next marks, whether the performance ends, its writes, and what ends inside.
+
+    *ended* are the paths of the elementary actions that the environment ends in this step.
+    """
+    steps = block.activities[name]
+    after, writes, finished = set(), [], set()
+    for mark in marks:
+        position, _, what, _ = mark
+        if what == "run":
+            new_mark, new_writes, new_finished = _perform(block, steps, mark, path, ended)
+            after.add(new_mark)
+            writes += new_writes
+            finished |= new_finished
+        elif what == "wait":
+            waiting = [other for other in marks if other[0] == position and other[2] == "wait"]
+            after.add(mark if len(waiting) < 2 else (position + 1, -1, "flow", None))
+        else:
+            after |= _arrive(block, steps, mark)
+    is_finished = any(position == len(steps) for position, *_ in after)
+    return frozenset() if is_finished else frozenset(after), is_finished, writes, finished
+
+
+def _arrive(block: Block, steps: tuple[Step, ...], mark: tuple) -> set[tuple]:
+    """Return the marks after a token on a flow has moved."""
+    position, branch, _, _ = mark
+    step = _step_at(steps, mark)
+    if step.kind == "fork":
+        return {(position, index, "flow", None) for index in range(2)}
+    content = start(block, step.called) if step.kind == "call" else None
+    return {(position, branch, "run", content)}
+
+
+def _perform(
+    block: Block, steps: tuple[Step, ...], mark: tuple, path: tuple, ended: frozenset
+) -> tuple[tuple, list, set]:
+    """Return the mark after a step of a running action, what it writes and what ends in it."""
+    position, branch, _, inner = mark
+    step = _step_at(steps, mark)
+    own_path = (*path, step.name)
+    is_done = step.kind == "assign" or own_path in ended
+    content, finished = None, set()
+    writes = [(step.feature, step.value)] if step.kind == "assign" else []
+    if step.kind == "call":
+        content, is_done, writes, finished = advance(block, step.called, inner, own_path, ended)
+    if not is_done:
+        return (position, branch, "run", content), writes, finished
+    left = (position + 1, -1, "flow", None) if branch < 0 else (position, branch, "wait", None)
+    return left, writes, finished | {own_path}
+
+
+# -- blocks ------------------------------------------------------------------------------------
+
+
+class State(Struct, frozen=True):
+    """A state of a block: marks of performances that do not run are None."""
+
+    state: str
+    values: tuple[bool, bool]
+    do: frozenset | None
+    is_over: bool
+    own: frozenset | None
+
+
+def first_state(block: Block) -> State:
+    """Return the state in the first step."""
+    do = start(block, block.do["S0"]) if "S0" in block.do else None
+    own = start(block, block.own) if block.own else None
+    return State("S0", (False, False), do, False, own)
+
+
+def list_inputs(block: Block, state: State) -> Iterator[tuple[str, frozenset]]:
+    """Yield the events and sets of ended actions that the environment may choose."""
+    running = [
+        (root, path)
+        for root, marks, name in _list_performances(block, state)
+        for path, step in list_running(block, name, marks, (root,))
+        if step.kind == "elementary"
+    ]
+    paths = [path for _, path in running]
+    subsets = chain.from_iterable(combinations(paths, size) for size in range(len(paths) + 1))
+    events = sorted({move.event for move in block.moves if move.event})
+    yield from product(("none", *events), map(frozenset, subsets))
+
+
+def _list_performances(block: Block, state: State) -> list[tuple[str, frozenset, str]]:
+    performances = []
+    if state.do is not None:
+        name = block.do[state.state]
+        performances.append((name, state.do, name))
+    if state.own is not None:
+        performances.append((block.own, state.own, block.own))
+    return performances
+
+
+def observe(block: Block, state: State, event: str, ended: frozenset) -> frozenset:
+    """Return what is true in a step: state, values, event, running and finished actions."""
+    facts = {f"state={state.state}", f"event={event}"}
+    facts |= {name for name, value in zip(FEATURES, state.values, strict=True) if value}
+    for root, marks, name in _list_performances(block, state):
+        facts.add(f"running({root})")
+        _, is_finished, _, finished = advance(block, name, marks, (root,), ended)
+        facts |= {f"finished({root})"} if is_finished else set()
+        for path, _ in list_running(block, name, marks, (root,)):
+            facts.add(f"running({'.'.join(path)})")
+        facts |= {f"finished({'.'.join(path)})" for path in finished}
+    return frozenset(facts)
+
+
+def list_successors(block: Block, state: State, event: str, ended: frozenset) -> set[State]:
+    """Return the states that may follow."""
+    values = dict(zip(FEATURES, state.values, strict=True))
+    do, do_ends, do_writes = state.do, False, []
+    own, own_writes = state.own, []
+    for root, marks, name in _list_performances(block, state):
+        after, is_finished, writes, _ = advance(block, name, marks, (root,), ended)
+        if root == block.own:
+            own, own_writes = (None if is_finished else after), writes
+        else:
+            do, do_ends, do_writes = (None if is_finished else after), is_finished, writes
+    successors = set()
+    for move in _list_moves(block, state, values, event, do_ends) or [None]:
+        for written in _list_values(values, do_writes, own_writes, move):
+            if move is None:
+                is_over = state.is_over or do_ends
+                successors.add(State(state.state, written, do, is_over, own))
+            else:
+                target = move.target
+                new = start(block, block.do[target]) if target in block.do else None
+                successors.add(State(target, written, new, False, own))
+    return successors
+
+
+def _list_moves(
+    block: Block, state: State, values: dict, event: str, do_ends: bool
+) -> list[Move | None]:
+    leaving = [
+        move
+        for move in block.moves
+        if move.source == state.state and (not move.guard or evaluate(move.guard, values))
+    ]
+    is_complete = state.state not in block.do or state.is_over or do_ends
+    completing = [move for move in leaving if not move.event and is_complete]
+    return completing or [move for move in leaving if move.event == event]
+
+
+def evaluate(text: str, values: dict) -> bool:
+    """Return the value of a guard or of an assigned expression."""
+    if text.startswith("not "):
+        return not values[text[4:]]
+    return {"true": True, "false": False}.get(text) if text in ("true", "false") else values[text]
+
+
+def _list_values(
+    values: dict, do_writes: list, own_writes: list, move: Move | None
+) -> set[tuple[bool, bool]]:
+    """Return the possible values of the features after a step.
+
+    A transition overrides what the do behaviour writes, and reads it. The block's own activity is
+    concurrent to both, so that any of the values may result.
+    """
+    results = set()
+    # What the effect reads: one of the writes of the do behaviour, else the value before.
+    read = [
+        [value for name, value in do_writes if name == feature] or [values[feature]]
+        for feature in FEATURES
+    ]
+    for seen in product(*read):
+        options = []
+        for feature in FEATURES:
+            writes = [value for name, value in do_writes if name == feature]
+            if move is not None and move.effect and move.effect[0] == feature:
+                writes = [evaluate(move.effect[1], dict(zip(FEATURES, seen, strict=True)))]
+            writes += [value for name, value in own_writes if name == feature]
+            options.append(writes or [values[feature]])
+        results |= set(product(*options))
+    return results
+
+
+def list_observed_steps(block: Block, limit: int) -> set[tuple[frozenset, frozenset]] | None:
+    """Return the pairs of observations of successive steps; None for more than *limit* states."""
+    seen, worklist = {first_state(block)}, [first_state(block)]
+    pairs = set()
+    while worklist:
+        state = worklist.pop()
+        for event, ended in list_inputs(block, state):
+            observation = observe(block, state, event, ended)
+            for after in list_successors(block, state, event, ended):
+                if after not in seen:
+                    seen.add(after)
+                    worklist.append(after)
+                    if len(seen) > limit:
+                        return None
+                for inputs in list_inputs(block, after):
+                    pairs.add((observation, observe(block, after, *inputs)))
+    return pairs

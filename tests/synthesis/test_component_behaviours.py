@@ -1,0 +1,119 @@
+"""The step relation of a component has exactly the runs of an interpreter that reads the block."""
+
+from random import Random
+
+import pytest
+from component_runs import EVENTS, FEATURES, list_observed_steps, make_block, write_block
+from msgspec.structs import replace
+
+from sysmlc import compile_model
+from sysmlc.logic import formula as f
+from sysmlc.logic.components.component import Component
+from sysmlc.logic.components.derivation import describe_component
+from sysmlc.logic.components.names import ComponentNames
+from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Owner, Variable
+from sysmlc.logic.machines.reader import MachineOptions
+from sysmlc.synthesis.algebra.fair_systems import Runs, Universe
+from sysmlc.synthesis.decision import Options
+from sysmlc.synthesis.witnesses import manager_factory
+
+LIMIT = 250
+"""States of a block; larger ones are left out."""
+
+
+def open_component(path):
+    graph = compile_model(path).graph
+    block = next(element for element in graph if graph.qualified_name(element) == "P::B")
+    return Component(graph, block, MachineOptions())
+
+
+def list_atoms(component, block):
+    """Return the observed facts with their formulas in the component."""
+    names = ComponentNames(component)
+    facts = [f"state={state}" for state in block.states]
+    facts += [f"event={event}" for event in ("none", *EVENTS)]
+    atoms = {}
+    for fact in facts:
+        name, _, value = fact.partition("=")
+        meaning = names.find(name)
+        if meaning is not None and value in meaning.domain.literals:
+            atoms[fact] = f.eq(meaning.formula, f.const(value))
+    # The first path of an action is drawn; the others name the state or what is called.
+    paths = {action.node: action.names for action in component.performances.paths[::-1]}
+    for path in map(".".join, paths.values()):
+        for kind in ("running", "finished"):
+            atoms[f"{kind}({path})"] = names.find(f"{kind}({path})").formula
+    return atoms
+
+
+def read_observed_steps(component, block):
+    """Return the pairs of observations of successive steps of the component's relation."""
+    atoms = list_atoms(component, block)
+    contract = describe_component(component, "P::B").contract
+    declared = {variable.name for variable in contract.variables}
+    atoms |= {name: f.var(name) for name in FEATURES if name in declared}
+    facts = {f"seen_{index}": fact for index, fact in enumerate(atoms)}
+    observers = tuple(Variable(name, Owner.SYSTEM, BooleanDomain()) for name in facts)
+    definitions = [
+        Conjunct(f.iff(f.var(name), atoms[fact]), Class.SAFETY, "") for name, fact in facts.items()
+    ]
+    manager = manager_factory(Options())()
+    whole = replace(contract, variables=(*contract.variables, *observers))
+    with manager.guard():
+        universe = Universe((whole,), manager)
+        runs = Runs(universe.system((*contract.guarantees, *definitions)))
+        states = runs.reachable & runs.states_with_infinite_runs
+        pairs = set()
+        for observation in list_observations(runs, states, facts):
+            same = states & describe(runs, observation, facts)
+            for later in list_observations(runs, runs.successors(same) & states, facts):
+                pairs.add((observation, later))
+        return frozenset(atoms), pairs
+
+
+def list_observations(runs, states, facts):
+    """Yield the sets of facts that are true in some of the states."""
+    hidden = [bit for bit in runs.bits if bit not in runs.system.symbols.all_bits(tuple(facts))]
+    rest = runs.manager.exist(hidden, states)
+    bits = runs.system.symbols.all_bits(tuple(facts))
+    while rest != runs.manager.false:
+        assignment = runs.manager.pick(rest, bits)
+        values = runs.system.symbols.decode(assignment)
+        yield frozenset(fact for name, fact in facts.items() if values.get(name))
+        rest = rest & ~runs.manager.cube(assignment)
+
+
+def describe(runs, observation, facts):
+    """Return the states with exactly the facts of an observation."""
+    node = runs.manager.true
+    for name, fact in facts.items():
+        seen = runs.system.symbols.bdd(f.var(name))
+        node = node & (seen if fact in observation else ~seen)
+    return node
+
+
+def compare(seed, tmp_path):
+    """Compare both readings of a random block; return whether it is small enough."""
+    block = make_block(Random(seed))
+    expected = list_observed_steps(block, LIMIT)
+    if expected is None:
+        return False
+    path = tmp_path / f"block{seed}.sysml"
+    path.write_text(write_block(block), "utf-8")
+    component = open_component(path)
+    observed, actual = read_observed_steps(component, block)
+    # Facts that the component has no name for, because it never reads them.
+    visible = {(before & observed, after & observed) for before, after in expected}
+    missing, surplus = visible - actual, actual - visible
+    assert (missing, surplus) == (set(), set()), path.read_text("utf-8")
+    return True
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_random_blocks_have_the_steps_of_the_interpreter(seed, tmp_path):
+    compare(seed, tmp_path)
+
+
+@pytest.mark.long
+def test_many_random_blocks_have_the_steps_of_the_interpreter(tmp_path):
+    assert sum(compare(seed, tmp_path) for seed in range(100, 200)) >= 33
