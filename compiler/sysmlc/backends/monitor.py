@@ -1,0 +1,285 @@
+"""Back end ``monitor``: a runtime monitor for each contract, in C99 and in Python.
+
+Both need no library and constant memory. They are printed from ``logic.monitors``, and name the
+broken conjunct and its element.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+
+from msgspec import Struct
+
+from sysmlc.backends.base import EmitOptions
+from sysmlc.backends.contracts import list_traced_elements
+from sysmlc.backends.templates import Templates
+from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.ir import Graph
+from sysmlc.logic.contract import BooleanDomain, Class, Contract, EnumerationDomain, Owner
+from sysmlc.logic.domains import describe
+from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var, has_primes
+from sysmlc.logic.identifiers import make_unique
+from sysmlc.logic.monitors import Check, Monitor, build_monitor
+from sysmlc.logic.printing import print_formula
+from sysmlc.logic.reduction.contract_reduction import as_ltl
+from sysmlc.support.output import Output
+
+NOTHING_TO_MONITOR = rule(
+    "SM579",
+    "contract-without-monitor",
+    Severity.INFO,
+    "the contract of '{component}' has no monitor: no finite run breaks it",
+    help="state what must hold in each step, or within a number of steps",
+)
+_C_KEYWORDS = (
+    "auto break case char const continue default do double else enum extern float for goto if "
+    "inline int long register restrict return short signed sizeof static struct switch typedef "
+    "union unsigned void volatile while bool true false _Bool _Complex _Imaginary"
+)
+_MAX_COMMENT = 90
+"""Characters of a name or range in a comment."""
+
+
+class MonitorBackend(Struct, frozen=True):
+    """Writes a monitor in C99 (a header and a source) and a monitor in Python."""
+
+    name: str = "monitor"
+    summary: str = "runtime monitors of contracts in C99 and Python"
+    is_default: bool = False
+
+    def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
+        """Add three files for each contract with something that a finite run can break."""
+        contracts = graph.derived(Contract)
+        names = [contract.component.rpartition("::")[2].lower() for contract in contracts]
+        prefixes = make_unique(names, "component", *_C_KEYWORDS.split())
+        # Templates of users are not read: the generated code must be the code that is tested.
+        with Templates(self.name, None) as templates:
+            for contract, prefix in zip(contracts, prefixes, strict=True):
+                monitor = build_monitor(contract)
+                if not monitor.checks:
+                    subject = graph.subject(graph[contract.origin])
+                    sink.report(NOTHING_TO_MONITOR, subject, component=contract.component)
+                    continue
+                trace = tuple(list_traced_elements(graph, contract))
+                page = _build_page(graph, monitor, prefix)
+                for suffix in (".h", ".c", ".py"):
+                    text = templates.render(f"monitor{suffix}.j2", page=page)
+                    output.add(f"monitors/{prefix}_monitor{suffix}", text, trace, self.name)
+
+
+class _Variable(Struct, frozen=True):
+    """A variable of the contract, with its name as C spells it."""
+
+    field: str
+    c_type: str
+    comment: str
+    key: str
+    """The name as a string of Python."""
+
+
+class _Bit(Struct, frozen=True):
+    """A history bit, whose rule is an expression in both languages."""
+
+    key: str
+    field: str
+    is_true_first: bool
+    c_rule: str
+    python_rule: str
+
+
+class _Check(Struct, frozen=True):
+    """A check; ``condition`` says when it applies: ``first``, ``each`` or ``later`` steps."""
+
+    condition: str
+    c_test: str
+    python_test: str
+    c_description: str
+    python_description: str
+
+
+class _Page(Struct, frozen=True):
+    """The content of the three files of one monitor."""
+
+    component: str
+    prefix: str
+    """First part of the file names and of all names in C."""
+    variables: tuple[_Variable, ...]
+    literals: tuple[str, ...]
+    """Names of the constants in C, one for each literal of all enumerations."""
+    bits: tuple[_Bit, ...]
+    checks: tuple[_Check, ...]
+    unmonitored: tuple[str, ...]
+    uses_division: bool
+
+
+def _build_page(graph: Graph, monitor: Monitor, prefix: str) -> _Page:
+    contract = monitor.contract
+    names = [variable.name for variable in contract.variables] + [b.name for b in monitor.bits]
+    fields = dict(zip(names, make_unique(names, "value", *_C_KEYWORDS.split()), strict=True))
+    constants = _name_literals(contract, prefix)
+    c_language = _make_c_language(fields, constants)
+    rules = [bit.rule for bit in monitor.bits]
+    formulas = [*rules, *(check.conjunct.formula for check in monitor.checks)]
+    return _Page(
+        component=_make_comment(contract.component),
+        prefix=prefix,
+        variables=tuple(_list_variables(contract, fields)),
+        literals=tuple(constants.values()),
+        bits=tuple(
+            _Bit(
+                key=ascii(bit.name),
+                field=fields[bit.name],
+                is_true_first=bit.start,
+                c_rule=print_expression(bit.rule, c_language, is_about_two_steps=True),
+                python_rule=print_expression(bit.rule, _PYTHON, is_about_two_steps=True),
+            )
+            for bit in monitor.bits
+        ),
+        checks=tuple(_build_check(graph, check, c_language) for check in monitor.checks),
+        unmonitored=tuple(
+            _make_comment(conjunct.text or print_formula(as_ltl(conjunct)))
+            for conjunct in monitor.unmonitored
+        ),
+        uses_division=any(map(_has_division, formulas)),
+    )
+
+
+def _name_literals(contract: Contract, prefix: str) -> dict[str, str]:
+    """Return a constant of C for each literal; equal literals of two enumerations share one."""
+    literals = list(
+        dict.fromkeys(
+            literal
+            for variable in contract.variables
+            if isinstance(variable.domain, EnumerationDomain)
+            for literal in variable.domain.literals
+        )
+    )
+    constants = make_unique([f"{prefix}_{literal}" for literal in literals], "literal")
+    return {name: text.upper() for name, text in zip(literals, constants, strict=True)}
+
+
+def _list_variables(contract: Contract, fields: Mapping[str, str]) -> Iterator[_Variable]:
+    for variable in contract.variables:
+        yield _Variable(
+            field=fields[variable.name],
+            c_type="bool" if isinstance(variable.domain, BooleanDomain) else "long",
+            comment=_make_comment(f"{variable.name}: {describe(variable.domain)}"),
+            key=ascii(variable.name),
+        )
+
+
+def _build_check(graph: Graph, check: Check, c_language: "_Language") -> _Check:
+    conjunct = check.conjunct
+    is_about_two_steps = has_primes(conjunct.formula)
+    condition = "first" if conjunct.class_ is Class.INIT else "each"
+    side = "assumption" if check.owner is Owner.ENVIRONMENT else "guarantee"
+    formula = print_formula(as_ltl(conjunct))
+    element = graph.qualified_name(graph[conjunct.origin]) if conjunct.origin in graph else ""
+    description = (side, conjunct.text or formula, formula, element)
+    return _Check(
+        condition="later" if is_about_two_steps else condition,
+        c_test=print_expression(conjunct.formula, c_language, is_about_two_steps),
+        python_test=print_expression(conjunct.formula, _PYTHON, is_about_two_steps),
+        c_description=", ".join(map(_quote_c, description)),
+        python_description=", ".join(map(ascii, description)),
+    )
+
+
+def _has_division(formula: Formula) -> bool:
+    if not isinstance(formula, Apply):
+        return False
+    return formula.op in (Op.DIV, Op.MOD) or any(map(_has_division, formula.args))
+
+
+# -- texts -----------------------------------------------------------------------------------------
+
+
+def _make_comment(text: str) -> str:
+    """Return a text for a comment of one line in both languages."""
+    # A name must not end the comment in C or the docstring in Python.
+    line = ascii(text)[1:-1].replace("*/", "* /").replace("/*", "/ *")
+    line = line.replace("\\", "/").replace('"', "'")
+    return line if len(line) <= _MAX_COMMENT else f"{line[:_MAX_COMMENT]}..."
+
+
+def _quote_c(text: str) -> str:
+    """Return a string literal of C; characters outside of ASCII are octal escapes of UTF-8."""
+    # '?' is escaped, because "??=" and the like are trigraphs in C99.
+    characters = (
+        chr(byte) if 32 <= byte < 127 and chr(byte) not in '"\\?' else f"\\{byte:03o}"
+        for byte in text.encode("utf-8", "replace")
+    )
+    return f'"{"".join(characters)}"'
+
+
+# -- expressions -----------------------------------------------------------------------------------
+
+
+class _Language(Struct, frozen=True):
+    """How a programming language spells the parts of an expression."""
+
+    negation: str
+    conjunction: str
+    disjunction: str
+    print_constant: Callable[[Literal], str]
+    print_variable: Callable[[str, str], str]
+    """Prints a step, ``before`` or ``now``, and the name of a variable."""
+
+
+_OPERATORS = {
+    Op.IFF: "({0} == {1})",
+    Op.EQ: "({0} == {1})",
+    Op.NE: "({0} != {1})",
+    # The model divides towards zero, x / 0 is 0, and x mod 0 is x (logic.evaluate).
+    Op.DIV: "divide({0}, {1})",
+    Op.MOD: "({0} - {1} * divide({0}, {1}))",
+}
+"""Operators that C and Python spell differently from formulas, but in the same way."""
+
+
+def _make_c_language(fields: Mapping[str, str], constants: Mapping[str, str]) -> _Language:
+    def print_constant(value: Literal) -> str:
+        if isinstance(value, str):
+            return constants[value]
+        return str(value).lower() if isinstance(value, bool) else f"{value}L"
+
+    return _Language(
+        "!", " && ", " || ", print_constant, lambda step, name: f"{step}->{fields[name]}"
+    )
+
+
+_PYTHON = _Language("not ", " and ", " or ", ascii, lambda step, name: f"{step}[{name!a}]")
+
+
+def print_expression(formula: Formula, language: _Language, is_about_two_steps: bool) -> str:
+    """Return a formula without temporal operators as an expression in parentheses.
+
+    If it *is_about_two_steps*, variables without primes have the values of the step before.
+    """
+
+    def print_part(part: Formula) -> str:
+        match part:
+            case Const(value):
+                return language.print_constant(value)
+            case Var(name, primed):
+                is_past = is_about_two_steps and not primed
+                return language.print_variable("before" if is_past else "now", name)
+            case Apply(op, args):
+                return _join_operands(op, [print_part(arg) for arg in args], language)
+
+    return print_part(formula)
+
+
+def _join_operands(op: Op, operands: list[str], language: _Language) -> str:
+    match op:
+        case Op.NOT:
+            return f"({language.negation}{operands[0]})"
+        case Op.AND:
+            return f"({language.conjunction.join(operands)})"
+        case Op.OR:
+            return f"({language.disjunction.join(operands)})"
+        case Op.IMPLIES:
+            return f"(({language.negation}{operands[0]}){language.disjunction}{operands[1]})"
+        case _:
+            return _OPERATORS.get(op, f"({{0}} {op} {{1}})").format(*operands)
+
+
+BACKEND = MonitorBackend()

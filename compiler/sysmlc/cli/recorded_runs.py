@@ -1,0 +1,143 @@
+"""``sysmlc contracts accept``: a recorded run against a contract."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from sysmlc.cli import options
+from sysmlc.support.escapes import escape_undecodable
+
+if TYPE_CHECKING:
+    from sysmlc.cli.contract_files import ContractFile
+    from sysmlc.diagnostics import Place
+    from sysmlc.logic.contract import Contract
+    from sysmlc.logic.monitors import Monitor, Violation
+
+
+@click.command(
+    "accept",
+    short_help="Decide whether a recorded run satisfies a contract.",
+    epilog="""\b
+Examples:
+  sysmlc contracts accept gate.contract.json monday.csv
+  sysmlc contracts accept plant.uml monday.csv -c Plant::Gate
+  sysmlc contracts accept plant.sysml run.json -c Plant::Cell --strict
+
+Exit codes: 0 no step breaks a guarantee, 1 a step does, 2 the run could not be read.""",
+)
+@click.argument("file", type=click.Path(path_type=Path), metavar="CONTRACT")
+@click.argument("run_file", type=click.Path(path_type=Path), metavar="RUN")
+@click.option("-c", "--component", default="", metavar="NAME", help="The component of the run.")
+@click.option("--from", "language", default="", metavar="FORM", help="Format of the contract.")
+@options.reporting
+@options.reading
+@click.pass_context
+def accept_command(
+    ctx: click.Context,
+    /,
+    file: Path,
+    run_file: Path,
+    component: str,
+    language: str,
+    **setting_values: Any,  # noqa: ANN401 - the fields of Settings
+) -> None:
+    """Check the logged steps in RUN against a contract in CONTRACT, a contract file or a model.
+
+    RUN is a CSV file with the names of variables in its first line, or a JSON list of objects. The
+    first step that breaks the contract is reported, with the element whose rule is broken. Checks
+    of variables that RUN does not contain are skipped; so are promises that something happens
+    sooner or later, which no finite run breaks.
+    """
+    from sysmlc.cli import session
+    from sysmlc.cli.contract_files import read_contracts, select_contracts, show_results
+    from sysmlc.driver.faults import compute_exit_code
+
+    settings = session.Settings(**setting_values)
+    config = session.load_config((file,), settings)
+    contract_file = read_contracts(file, language, config, settings)
+    contracts = select_contracts(contract_file.contracts, component)
+    if len(contracts) != 1:
+        names = ", ".join(contract.component for contract in contracts)
+        session.fail(f"name the component of the run by -c: {names or 'there is none'}")
+    summary = _accept_run(contract_file, contracts[0], run_file)
+    show_results(contract_file, settings, [summary] if summary else [])
+    is_strict = settings.strict or config.strict
+    ctx.exit(compute_exit_code(contract_file.sink, is_strict) if summary else 2)
+
+
+def _accept_run(contract_file: "ContractFile", contract: "Contract", path: Path) -> str:
+    """Report the first violation in a run; return a summary, or nothing for an unreadable run."""
+    from sysmlc.cli.session import fail
+    from sysmlc.diagnostics import Place
+    from sysmlc.logic.formats.recorded_runs import read_run
+    from sysmlc.logic.monitors import build_monitor, find_first_violation
+    from sysmlc.sources import Source, SourceError
+    from sysmlc.sources.files import read_whole
+    from sysmlc.sources.source import DOCUMENT_LIMITS
+
+    name = escape_undecodable(path.as_posix())
+    try:
+        source = Source(name, read_whole(path, name, DOCUMENT_LIMITS))
+    except SourceError as problem:
+        fail(f"cannot read '{problem.file}': {problem.message}")
+    run = read_run(source, contract, contract_file.sink)
+    if run is None:
+        return ""
+    monitor = build_monitor(contract)
+    _report_missing_variables(contract_file, monitor, run.missing, name)
+    violation = find_first_violation(monitor, run.steps, run.missing)
+    if violation is None:
+        return f"{contract.component}: {len(run.steps)} steps, no check is broken"
+    place = Place(name, line=run.lines[violation.step], column=1)
+    _report_violation(contract_file, contract, violation, place)
+    return f"{contract.component}: step {violation.step + 1} breaks the contract"
+
+
+def _report_missing_variables(
+    contract_file: "ContractFile", monitor: "Monitor", missing: frozenset[str], name: str
+) -> None:
+    from sysmlc.logic.formats.rules import VARIABLES_NOT_RECORDED
+
+    skipped = [
+        check
+        for check in monitor.checks
+        if not missing.isdisjoint(monitor.find_needed_variables(check.conjunct.formula))
+    ]
+    if skipped:
+        contract_file.sink.report(
+            VARIABLES_NOT_RECORDED,
+            contract_file.place(monitor.contract.origin),
+            file=name,
+            names=", ".join(f"'{variable}'" for variable in sorted(missing)),
+            skipped=len(skipped),
+            total=len(monitor.checks),
+            component=monitor.contract.component,
+        )
+
+
+def _report_violation(
+    contract_file: "ContractFile", contract: "Contract", violation: "Violation", step: "Place"
+) -> None:
+    """Report a violation about the element from which the broken conjunct is derived.
+
+    The contract of a file has no elements; then the subject is the *step* in the recorded run.
+    """
+    from sysmlc.diagnostics import Subject
+    from sysmlc.diagnostics.diagnostic import format_position
+    from sysmlc.logic.contract import Owner
+    from sysmlc.logic.formats import rules
+    from sysmlc.synthesis.witnesses import print_temporal
+
+    conjunct = violation.check.conjunct
+    subject = contract_file.place(conjunct.origin or contract.origin)
+    is_assumption = violation.check.owner is Owner.ENVIRONMENT
+    contract_file.sink.report(
+        rules.ASSUMPTION_BROKEN_BY_RUN if is_assumption else rules.GUARANTEE_BROKEN_BY_RUN,
+        subject if subject.place else Subject(contract.component, place=step),
+        step=violation.step + 1,
+        location=format_position(step.file, step.line, 0),
+        component=contract.component,
+        text=conjunct.text or print_temporal(conjunct),
+        formula=print_temporal(conjunct),
+    )

@@ -1,0 +1,174 @@
+"""Recorded runs of a component: the values of its variables, step by step, as CSV or JSON.
+
+A CSV file has a line with names and then a line for each step. A JSON file has a list of objects,
+or an object whose member ``steps`` is such a list. Columns that are not variables of the contract,
+such as times of a log, are ignored.
+"""
+
+import csv
+import io
+from collections.abc import Iterable, Iterator, Mapping
+
+from msgspec import Struct
+
+from sysmlc.diagnostics import Place, Sink, Subject
+from sysmlc.logic.contract import BooleanDomain, Contract, IntegerDomain, Variable
+from sysmlc.logic.domains import describe
+from sysmlc.logic.formats import rules
+from sysmlc.logic.formats.draft import LocatedList, LocatedObject, parse_json
+from sysmlc.logic.formula import Literal
+from sysmlc.sources import Source
+from sysmlc.support.suggestions import did_you_mean
+
+_MAX_DIGITS = 20
+"""Python refuses to convert thousands of digits; no range of a model needs more than these."""
+_BOOLEANS: Mapping[str, bool] = {"true": True, "false": False, "1": True, "0": False}
+
+
+class RecordedRun(Struct, frozen=True):
+    """The values of each step, with the line of the step in the file."""
+
+    steps: tuple[Mapping[str, Literal], ...]
+    lines: tuple[int, ...]
+    missing: frozenset[str]
+    """Variables of the contract that the file does not contain."""
+    ignored: tuple[str, ...]
+    """Names in the file that are not variables of the contract."""
+
+
+class _RunFileError(Exception):
+    """A fault of the file, with its line."""
+
+    def __init__(self, reason: str, line: int) -> None:
+        super().__init__(reason)
+        self.line = line
+
+
+class _Row(Struct, frozen=True):
+    """The values of one step as the file spells them."""
+
+    line: int
+    cells: Mapping[str, object]
+
+
+def read_run(source: Source, contract: Contract, sink: Sink) -> RecordedRun | None:
+    """Return the run in a file; report the first fault and return None if there is one."""
+    try:
+        text = source.data.decode("utf-8-sig")
+        rows = _read_json(text) if source.name.lower().endswith(".json") else _read_csv(text)
+        return _convert_rows(rows, contract)
+    except _RunFileError as fault:
+        _report(source, sink, str(fault), fault.line)
+    except UnicodeDecodeError:
+        _report(source, sink, "it is not a text in UTF-8", 1)
+    except RecursionError:
+        _report(source, sink, "it is nested too deeply", 1)
+    return None
+
+
+def _report(source: Source, sink: Sink, fault: str, line: int) -> None:
+    subject = Subject(place=Place(source.name, line=line, column=1))
+    sink.report(rules.RECORDED_RUN_FAULT, subject, fault=fault)
+
+
+def _convert_rows(rows: list[_Row], contract: Contract) -> RecordedRun:
+    declared = {variable.name: variable for variable in contract.variables}
+    if not rows:
+        raise _RunFileError("it has no step", 1)
+    names = rows[0].cells.keys()
+    if declared.keys().isdisjoint(names):
+        advice = did_you_mean(next(iter(names), ""), list(declared))
+        raise _RunFileError(
+            f"none of its names is a variable of '{contract.component}'; {advice}", 1
+        )
+    steps = []
+    for row in rows:
+        if row.cells.keys() != names:
+            differing = min(row.cells.keys() ^ names)
+            raise _RunFileError(f"not each step has a value for '{differing}'", row.line)
+        steps.append(
+            {
+                name: _convert_cell(cell, declared[name], row.line)
+                for name, cell in row.cells.items()
+                if name in declared
+            }
+        )
+    return RecordedRun(
+        tuple(steps),
+        tuple(row.line for row in rows),
+        frozenset(declared.keys() - names),
+        tuple(name for name in names if name not in declared),
+    )
+
+
+def _convert_cell(cell: object, variable: Variable, line: int) -> Literal:
+    """Return the value of a cell; integers outside of the range are left to the monitor."""
+    text = str(cell).lower() if isinstance(cell, bool) else str(cell).strip()
+    match variable.domain:
+        case BooleanDomain():
+            if text.lower() in _BOOLEANS:
+                return _BOOLEANS[text.lower()]
+        case IntegerDomain():
+            if len(text) <= _MAX_DIGITS and text.removeprefix("-").isdecimal():
+                return int(text)
+        case domain:
+            if text in domain.literals:
+                return text
+    domain_text = describe(variable.domain)
+    raise _RunFileError(
+        f"{text!r} is not a value of '{variable.name}', which takes {domain_text}", line
+    )
+
+
+# -- CSV -------------------------------------------------------------------------------------------
+
+
+def _read_csv(text: str) -> list[_Row]:
+    separator = max(",;\t", key=text.partition("\n")[0].count)
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True)
+    try:
+        lines = [(reader.line_num, cells) for cells in reader if cells]
+    except csv.Error as error:
+        raise _RunFileError(f"it is not CSV: {error}", reader.line_num) from None
+    if not lines:
+        return []
+    names = [name.strip() for name in lines[0][1]]
+    repeated = next((name for name in names if names.count(name) > 1), None)
+    if repeated is not None:
+        raise _RunFileError(f"the name '{repeated}' occurs twice in the first line", 1)
+    return list(_build_csv_rows(names, lines[1:]))
+
+
+def _build_csv_rows(names: list[str], lines: Iterable[tuple[int, list[str]]]) -> Iterator[_Row]:
+    for line, cells in lines:
+        if len(cells) != len(names):
+            reason = f"the line has {len(cells)} values, the first line {len(names)} names"
+            raise _RunFileError(reason, line)
+        yield _Row(line, dict(zip(names, cells, strict=True)))
+
+
+# -- JSON ------------------------------------------------------------------------------------------
+
+
+def _read_json(text: str) -> list[_Row]:
+    try:
+        document = parse_json(text)
+    except ValueError as error:
+        offset, reason = getattr(error, "pos", 0), getattr(error, "msg", str(error))
+        raise _RunFileError(f"it is not JSON: {reason}", 1 + text.count("\n", 0, offset)) from None
+    if isinstance(document, LocatedObject):
+        document = document.get("steps")
+    if not isinstance(document, LocatedList):
+        raise _RunFileError("it is not a list of steps, nor an object with the member 'steps'", 1)
+    return list(_build_json_rows(text, document))
+
+
+def _build_json_rows(text: str, steps: Iterable[object]) -> Iterator[_Row]:
+    line, counted = 1, 0
+    for number, step in enumerate(steps, 1):
+        if not isinstance(step, LocatedObject):
+            raise _RunFileError(
+                f"step {number} is not an object with a value for each variable", line
+            )
+        line, counted = line + text.count("\n", counted, step.offset), step.offset
+        yield _Row(line, step)

@@ -1,0 +1,180 @@
+"""Runtime monitors: the part of a contract that a finite run can break.
+
+A monitor reads one valuation after another and needs only the last one: history bits store what a
+formula asks about earlier steps, as in the reduction to GR(1). Liveness is not monitored, because
+every finite run can still satisfy it (Bauer, Leucker and Schallhart, Runtime Verification for LTL
+and TLTL).
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+
+from msgspec import Struct
+from msgspec.structs import replace
+
+from sysmlc.logic import formula as f
+from sysmlc.logic.contract import Class, Conjunct, Contract, IntegerDomain, Owner, Variable
+from sysmlc.logic.evaluate import compile_evaluation
+from sysmlc.logic.formula import Formula, Literal, Op, has_past, has_primes, variables
+from sysmlc.logic.reduction.contract_reduction import as_ltl, reduce_contract
+from sysmlc.logic.reduction.history import HistoryBit
+
+Valuation = Mapping[str, Literal]
+
+
+class Check(Struct, frozen=True):
+    """A conjunct in a form that one step decides, or two consecutive steps if it has primes."""
+
+    conjunct: Conjunct
+    owner: Owner
+    """The side that breaks the conjunct: the environment for assumptions."""
+
+
+class Monitor(Struct, frozen=True):
+    """The checks of one contract, assumptions first, and the history bits that they read."""
+
+    contract: Contract
+    checks: tuple[Check, ...]
+    bits: tuple[HistoryBit, ...]
+    unmonitored: tuple[Conjunct, ...]
+    """Conjuncts that no finite run breaks, and those that have no known form with history bits."""
+
+    def find_needed_variables(self, formula: Formula) -> set[str]:
+        """Return the variables that a formula reads, directly or by history bits."""
+        rules = {bit.name: bit.rule for bit in self.bits}
+        needed: set[str] = set()
+        worklist = [formula]
+        while worklist:
+            names = {variable.name for variable in variables(worklist.pop())} - needed
+            needed |= names
+            worklist += [rules[name] for name in names if name in rules]
+        return needed - rules.keys()
+
+
+class Violation(Struct, frozen=True):
+    """The first step (from 0) in which a check fails; for a check of two steps, the second one."""
+
+    step: int
+    check: Check
+
+
+def build_monitor(contract: Contract) -> Monitor:
+    """Return the monitor of a contract.
+
+    An integer outside of its range breaks a check, too, of the side that decides the variable.
+    """
+    reduced = reduce_contract(_expose_past(contract))
+    guarantees = reduced.contract.guarantees
+    # The rules of the history bits are the last guarantees, two for each bit.
+    sides = (
+        (Owner.ENVIRONMENT, reduced.contract.assumptions),
+        (Owner.SYSTEM, guarantees[: len(guarantees) - 2 * len(reduced.bits)]),
+    )
+    checks: list[Check] = []
+    unmonitored: list[Conjunct] = []
+    for owner, conjuncts in sides:
+        checks += _check_ranges(contract.variables, owner)
+        for conjunct in conjuncts:
+            if conjunct.class_ in (Class.INIT, Class.SAFETY):
+                checks.append(Check(conjunct, owner))
+            else:
+                unmonitored.append(conjunct)
+    return Monitor(contract, tuple(checks), reduced.bits, tuple(unmonitored))
+
+
+def _expose_past(contract: Contract) -> Contract:
+    """Return the contract with operators of the past only in conjuncts that will be reduced."""
+
+    def expose(conjuncts: tuple[Conjunct, ...]) -> tuple[Conjunct, ...]:
+        return tuple(
+            replace(conjunct, formula=as_ltl(conjunct), class_=Class.OTHER)
+            if has_past(conjunct.formula)
+            else conjunct
+            for conjunct in conjuncts
+        )
+
+    return replace(
+        contract,
+        assumptions=expose(contract.assumptions),
+        guarantees=expose(contract.guarantees),
+    )
+
+
+def _check_ranges(declared: Iterable[Variable], owner: Owner) -> Iterator[Check]:
+    """Yield a check for each integer of one side: the value lies in the range."""
+    for variable in declared:
+        match variable.domain:
+            case IntegerDomain(low, high) if variable.owner is owner:
+                value = f.var(variable.name)
+                formula = f.both(
+                    f.compare(Op.LE, f.const(low), value), f.compare(Op.LE, value, f.const(high))
+                )
+                text = f"'{variable.name}' stays between {low} and {high}."
+                yield Check(Conjunct(formula, Class.SAFETY, variable.origin, text), owner)
+
+
+class MonitorRun:
+    """One run of a monitor: ``observe`` takes the valuation of each step.
+
+    Checks that read a variable in *missing* are skipped. The run ends with the first violation:
+    after a broken assumption the component owes nothing more.
+    """
+
+    def __init__(self, monitor: Monitor, missing: frozenset[str] = frozenset()) -> None:
+        checks = [
+            check
+            for check in monitor.checks
+            if missing.isdisjoint(monitor.find_needed_variables(check.conjunct.formula))
+        ]
+        self._checks = [(check, _compile_check(check.conjunct)) for check in checks]
+        self._bits = [
+            (bit, compile_evaluation(bit.rule))
+            for bit in monitor.bits
+            if missing.isdisjoint(monitor.find_needed_variables(bit.rule))
+        ]
+        self._previous: Valuation | None = None
+        self._step = -1
+        self.violation: Violation | None = None
+
+    def observe(self, values: Valuation) -> Violation | None:
+        """Check the next step; return the violation of the run so far."""
+        if self.violation is not None:
+            return self.violation
+        self._step += 1
+        now = self._add_bits(values)
+        for check, holds in self._checks:
+            if not holds(self._previous, now):
+                self.violation = Violation(self._step, check)
+                break
+        self._previous = now
+        return self.violation
+
+    def _add_bits(self, values: Valuation) -> Valuation:
+        """Return the valuation with the history bits, those that others read first."""
+        now = dict(values)
+        for bit, rule in self._bits:
+            now[bit.name] = bit.start if self._previous is None else rule(self._previous, now)
+        return now
+
+
+_StepCheck = Callable[[Valuation | None, Valuation], bool]
+"""Whether a check holds for the previous valuation, None in the first step, and the present one."""
+
+
+def _compile_check(conjunct: Conjunct) -> _StepCheck:
+    evaluation = compile_evaluation(conjunct.formula)
+    if conjunct.class_ is Class.INIT:
+        return lambda previous, now: previous is not None or bool(evaluation(now, None))
+    if has_primes(conjunct.formula):
+        return lambda previous, now: previous is None or bool(evaluation(previous, now))
+    return lambda previous, now: bool(evaluation(now, None))
+
+
+def find_first_violation(
+    monitor: Monitor, trace: Iterable[Valuation], missing: frozenset[str] = frozenset()
+) -> Violation | None:
+    """Return the first violation in a finite run, whose steps have no values for *missing*."""
+    run = MonitorRun(monitor, missing)
+    for values in trace:
+        if run.observe(values) is not None:
+            break
+    return run.violation
