@@ -2,6 +2,8 @@
 
 ``python benchmarks/gr1.py CORPUS`` measures contracts in files below CORPUS/gr1 and contracts of
 generated grids. The start of Python does not count. ``--long`` adds contracts that take over 15 s.
+``python benchmarks/gr1.py --families`` measures whole processes that decide generated elevators,
+arbiters, counters and production lines, with their variables declared in several orders.
 With ``--gr1c`` and ``--slugs`` those programs decide the same contracts in the same run. The
 budgets are multiplied by the ratio in the line "floor" (``xmi.py``). Missions of robots are
 measured by ``robots.py``. The exit code is 1 when a budget is missed.
@@ -10,15 +12,17 @@ measured by ``robots.py``. The exit code is 1 when a budget is missed.
 import argparse
 import json
 import sys
+import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
 import gr1_work as work
+from gr1_families import ORDERS, build_families, reorder_variables
 from gr1_grid import build_contract
 from gr1_peers import FORMATS, Peer
-from measuring import Report
+from measuring import SYSMLC, Report, measure_command
 from xmi import measure_slowness
 
 PEER_LIMIT = 60.0
@@ -70,9 +74,9 @@ class Run:
         """Return the text of a file of the corpus."""
         return (self.corpus / "gr1" / name).read_text(encoding="utf-8")
 
-    def run_peers(self, name: str, text: str) -> str:
+    def run_peers(self, name: str, text: str, own_seconds: float = 0.0) -> str:
         """Return times and verdicts of the other programs."""
-        return "".join(f", {peer.decide(name, text)}" for peer in self.peers)
+        return "".join(f", {peer.decide(name, text, own_seconds)}" for peer in self.peers)
 
 
 def main() -> int:
@@ -82,7 +86,11 @@ def main() -> int:
     slowness = measure_slowness(report, 3)
     programs = ((name, getattr(options, name)) for name in FORMATS)
     peers = tuple(Peer(name, program, PEER_LIMIT) for name, program in programs if program)
-    run = Run(report, options.corpus, slowness, peers)
+    run = Run(report, options.corpus or Path(), slowness, peers)
+    if options.families:
+        report_families(run)
+    if options.corpus is None:
+        return 0 if report.is_good else 1
     report_verdicts(run)
     report_controllers(run)
     report_cores(run)
@@ -94,11 +102,29 @@ def main() -> int:
 
 def _parse_arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("corpus", type=Path)
+    parser.add_argument("corpus", type=Path, nargs="?")
     parser.add_argument("--long", action="store_true")
+    parser.add_argument("--families", action="store_true")
     for name in FORMATS:
         parser.add_argument(f"--{name}", default="", metavar="PROGRAM")
-    return parser.parse_args()
+    options = parser.parse_args()
+    if options.corpus is None and not options.families:
+        parser.error("give a folder of contracts, or --families")
+    return options
+
+
+def report_families(run: Run) -> None:
+    """Print the lines of whole processes that decide generated contracts."""
+    with tempfile.TemporaryDirectory() as folder:
+        for family in build_families():
+            for order in ORDERS:
+                contract = reorder_variables(family.contract, order)
+                path, text = Path(folder, f"{family.name}.gr1.json"), json.dumps(contract)
+                path.write_text(text, encoding="utf-8")
+                command = [SYSMLC, "synth", str(path), "--realizable"]
+                seconds = min(measure_command(command) for _ in range(work.ROUNDS))
+                remark = run.run_peers(path.name, text, seconds)
+                run.judge(f"{family.name} {order}", (seconds, ""), family.limit, remark)
 
 
 def report_verdicts(run: Run) -> None:

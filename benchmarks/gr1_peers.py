@@ -26,8 +26,11 @@ class Peer:
     program: str
     limit: float
 
-    def decide(self, name: str, text: str) -> str:
-        """Return CPU seconds and the verdict of the program, or the reason for their absence."""
+    def decide(self, name: str, text: str, own_seconds: float = 0.0) -> str:
+        """Return CPU seconds and the verdict of the program, or the reason for their absence.
+
+        With our own CPU seconds, the text ends with their ratio to those of the program.
+        """
         format_, arguments = FORMATS[self.name]
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder, "contract")
@@ -37,9 +40,10 @@ class Peer:
             except formats.NotExpressibleError as problem:
                 return f"{self.name} cannot express the contract: {problem.reason}"
             path.write_text(written, encoding="utf-8")
-            return f"{self.name} {self._run_program([self.program, *arguments, str(path)])}"
+            command = [self.program, *arguments, str(path)]
+            return f"{self.name} {self._run_program(command, own_seconds)}"
 
-    def _run_program(self, command: list[str]) -> str:
+    def _run_program(self, command: list[str], own_seconds: float) -> str:
         before = read_children_time()
         try:
             process = subprocess.run(
@@ -50,7 +54,8 @@ class Peer:
         except OSError as problem:
             return f"does not run ({problem.strerror})"
         seconds = read_children_time() - before
-        return f"{seconds:.3f} s {_read_verdict(process.stdout + process.stderr)}"
+        ratio = f" (ours {own_seconds / seconds:.2f} x)" if own_seconds and seconds else ""
+        return f"{seconds:.3f} s {_read_verdict(process.stdout + process.stderr)}{ratio}"
 
 
 def _read_verdict(output: str) -> str:

@@ -47,8 +47,8 @@ def print_conjuncts(conjuncts):
     return [(str(conjunct.class_), print_formula(conjunct.formula)) for conjunct in conjuncts]
 
 
-def test_the_nine_rules_about_formats_are_tested_here():
-    assert len(RULES) == 9
+def test_the_ten_rules_about_formats_are_tested_here():
+    assert len(RULES) == 10
     assert rules.UNKNOWN_FORM in RULES
 
 
@@ -88,8 +88,8 @@ def test_the_wrong_example_breaks_the_rule_and_the_right_one_does_not(rule):
         ),
         ("INFO { }\nMAIN { INPUTS { b[2]; }\nASSUME { b[2]; } }\n", ("SM583", 3, 12)),
         ("module M\nsys boolean a;\ngar G a &;\n", ("SM583", 3, 10)),
-        ("module M\nsys boolean[3] a;\n", ("SM585", 2, 12)),
-        ("module M\nsys boolean a;\ngar PREV next(a);\n", ("SM583", 3, 5)),
+        ("module M\nsys boolean[0] a;\n", ("SM581", 2, 13)),
+        ("module M\nsys boolean a;\ngar ONCE next(a);\n", ("SM583", 3, 5)),
         ('{"inputs": {"x": "real"}, "outputs": {}}', ("SM585", 1, 19)),
         ('{"inputs": {}, "guarantees": ["x"]}', ("SM583", 1, 32)),
         ('{"variables": {"x": {"owner": "env", "type": [3, 1]}}}', ("SM582", 1, 21)),

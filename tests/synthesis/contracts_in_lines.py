@@ -56,3 +56,26 @@ def parse_conjunct(text: str, variables: list[Variable]) -> Conjunct:
             formula = text.removeprefix(f"{words} ")
             return Conjunct(parse_formula(formula, domains), class_, "", formula)
     return Conjunct(parse_formula(text, domains), Class.OTHER, "", text)
+
+
+def describe_elevator(floors: int) -> str:
+    """Return the text of a contract: each call is answered at its floor with the door open.
+
+    The calls are declared above the floor. The door opens only where a call was made.
+    """
+    calls = range(floors)
+    neighbours = [[m for m in (n - 1, n, n + 1) if m in calls] for n in calls]
+    lines = [f"env call{n}: bool" for n in calls]
+    lines += [f"sys floor: 0..{floors - 1}", "sys open: bool", "promise at first floor=0"]
+    lines.append("promise always open | open' -> floor'=floor")
+    for n in calls:
+        moves = " | ".join(f"floor'={m}" for m in neighbours[n])
+        lines += [
+            f"assume always call{n} & !(floor={n} & open) -> call{n}'",
+            f"promise always floor={n} -> {moves}",
+            f"promise always open' & floor'={n} -> call{n}'",
+            f"promise recurs call{n} -> floor={n} & open",
+        ]
+    idle = " & ".join(f"!call{n}" for n in calls)
+    lines.append(f"promise always {idle} -> floor'=floor")
+    return "\n".join(lines)

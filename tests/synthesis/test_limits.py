@@ -2,6 +2,7 @@
 
 import gc
 import signal
+import time
 import weakref
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,6 +10,7 @@ from types import SimpleNamespace
 
 import pytest
 from click.testing import CliRunner
+from contracts_in_lines import describe_elevator, parse_contract
 
 from sysmlc.cli.group import sysmlc
 from sysmlc.diagnostics import Sink, Subject
@@ -19,6 +21,7 @@ from sysmlc.synthesis import decision as deciding
 from sysmlc.synthesis.algebra.refinement import find_refinement_failures
 from sysmlc.synthesis.bdd import limits as inside
 from sysmlc.synthesis.bdd.limits import Progress
+from sysmlc.synthesis.bdd.variable_order import VariableOrder
 from sysmlc.synthesis.decision import Options, decide
 from sysmlc.synthesis.games.game import make_game
 
@@ -157,17 +160,34 @@ def test_an_abandoned_decision_leaves_no_reference_cycle(monkeypatch: pytest.Mon
     """The collector of a reference cycle may free the manager before its diagrams."""
     managers: list[weakref.ref[Manager]] = []
 
-    def create_manager(engine: str, limits: Limits, progress: Progress) -> Manager:
-        manager = Manager(engine, limits, progress)
+    def create_manager(
+        engine: str, limits: Limits, progress: Progress, start_time: float
+    ) -> Manager:
+        manager = Manager(engine, limits, progress, start_time)
         managers.append(weakref.ref(manager))
         return manager
 
     monkeypatch.setattr(deciding, "Manager", create_manager)
     gc.disable()
     try:
-        options = Options("cudd", Limits(nodes=50_000))
-        verdict = decide(runaway(), lambda origin: Subject(), Sink(), options)
-        assert verdict.is_realizable is None
-        assert [reference() for reference in managers] == [None]
+        # Above the nodes of a first attempt, several managers are abandoned.
+        for nodes in (50_000, 400_000):
+            options = Options("cudd", Limits(nodes=nodes))
+            verdict = decide(runaway(), lambda origin: Subject(), Sink(), options)
+            assert verdict.is_realizable is None
+        assert [reference() for reference in managers] == [None] * 4
     finally:
         gc.enable()
+
+
+def test_no_time_is_lost_in_reordering_that_cannot_be_stopped(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """With calls above the floor, an elevator has a million nodes when reordering begins."""
+    monkeypatch.setattr(deciding, "_FIRST_ORDERS", (VariableOrder.DECLARED,))
+    monkeypatch.setattr(deciding, "_FIRST_CEILING", 0)
+    start = time.process_time()
+    options = Options("cudd", Limits(seconds=2.0))
+    verdict = decide(parse_contract(describe_elevator(20)), lambda o: Subject(), Sink(), options)
+    assert verdict.is_realizable is None
+    assert time.process_time() - start < 2.0 * 1.2 + 0.2

@@ -1,9 +1,16 @@
 """The order of bits follows the structure of the contract: equal ranges are interleaved."""
 
-from contracts_in_lines import parse_contract
+import random
+from itertools import pairwise
 
-from sysmlc.synthesis import Manager, Symbols, make_game, solve
-from sysmlc.synthesis.bdd.variable_order import order_by_force
+import pytest
+from contracts_in_lines import describe_elevator, parse_contract
+from msgspec.structs import replace
+
+from sysmlc.diagnostics import Sink, Subject
+from sysmlc.synthesis import Limits, Manager, Symbols, make_game, solve
+from sysmlc.synthesis.bdd.variable_order import VariableOrder, order_by_force
+from sysmlc.synthesis.decision import Options, decide
 
 
 def list_bits(text: str) -> list[str]:
@@ -53,3 +60,44 @@ def test_wide_numbers_are_decided_as_fast_as_narrow_ones():
     wide = "env y: 0..1000000000\nsys x: 0..1000000001\npromise always x'=y'+1"
     assert solve(make_game(parse_contract(wide), manager)).is_realizable
     assert manager.usage().peak < 5_000
+
+
+# -- variables that most conjuncts share -----------------------------------------------------------
+
+
+def list_variables(text: str, order: VariableOrder) -> list[str]:
+    """Return the variables in the order of their first bits."""
+    bits = make_game(parse_contract(text), Manager(), order).manager.bits
+    return list(dict.fromkeys(bit.partition(".")[0] for bit in bits))
+
+
+def test_the_floor_comes_before_the_calls_that_it_selects():
+    elevator = describe_elevator(8)
+    declared = list_variables(elevator, VariableOrder.DECLARED)
+    assert declared[-2:] == ["floor", "open"]
+    assert list_variables(elevator, VariableOrder.CONJUNCTS)[:2] == ["floor", "open"]
+
+
+def test_without_shared_variables_neighbours_are_close_together():
+    declared = [0, 4, 2, 6, 1, 5, 3, 7]
+    text = "\n".join(f"sys m{n}: bool" for n in declared)
+    rules = "\n".join(f"promise always m{n} -> m{n + 1}'" for n in range(7))
+    order = list_variables(f"{text}\n{rules}", VariableOrder.CONJUNCTS)
+    numbers = [int(name[1:]) for name in order]
+    assert sum(abs(a - b) for a, b in pairwise(numbers)) < 20
+
+
+@pytest.mark.parametrize("order", ["declared", "reversed", "shuffled"])
+def test_an_elevator_is_decided_whatever_the_order_of_declarations(order: str):
+    contract = parse_contract(describe_elevator(20))
+    variables = list(contract.variables)
+    if order == "reversed":
+        variables.reverse()
+    elif order == "shuffled":
+        random.Random(21).shuffle(variables)
+    options = Options(limits=Limits(seconds=10.0))
+    contract = replace(contract, variables=tuple(variables))
+    verdict = decide(contract, lambda origin: Subject(), Sink(), options)
+    assert verdict.is_realizable
+    assert verdict.figures is not None
+    assert verdict.figures.nodes < 10_000

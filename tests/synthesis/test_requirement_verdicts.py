@@ -2,6 +2,7 @@
 
 import pytest
 
+from sysmlc.logic.components.derivation import ComponentBehaviour
 from sysmlc.logic.contract import (
     BooleanDomain,
     Class,
@@ -12,7 +13,6 @@ from sysmlc.logic.contract import (
     Variable,
 )
 from sysmlc.logic.infix import parse_formula
-from sysmlc.logic.requirements.checked_behaviours import CheckedBehaviour
 from sysmlc.synthesis.decision import Options
 from sysmlc.synthesis.requirement_verdicts import decide_requirements, is_safety
 
@@ -42,7 +42,7 @@ FILLING = contract(
 
 def decide(formula, behaviour=None, class_=Class.OTHER):
     required = contract((), (conjunct(formula, class_, Source.AUTHOR),))
-    checked = behaviour or CheckedBehaviour(FILLING)
+    checked = behaviour or ComponentBehaviour(FILLING)
     (verdict,) = decide_requirements(checked, required, (), Options())
     return verdict
 
@@ -83,14 +83,14 @@ def test_a_broken_requirement_has_a_run_and_no_auxiliary_variables():
 
 
 def test_a_variable_that_the_model_restricts_further_refutes_nothing():
-    gaps = CheckedBehaviour(FILLING, gaps={"done": "it is not known when it ends"})
+    gaps = ComponentBehaviour(FILLING, gaps={"done": "it is not known when it ends"})
     assert decide("G run", gaps).answer == "not-decided"
     assert decide("G run", gaps).reason == "it is not known when it ends"
     assert decide("run W full", gaps).answer == "holds"
 
 
 def test_an_action_that_has_not_ended_yet_may_refute_safety():
-    gaps = CheckedBehaviour(FILLING, gaps={"done": "unknown"}, ends=frozenset({"done"}))
+    gaps = ComponentBehaviour(FILLING, gaps={"done": "unknown"}, ends=frozenset({"done"}))
     assert decide("G !run", gaps).answer == "broken"
     assert decide("G !full", gaps).answer == "not-decided"
 

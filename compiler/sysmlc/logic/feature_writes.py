@@ -180,10 +180,11 @@ class WriterIndex:
         self._graph = graph
         self._candidates_by_name: dict[str, list[Element]] | None = None
         self._members_by_scope: dict[str, dict[str, Element]] = {}
+        self._writers_by_name: dict[str, dict[str, list[Element]]] = {}
 
     def find_other_writer(self, feature: Element, behaviour: Element) -> Element | None:
         """Return the first writer of the feature that is outside the behaviour."""
-        for writer in self._iter_writers(feature):
+        for writer in self.iter_writers(feature):
             if writer is not behaviour and behaviour not in self._graph.ancestors(writer):
                 return writer
         return None
@@ -199,7 +200,8 @@ class WriterIndex:
             element = None if element is None else self._find_member_of_value(element, name)
         return element if element is not None and element.kind in VALUE_KINDS else None
 
-    def _iter_writers(self, feature: Element) -> Iterator[Element]:
+    def iter_writers(self, feature: Element) -> Iterator[Element]:
+        """Yield the actions and effects that write the feature or one that it redefines."""
         # An object has one value for a feature and for all features that redefine it.
         redefinitions = (
             feature,
@@ -207,9 +209,19 @@ class WriterIndex:
             *self._list_redefining(feature),
         )
         for slot in redefinitions:
-            for writer in self._list_candidates(slot.name):
-                if slot in self._iter_written_features(writer, slot.name):
-                    yield writer
+            yield from self._index_writers(slot.name).get(slot.id, ())
+
+    def _index_writers(self, name: str) -> dict[str, list[Element]]:
+        """Return the writers of all features of a name, by the id of the feature."""
+        # In a large model many blocks have a feature of this name: each path is resolved once.
+        if name not in self._writers_by_name:
+            writers: dict[str, list[Element]] = {}
+            for writer in self._list_candidates(name):
+                features = self._iter_written_features(writer, name)
+                for feature_id in dict.fromkeys(feature.id for feature in features if feature):
+                    writers.setdefault(feature_id, []).append(writer)
+            self._writers_by_name[name] = writers
+        return self._writers_by_name[name]
 
     def _list_candidates(self, name: str) -> list[Element]:
         """Return the actions that may write a feature of the name."""
@@ -275,3 +287,20 @@ def find_label(graph: Graph, writer: Element) -> str:
     """Return the name of a writer, or else of its nearest owner with a name."""
     elements = (writer, *graph.ancestors(writer))
     return next((element.name for element in elements if element.name), writer.subkind)
+
+
+class Sharing(Struct, frozen=True):
+    """Finds further writers of the features that a state machine writes."""
+
+    graph: Graph
+    machine: Element
+    writers: WriterIndex | None = None
+    """The writers of each feature; None if only the machine itself is considered."""
+    classifier: Element | None = None
+    """The classifier in which names are resolved; None for the nearest one around the machine."""
+
+    def find_other_writer(self, feature: Element) -> Element | None:
+        """Return a behaviour outside the machine that writes *feature*."""
+        if self.writers is None:
+            return None
+        return self.writers.find_other_writer(feature, self.machine)

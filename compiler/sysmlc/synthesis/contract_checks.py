@@ -7,10 +7,10 @@ from msgspec.structs import replace
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.logic import formula as f
+from sysmlc.logic.components.derivation import ComponentBehaviour
 from sysmlc.logic.contract import Conjunct, Contract, Owner
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import reduce_contract
-from sysmlc.logic.requirements.checked_behaviours import CheckedBehaviour
 from sysmlc.synthesis.algebra.composition import conjoin_viewpoints
 from sysmlc.synthesis.algebra.fair_systems import DomainError
 from sysmlc.synthesis.algebra.refinement import Failure, find_refinement_failures
@@ -21,13 +21,15 @@ from sysmlc.synthesis.games.game import OutsideGr1Error, make_game
 from sysmlc.synthesis.lints import lint
 from sysmlc.synthesis.requirement_verdicts import (
     Answer,
+    BehaviourCheck,
     RequirementVerdict,
-    decide_requirements,
 )
+from sysmlc.synthesis.rules import CONFLICT, UNREACHABLE, VACUOUS
 from sysmlc.synthesis.unrealizable import find_unrealizable_core, is_won
 from sysmlc.synthesis.witnesses import (
     Party,
     Witness,
+    describe_run,
     manager_factory,
     print_temporal,
     report_failure,
@@ -70,6 +72,17 @@ GIVEN_UP = rule(
 )
 
 
+class BehaviourFindings(Struct, frozen=True):
+    """What no requirement asks for.
+
+    ``unreachable`` are the states and actions that no run reaches, ``conflicts`` the features to
+    which two writers may give different values in one step.
+    """
+
+    unreachable: tuple[str, ...] = ()
+    conflicts: tuple[str, ...] = ()
+
+
 class CheckedContract(Struct, frozen=True):
     """The result of checking one contract."""
 
@@ -78,6 +91,8 @@ class CheckedContract(Struct, frozen=True):
     """The verdicts about the requirements of the component, if the contract is a behaviour's."""
     assumes_more: bool = False
     """Whether the author wrote an assumption on the behaviour that the requirements do not make."""
+    findings: BehaviourFindings | None = None
+    """Findings about the behaviour that was checked against requirements."""
     is_checked_by_behaviour: bool = False
     """Whether it is the contract of requirements that a behaviour is checked against."""
     witnesses: tuple[Witness, ...] = ()
@@ -91,7 +106,7 @@ class CheckedContract(Struct, frozen=True):
         return None if not answers or Answer.NOT_DECIDED in answers else True
 
 
-_NO_BEHAVIOURS: Mapping[str, CheckedBehaviour] = {}
+_NO_BEHAVIOURS: Mapping[str, ComponentBehaviour] = {}
 
 
 def check_contracts(
@@ -100,7 +115,7 @@ def check_contracts(
     place: Place,
     sink: Sink,
     options: Options,
-    behaviours: Mapping[str, CheckedBehaviour] = _NO_BEHAVIOURS,
+    behaviours: Mapping[str, ComponentBehaviour] = _NO_BEHAVIOURS,
 ) -> Iterator[CheckedContract]:
     """Decide and lint the chosen contracts, and check behaviours against their requirements.
 
@@ -113,9 +128,14 @@ def check_contracts(
         component = contract.component
         behaviour = all_by_component.get(component.removesuffix(SUFFIX))
         if _is_requirement_contract(contract) and behaviour is not None:
-            checked = behaviours.get(behaviour.component) or CheckedBehaviour(behaviour)
+            checked = behaviours.get(behaviour.component) or ComponentBehaviour(behaviour)
             verdict = _decide_consistency(contract, checked, place, sink, options)
             yield CheckedContract(verdict, is_checked_by_behaviour=True)
+            continue
+        whole = behaviours.get(component)
+        if whole is not None and whole.is_of_parts:
+            verdict = _decide_consistency(contract, whole, place, sink, options)
+            yield _check_requirements(verdict, whole, contract, place, sink, options)
             continue
         verdict = decide(contract, place, sink, options)
         # Lints play games and explore runs, so an undecided contract would meet the same obstacle.
@@ -127,7 +147,7 @@ def check_contracts(
         if requirements is None:
             yield CheckedContract(verdict)
         else:
-            checked = behaviours.get(component) or CheckedBehaviour(contract)
+            checked = behaviours.get(component) or ComponentBehaviour(contract)
             yield _check_requirements(verdict, checked, requirements, place, sink, options)
 
 
@@ -148,7 +168,7 @@ def _lint_within_limits(contract: Contract, place: Place, sink: Sink, options: O
 
 def _decide_consistency(
     requirements: Contract,
-    behaviour: CheckedBehaviour,
+    behaviour: ComponentBehaviour,
     place: Place,
     sink: Sink,
     options: Options,
@@ -181,7 +201,7 @@ def _without(requirements: Contract, irreducible: Sequence[Conjunct]) -> Contrac
 
 
 def _complete(
-    requirements: Contract, behaviour: CheckedBehaviour, irreducible: Sequence[Conjunct]
+    requirements: Contract, behaviour: ComponentBehaviour, irreducible: Sequence[Conjunct]
 ) -> Contract:
     """Return the requirements with the assumptions that the compiler derives for the behaviour."""
     assumptions = tuple(
@@ -218,7 +238,7 @@ def _reads(conjunct: Conjunct, names: Set[str]) -> bool:
 
 def _check_requirements(
     verdict: Verdict,
-    behaviour: CheckedBehaviour,
+    behaviour: ComponentBehaviour,
     requirements: Contract,
     place: Place,
     sink: Sink,
@@ -231,16 +251,65 @@ def _check_requirements(
         subject = place(failure.conjunct.origin)
         report_failure(ASSUMES, failure, contract.component, subject, sink)
     undischarged = [failure.conjunct for failure in failures]
-    verdicts = tuple(decide_requirements(behaviour, requirements, undischarged, options))
+    check = BehaviourCheck(behaviour, requirements, tuple(undischarged), options)
+    verdicts = tuple(check.decide_requirements())
     for requirement in verdicts:
         _report_verdict(contract, requirement, place, sink)
+    findings = _find_behaviour_findings(check, behaviour, requirements, place, sink)
     failures += [
         Failure(requirement.conjunct, False, requirement.trace)
         for requirement in verdicts
         if requirement.trace is not None
     ]
     witnesses = tuple(_build_witness(contract, failure) for failure in failures)
-    return CheckedContract(verdict, verdicts, bool(undischarged), witnesses=witnesses)
+    return CheckedContract(
+        verdict, verdicts, bool(undischarged), findings=findings, witnesses=witnesses
+    )
+
+
+def _find_behaviour_findings(
+    check: BehaviourCheck,
+    behaviour: ComponentBehaviour,
+    requirements: Contract,
+    place: Place,
+    sink: Sink,
+) -> BehaviourFindings | None:
+    """Report write conflicts, and places that no run reaches; None if a limit is reached.
+
+    A state that the author requires to be never reached is not reported.
+    """
+    component = behaviour.contract.component
+    try:
+        conflicts = tuple(check.find_conflicts())
+        unreachable = tuple(check.find_unreachable())
+    except (LimitError, OutsideGr1Error, DomainError) as problem:
+        subject = place(requirements.origin)
+        sink.report(GIVEN_UP, subject, component=component, reached=str(problem))
+        return None
+    for conflict in conflicts:
+        sink.report(
+            CONFLICT,
+            place(conflict.conjunct.origin),
+            notes=tuple(describe_run(conflict.trace, conflict.conjunct)),
+            component=component,
+            variable=conflict.variable,
+        )
+    required = {conjunct.formula for conjunct in requirements.guarantees}
+    for unreached in unreachable:
+        if required.isdisjoint(_iter_negations(unreached.is_active)):
+            subject = place(unreached.origin)
+            sink.report(UNREACHABLE, subject, component=component, name=unreached.name)
+    return BehaviourFindings(
+        tuple(unreached.name for unreached in unreachable),
+        tuple(conflict.variable for conflict in conflicts),
+    )
+
+
+def _iter_negations(formula: f.Formula) -> Iterator[f.Formula]:
+    """Yield the spellings of the negation of a formula."""
+    yield f.negate(formula)
+    if isinstance(formula, f.Apply) and formula.op is f.Op.EQ:
+        yield f.compare(f.Op.NE, *formula.args)
 
 
 def _find_undischarged(
@@ -269,6 +338,15 @@ def _report_verdict(
     if requirement.trace is not None:
         failure = Failure(conjunct, False, requirement.trace)
         report_failure(BREAKS, failure, component, subject, sink)
+    elif requirement.vacuity:
+        sink.report(
+            VACUOUS,
+            subject,
+            component=component,
+            formula=print_temporal(conjunct),
+            context=text_in_parentheses(conjunct),
+            reason=requirement.vacuity,
+        )
     elif requirement.answer is Answer.NOT_DECIDED:
         sink.report(
             NOT_COMPARED,

@@ -6,7 +6,9 @@ larger bound is never harder to guarantee. The upper end of the range is no boun
 saturates there guarantees nothing.
 """
 
+import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 
 from msgspec import Struct
 from msgspec.structs import replace
@@ -18,8 +20,9 @@ from sysmlc.logic.formula import Apply, Const, Op, Var
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import reduce_contract
 from sysmlc.synthesis import rules
-from sysmlc.synthesis.bdd.limits import LimitError, Limits, Progress
+from sysmlc.synthesis.bdd.limits import LimitError, Limits, Progress, TooLargeError
 from sysmlc.synthesis.bdd.manager import Manager
+from sysmlc.synthesis.bdd.variable_order import VariableOrder
 from sysmlc.synthesis.games.arena import Arena
 from sysmlc.synthesis.games.command_elimination import eliminate_commands
 from sysmlc.synthesis.games.game import Game, OutsideGr1Error, make_game
@@ -29,6 +32,11 @@ from sysmlc.synthesis.unrealizable import explain_unrealizability
 
 Place = Callable[[str], Subject]
 """Maps the origin of a contract or conjunct to the subject of diagnostics."""
+_FIRST_ORDERS = (VariableOrder.CONJUNCTS, VariableOrder.DECLARED)
+"""The orders of variables that are tried in turn with few nodes. If both need more, the first one
+is tried again with as many nodes as the limits allow."""
+_FIRST_CEILING = 200_000
+"""Live nodes for each of these orders."""
 
 
 class Options(Struct, frozen=True):
@@ -114,18 +122,15 @@ def decide_game(contract: Contract, place: Place, sink: Sink, options: Options) 
         if options.progress is not None:
             options.progress(step)
 
-    manager = Manager(options.engine, options.limits, progress)
+    start_time = time.process_time()
     try:
-        game = make_game(reduce_contract(contract).contract, manager)
-        with manager.guard(), manager.without_reordering():
-            encoded = eliminate_determined_variables(game)
-            arena = eliminate_commands(encoded)
-        solution = solve_arena(arena, is_complete=False)
+        game, encoded, solution = _solve_contract(contract, options, progress, start_time)
     except OutsideGr1Error as problem:
         _report_outside(contract, problem, place, sink)
         return Decision(Verdict(contract.component, None))
     except LimitError as problem:
-        _report_limit(contract, problem, manager, current_activity[0], place, sink)
+        seconds = time.process_time() - start_time
+        _report_limit(contract, problem, seconds, current_activity[0], place, sink)
         return Decision(Verdict(contract.component, None))
     if not solution.is_realizable:
         reasons = tuple(explain_unrealizability(game, contract)) if options.is_explained else ()
@@ -136,7 +141,34 @@ def decide_game(contract: Contract, place: Place, sink: Sink, options: Options) 
             component=contract.component,
         )
     figures = _collect_figures(contract, game, solution)
-    return Decision(Verdict(contract.component, solution.is_realizable, figures), encoded, arena)
+    verdict = Verdict(contract.component, solution.is_realizable, figures)
+    return Decision(verdict, encoded, solution.arena)
+
+
+def _solve_contract(
+    contract: Contract, options: Options, progress: Progress, start_time: float
+) -> tuple[Game, Game, Solution]:
+    """Return the game of a contract, the game without determined variables, and its solution.
+
+    Raises OutsideGr1Error, or LimitError if a limit is exceeded; CPU time counts from *start_time*.
+    """
+
+    def solve_in_order(order: VariableOrder, ceiling: int) -> tuple[Game, Game, Solution]:
+        manager = Manager(options.engine, options.limits, progress, start_time)
+        with manager.limit_nodes(ceiling):
+            game = make_game(reduced, manager, order)
+            with manager.without_reordering():
+                encoded = eliminate_determined_variables(game)
+                arena = eliminate_commands(encoded)
+            return game, encoded, solve_arena(arena, is_complete=False)
+
+    reduced = reduce_contract(contract).contract
+    for order in _FIRST_ORDERS:
+        # Few contracts that are decided at all need more nodes; with an unsuitable order nearly
+        # every contract does.
+        with suppress(TooLargeError):
+            return solve_in_order(order, _FIRST_CEILING)
+    return solve_in_order(_FIRST_ORDERS[0], 0)
 
 
 def _report_outside(contract: Contract, problem: OutsideGr1Error, place: Place, sink: Sink) -> None:
@@ -155,7 +187,7 @@ def _report_outside(contract: Contract, problem: OutsideGr1Error, place: Place, 
 def _report_limit(
     contract: Contract,
     problem: LimitError,
-    manager: Manager,
+    seconds: float,
     activity: str,
     place: Place,
     sink: Sink,
@@ -165,7 +197,7 @@ def _report_limit(
         place(contract.origin),
         component=contract.component,
         reached=str(problem),
-        seconds=f"{manager.usage().seconds:.1f}",
+        seconds=f"{seconds:.1f}",
         doing=activity,
     )
 

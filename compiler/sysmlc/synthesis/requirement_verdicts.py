@@ -7,16 +7,26 @@ left are derived by the compiler: they may prove a requirement, and never refute
 
 from collections.abc import Iterable, Iterator
 from enum import StrEnum
+from itertools import combinations
 
 from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.logic import formula as f
-from sysmlc.logic.contract import Class, Conjunct, Contract, Owner, Variable
-from sysmlc.logic.formula import Apply, Formula, Op
+from sysmlc.logic.components.derivation import ComponentBehaviour, PlaceInBehaviour
+from sysmlc.logic.contract import (
+    BooleanDomain,
+    Class,
+    Conjunct,
+    Contract,
+    IntegerDomain,
+    Owner,
+    Variable,
+)
+from sysmlc.logic.formula import Apply, Const, Formula, Op
+from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import as_ltl, is_gr1
 from sysmlc.logic.reduction.formula_reduction import NotReducibleError
-from sysmlc.logic.requirements.checked_behaviours import CheckedBehaviour
 from sysmlc.synthesis.algebra.fair_systems import DomainError, Trace, Universe
 from sysmlc.synthesis.algebra.refinement import Entailment
 from sysmlc.synthesis.algebra.tableau import build_tableau
@@ -36,19 +46,34 @@ class Answer(StrEnum):
 
 
 class RequirementVerdict(Struct, frozen=True):
-    """The answer for one conjunct, with its reason, and the run that violates a broken one."""
+    """The answer for one conjunct, with its reason, and the run that violates a broken one.
+
+    ``needed`` are the derived assumptions without which a conjunct that holds would not.
+    ``vacuity`` tells why a conjunct that holds says nothing about the behaviour; it is empty if it
+    does.
+    """
 
     conjunct: Conjunct
     answer: Answer
     reason: str = ""
     trace: Trace | None = None
+    needed: tuple[Conjunct, ...] = ()
+    vacuity: str = ""
+
+
+class WriteConflict(Struct, frozen=True):
+    """A feature to which two writers give different values in one step, and a run that shows it."""
+
+    variable: str
+    conjunct: Conjunct
+    trace: Trace
 
 
 _UNDECIDED_PROBLEMS = (OutsideGr1Error, DomainError, LimitError, NotReducibleError)
 
 
 def decide_requirements(
-    behaviour: CheckedBehaviour,
+    behaviour: ComponentBehaviour,
     requirements: Contract,
     undischarged: Iterable[Conjunct],
     options: Options,
@@ -58,21 +83,17 @@ def decide_requirements(
     *undischarged* are the assumptions that the author wrote on the behaviour and that the
     requirements do not entail: the author's guarantees of the behaviour then prove nothing.
     """
-    check = _Check(behaviour, requirements, tuple(undischarged), options)
-    for conjunct in requirements.guarantees:
-        if not conjunct.is_derived:
-            try:
-                yield check.decide(conjunct)
-            except _UNDECIDED_PROBLEMS as problem:
-                yield RequirementVerdict(conjunct, Answer.NOT_DECIDED, describe_problem(problem))
+    yield from BehaviourCheck(
+        behaviour, requirements, tuple(undischarged), options
+    ).decide_requirements()
 
 
-class _Check:
-    """The facts that hold in all runs, for proofs and for refutations."""
+class BehaviourCheck:
+    """Questions about the runs of a behaviour that satisfy the author's assumptions."""
 
     def __init__(
         self,
-        behaviour: CheckedBehaviour,
+        behaviour: ComponentBehaviour,
         requirements: Contract,
         undischarged: tuple[Conjunct, ...],
         options: Options,
@@ -95,38 +116,96 @@ class _Check:
         self._variable_names = tuple(dict.fromkeys(variable.name for variable in variables))
         self._entailments: dict[tuple[Conjunct, ...], Entailment] = {}
 
+    def decide_requirements(self) -> Iterator[RequirementVerdict]:
+        """Yield the verdict about each conjunct that the author requires."""
+        for conjunct in self._requirements.guarantees:
+            if not conjunct.is_derived:
+                try:
+                    yield self.decide(conjunct)
+                except _UNDECIDED_PROBLEMS as problem:
+                    reason = describe_problem(problem)
+                    yield RequirementVerdict(conjunct, Answer.NOT_DECIDED, reason)
+
+    def find_conflicts(self) -> Iterator[WriteConflict]:
+        """Yield each feature to which two writers give different values in a reachable step.
+
+        Raises LimitError.
+        """
+        domains = {variable.name: variable for variable in self._behaviour.contract.variables}
+        for name, writers in self._behaviour.writers.items():
+            for first, second in combinations(writers, 2):
+                differ = f.negate(equal_values(domains[name], first.value, second.value))
+                coincide = f.both(first.condition, second.condition, differ)
+                conjunct = Conjunct(f.negate(coincide), Class.SAFETY, second.origin)
+                trace = None if coincide == f.FALSE else self._find_violation((), conjunct)
+                if trace is not None:
+                    yield WriteConflict(name, conjunct, trace)
+                    break
+
+    def find_unreachable(self) -> Iterator[PlaceInBehaviour]:
+        """Yield the states and actions that are active in no run. Raises LimitError."""
+        for place in self._behaviour.places:
+            conjunct = Conjunct(f.negate(place.is_active), Class.SAFETY, place.origin)
+            if self._entails((), conjunct):
+                yield place
+
     def decide(self, conjunct: Conjunct) -> RequirementVerdict:
         """Return the verdict about a conjunct."""
-        proofs = self._list_proof_readings()
-        if not all(self._has_runs(reading) for reading in proofs):
+        if not self._has_runs():
             reason = "no run of the behaviour satisfies the assumptions of the requirement"
             return RequirementVerdict(conjunct, Answer.NOT_DECIDED, reason)
-        if self._entails(proofs, (), conjunct):
-            return RequirementVerdict(conjunct, Answer.HOLDS)
+        if self._entails((), conjunct):
+            vacuity = self._explain_vacuity(conjunct, ())
+            return RequirementVerdict(conjunct, Answer.HOLDS, vacuity=vacuity)
         endings = () if is_safety(as_ltl(conjunct)) else self._endings
-        if endings and self._entails(proofs, endings, conjunct):
-            needed = self._minimise(proofs, endings, conjunct)
-            reason = " ".join(ending.text for ending in needed)
-            return RequirementVerdict(conjunct, Answer.HOLDS_IF_ACTIONS_END, reason)
+        if endings and self._entails(endings, conjunct):
+            needed = self._minimise(endings, conjunct)
+            return RequirementVerdict(
+                conjunct,
+                Answer.HOLDS_IF_ACTIONS_END,
+                " ".join(ending.text for ending in needed),
+                needed=needed,
+                vacuity=self._explain_vacuity(conjunct, endings),
+            )
         return self._refute(conjunct, endings)
 
-    def _list_proof_readings(self) -> list[Contract]:
-        """List the descriptions of the behaviour in all of which a conjunct has to hold."""
-        behaviour = self._behaviour
-        if behaviour.is_called and behaviour.repeated is not None:
-            return [behaviour.contract, behaviour.repeated]
-        return [behaviour.contract]
-
-    def _minimise(
-        self, readings: list[Contract], endings: tuple[Conjunct, ...], conjunct: Conjunct
-    ) -> tuple[Conjunct, ...]:
+    def _minimise(self, endings: tuple[Conjunct, ...], conjunct: Conjunct) -> tuple[Conjunct, ...]:
         """Return a smallest subset of the derived assumptions that still proves the conjunct."""
         needed = endings
         for ending in endings:
             rest = tuple(candidate for candidate in needed if candidate != ending)
-            if self._entails(readings, rest, conjunct):
+            if self._entails(rest, conjunct):
                 needed = rest
         return needed
+
+    def _explain_vacuity(self, conjunct: Conjunct, endings: tuple[Conjunct, ...]) -> str:
+        """Return why a conjunct that holds says nothing about the behaviour, or an empty text.
+
+        It is valid, or the right-hand side of an implication could be false (Beer, Ben-David,
+        Eisner and Rodeh 1997).
+        """
+        if self._is_valid(conjunct):
+            return "it holds whatever the behaviour does"
+        for condition, stronger in iter_strengthened(conjunct.formula):
+            if self._entails(endings, replace(conjunct, formula=stronger)):
+                return f"its condition '{print_formula(condition)}' is never true"
+        return ""
+
+    def _is_valid(self, conjunct: Conjunct) -> bool:
+        """Whether all runs satisfy the conjunct, those that are no runs of the behaviour too.
+
+        The ranges of Integers are facts of the model: the numbers next to them count, too.
+        """
+        negation = Conjunct(f.negate(as_ltl(conjunct)), Class.OTHER, conjunct.origin)
+        variables, conjuncts = self._lower((negation,))
+        manager = manager_factory(self._options)()
+        with manager.guard():
+            names = _names_of((conjunct,))
+            declared = (*self._behaviour.contract.variables, *self._requirements.variables)
+            read = (_widen(variable) for variable in declared if variable.name in names)
+            free = Contract("", "", (*read, *variables), (), ())
+            universe = Universe((free,), manager)
+            return not Entailment(universe, universe.system(conjuncts)).is_possible
 
     # -- refutation ------------------------------------------------------------------------------
 
@@ -142,13 +221,9 @@ class _Check:
                 for name in sorted(self._behaviour.gaps)
             )
         facts = (*self._unproven, *endings, *waits)
-        trace = self._find_violation(self._behaviour.contract, facts, conjunct)
+        trace = self._find_violation(facts, conjunct)
         if trace is None:
             reason = self._explain_gap(gap) if gap else self._explain_unproven()
-            return RequirementVerdict(conjunct, Answer.NOT_DECIDED, reason)
-        repeated = self._behaviour.repeated
-        if repeated and self._find_violation(repeated, facts, conjunct) is None:
-            reason = "it depends on whether the activity starts again after its end"
             return RequirementVerdict(conjunct, Answer.NOT_DECIDED, reason)
         return RequirementVerdict(conjunct, Answer.BROKEN, trace=trace)
 
@@ -182,33 +257,30 @@ class _Check:
 
     # -- runs ------------------------------------------------------------------------------------
 
-    def _has_runs(self, reading: Contract) -> bool:
-        runs = self._explore(reading, ())
+    def _has_runs(self) -> bool:
+        runs = self._explore(())
         with runs.manager.guard():
             return runs.is_possible
 
-    def _entails(
-        self, readings: Iterable[Contract], endings: tuple[Conjunct, ...], conjunct: Conjunct
-    ) -> bool:
-        return all(self._find_violation(reading, endings, conjunct) is None for reading in readings)
+    def _entails(self, endings: tuple[Conjunct, ...], conjunct: Conjunct) -> bool:
+        return self._find_violation(endings, conjunct) is None
 
-    def _find_violation(
-        self, reading: Contract, facts: tuple[Conjunct, ...], conjunct: Conjunct
-    ) -> Trace | None:
+    def _find_violation(self, facts: tuple[Conjunct, ...], conjunct: Conjunct) -> Trace | None:
         """Return a run of the behaviour with additional facts that violates the conjunct."""
         if is_gr1(conjunct):
-            runs = self._explore(reading, facts)
+            runs = self._explore(facts)
             with runs.manager.guard():
                 trace = runs.find_violation(conjunct)
         else:
             negation = Conjunct(f.negate(as_ltl(conjunct)), Class.OTHER, conjunct.origin)
-            runs = self._explore(reading, (*facts, negation))
+            runs = self._explore((*facts, negation))
             with runs.manager.guard():
                 trace = runs.find_example()
         return None if trace is None else self._show(trace)
 
-    def _explore(self, reading: Contract, facts: tuple[Conjunct, ...]) -> Entailment:
-        """Return the runs of a behaviour that satisfy the check's facts and further *facts*."""
+    def _explore(self, facts: tuple[Conjunct, ...]) -> Entailment:
+        """Return the runs of the behaviour that satisfy the check's facts and further *facts*."""
+        reading = self._behaviour.contract
         steps = tuple(
             conjunct
             for conjunct in reading.guarantees
@@ -252,6 +324,41 @@ class _Check:
 
 def _names_of(conjuncts: Iterable[Conjunct]) -> set[str]:
     return {variable.name for conjunct in conjuncts for variable in f.variables(conjunct.formula)}
+
+
+def _widen(variable: Variable) -> Variable:
+    """Return the variable with one more number below and above its range."""
+    if not isinstance(variable.domain, IntegerDomain):
+        return variable
+    domain = IntegerDomain(variable.domain.low - 1, variable.domain.high + 1)
+    return replace(variable, domain=domain)
+
+
+def equal_values(variable: Variable, left: Formula, right: Formula) -> Formula:
+    """Return the formula that two values of a variable are equal."""
+    if isinstance(variable.domain, BooleanDomain):
+        return f.fold_iff(left, right)
+    if isinstance(left, Const) and isinstance(right, Const):
+        return f.TRUE if left == right else f.FALSE
+    return f.eq(left, right)
+
+
+def iter_strengthened(
+    formula: Formula, is_positive: bool = True
+) -> Iterator[tuple[Formula, Formula]]:
+    """Yield, for each implication in positive position, its left-hand side and a stronger formula.
+
+    In the stronger formula the right-hand side of the implication is false.
+    """
+    if not isinstance(formula, Apply) or formula.op is Op.IFF:
+        return
+    if formula.op is Op.IMPLIES and is_positive:
+        yield formula.args[0], f.negate(formula.args[0])
+    for position, arg in enumerate(formula.args):
+        is_negated = formula.op is Op.NOT or (formula.op is Op.IMPLIES and position == 0)
+        for condition, stronger in iter_strengthened(arg, is_positive is not is_negated):
+            args = (*formula.args[:position], stronger, *formula.args[position + 1 :])
+            yield condition, Apply(formula.op, args)
 
 
 def is_safety(formula: Formula, is_positive: bool = True) -> bool:

@@ -123,3 +123,25 @@ NEEDLESS = rule(
     "'{component}' satisfies its liveness guarantees without the fairness assumptions",
     help="relate the guarantees to the assumptions, or remove the assumptions",
 )
+
+VACUOUS = rule(
+    "SM557",
+    "requirement-says-nothing",
+    Severity.WARNING,
+    "'{component}' satisfies '{formula}'{context} vacuously: {reason}",
+    help="correct the condition, or the states and events that the requirement names",
+)
+CONFLICT = rule(
+    "SM558",
+    "conflicting-writes",
+    Severity.WARNING,
+    "two behaviours of '{component}' give '{variable}' different values in one step",
+    help="let the behaviours exclude one another, or let only one of them assign it",
+)
+UNREACHABLE = rule(
+    "SM559",
+    "never-active",
+    Severity.WARNING,
+    "no run of '{component}' reaches '{name}'",
+    help="correct the way to it, remove it, or require that it is never reached",
+)

@@ -64,6 +64,18 @@ def _derive_guarantees(formulas: StepFormulas, is_repeated: bool) -> Iterator[Co
     yield from _derive_start_tokens(graph)
     for store in graph.stores:
         yield from _derive_initial_value(store)
+    yield from derive_token_updates(formulas)
+    for node in graph.workers():
+        yield derive_run_update(formulas, node)
+    for store in graph.stores:
+        yield from _derive_store_updates(formulas, store)
+    if is_repeated:
+        yield from _derive_progress(formulas)
+
+
+def derive_token_updates(formulas: StepFormulas) -> Iterator[Conjunct]:
+    """Yield how tokens move, and which regions are complete."""
+    graph = formulas.graph
     for region, name in graph.quiets:
         yield _derive_completion(formulas, region, name)
     for edge in graph.edges:
@@ -71,12 +83,6 @@ def _derive_guarantees(formulas: StepFormulas, is_repeated: bool) -> Iterator[Co
             yield _derive_edge_update(formulas, edge)
     for node in formulas.list_choosers():
         yield from _derive_choice(formulas, node)
-    for node in graph.workers():
-        yield _derive_run_update(formulas, node)
-    for store in graph.stores:
-        yield from _derive_store_updates(formulas, store)
-    if is_repeated:
-        yield from _derive_progress(formulas)
 
 
 def list_variables(graph: TokenGraph) -> tuple[Variable, ...]:
@@ -252,7 +258,7 @@ def _derive_branch_update(formulas: StepFormulas, edge: TokenEdge) -> Iterator[C
     yield Conjunct(f.implies(required, next_token), Class.SAFETY, edge.origin, text)
 
 
-def _derive_run_update(formulas: StepFormulas, node: TokenNode) -> Conjunct:
+def derive_run_update(formulas: StepFormulas, node: TokenNode) -> Conjunct:
     runs = f.either(
         formulas.start_formula(node), f.both(f.var(node.run), f.negate(formulas.done_formula(node)))
     )

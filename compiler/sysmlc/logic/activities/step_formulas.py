@@ -4,7 +4,7 @@ The derivation of contracts combines them: which nodes start and finish, which e
 token, which regions are complete or end.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 
 from sysmlc.logic import formula as f
@@ -264,6 +264,62 @@ class StepFormulas:
         return f.both(
             self.start_formula(node), f.negate(self.cleared_formula(node.region, {node.id}))
         )
+
+
+class PerformanceFormulas(StepFormulas):
+    """Formulas of a token graph whose outermost nodes others start and stop.
+
+    *starts* and *stops* have a formula about the present step for each outermost node.
+    """
+
+    def __init__(
+        self, graph: TokenGraph, starts: Mapping[str, Formula], stops: Mapping[str, Formula]
+    ) -> None:
+        super().__init__(graph, is_repeated=False)
+        self._starts = starts
+        self._stops = stops
+
+    def start_formula(self, node: TokenNode) -> Formula:
+        """The node starts; for an outermost node, others decide it."""
+        return self._starts[node.id] if node.id in self._starts else super().start_formula(node)
+
+    def complete_formula(self, region: str) -> Formula:
+        """The region is complete; the region around all performances never is."""
+        return f.FALSE if region == ACTIVITY_REGION else super().complete_formula(region)
+
+    def begin_formula(self, region: str) -> Formula:
+        """The region starts in the next step."""
+        return self._starts[region] if region in self._starts else super().begin_formula(region)
+
+    def cleared_formula(self, region: str, members: set[str]) -> Formula:
+        """The region ends, is interrupted, or the performance around it is stopped."""
+        cleared = super().cleared_formula(region, members)
+        outermost = [node.id for node in self.graph.regions_around(region)][-1:]
+        stops = (self._stops.get(id, f.FALSE) for id in (*outermost, *members))
+        return f.either(cleared, *stops)
+
+    def finish_formula(self, node: TokenNode) -> Formula:
+        """A running node is done; its writes count even if a region around it ends now."""
+        return f.both(f.var(node.run), self.done_formula(node))
+
+    def _build_completion(self, region: str) -> Formula:
+        """The region is complete in this step, also if a token reaches a final node just now.
+
+        The way to a final node takes no step, so that an action ends with its last inner action.
+        """
+        arrivals = (
+            self.given_formula(edge) for edge in self.graph.ends(region) if not self.is_chosen(edge)
+        )
+        return f.either(super()._build_completion(region), *arrivals)
+
+    def run_formula(self, root: TokenNode) -> Formula:
+        """The performance of an outermost node runs in the next step."""
+        goes_on = f.both(
+            f.var(root.run),
+            f.negate(self.done_formula(root)),
+            f.negate(self._stops.get(root.id, f.FALSE)),
+        )
+        return f.either(self._starts[root.id], goes_on)
 
 
 def _can_choose(branches: list[TokenEdge], node: TokenNode) -> bool:

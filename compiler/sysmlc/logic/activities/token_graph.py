@@ -206,7 +206,9 @@ class TokenGraph(Struct, frozen=True, dict=True):
     false if no run can end. ``rests`` are the regions that can be complete without a token at a
     final node (None: any of them). ``quiets`` are pairs of a region and the variable that is true
     when it is complete: formulas that would repeat a long condition refer to the variable.
-    ``stores`` are the variables that nodes write.
+    ``stores`` are the variables that nodes write. ``shared`` are variables that nodes write as
+    other behaviours do, so that the activity alone does not decide them; ``shared_inputs`` are
+    further variables that these writes read.
     """
 
     activity: str
@@ -221,6 +223,8 @@ class TokenGraph(Struct, frozen=True, dict=True):
     rests: frozenset[str] | None = None
     quiets: tuple[tuple[str, str], ...] = ()
     stores: tuple[Store, ...] = ()
+    shared: tuple[Store, ...] = ()
+    shared_inputs: tuple[Variable, ...] = ()
 
     @cached_property
     def written_variables(self) -> frozenset[str]:

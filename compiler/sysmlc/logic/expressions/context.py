@@ -31,6 +31,7 @@ from sysmlc.logic.expressions.named_elements import (
     find_object_values,
     find_port_values,
 )
+from sysmlc.logic.expressions.parsing import unquote
 from sysmlc.logic.identifiers import make_unique
 
 ASSUMED_RANGE = rule(
@@ -100,6 +101,11 @@ def variables_of(
     return _name_variables(_find_elements(graph, classifier, behaviour))
 
 
+def describe_missing_range(id: str) -> str:
+    """Return the cause of the findings about an element without a range."""
+    return f"no range {id}"
+
+
 def report_range(graph: Graph, feature: Feature, sink: Sink) -> None:
     """Report the assumed range of a feature that is used, and a default value outside its range."""
     domain = feature.domain
@@ -112,17 +118,39 @@ def report_range(graph: Graph, feature: Feature, sink: Sink) -> None:
     if feature.is_assumed and isinstance(domain, IntegerDomain):
         low, high, name = domain.low, domain.high, feature.element.name
         subject, values = graph.subject(feature.element), f"{low}..{high}"
-        sink.report(ASSUMED_RANGE, subject, name=name, range=values, low=low, high=high)
+        sink.report(
+            ASSUMED_RANGE,
+            subject,
+            cause=describe_missing_range(subject.id),
+            name=name,
+            range=values,
+            low=low,
+            high=high,
+        )
 
 
 def _find_elements(
     graph: Graph, classifier: Element, behaviour: Element | None
 ) -> dict[str, Element]:
-    elements = find_port_values(graph, classifier) | find_named_values(graph, classifier)
+    elements = _find_enclosing_values(graph, classifier)
+    elements |= find_port_values(graph, classifier) | find_named_values(graph, classifier)
     elements |= find_object_values(graph, classifier)
     if behaviour is not None and behaviour is not classifier:
         elements |= find_named_values(graph, behaviour) | find_object_values(graph, behaviour)
     return elements
+
+
+def _find_enclosing_values(graph: Graph, classifier: Element) -> dict[str, Element]:
+    """Return the features of the block around a part that has no definition of its own.
+
+    The members of such a part are written inside the block, so that its names are visible there.
+    """
+    owner = graph.owner(classifier)
+    if owner is None or not classifier.attrs.get("property_specific"):
+        return {}
+    if owner.kind not in (Kind.CLASS, Kind.COMPONENT):
+        return {}
+    return _find_enclosing_values(graph, owner) | find_named_values(graph, owner)
 
 
 def _name_variables(elements: Mapping[str, Element]) -> dict[str, str]:
@@ -244,9 +272,10 @@ class _FeatureTable(Mapping[str, Feature]):
 
 _BEHAVIOURS = frozenset([Kind.ACTIVITY, Kind.STATE_MACHINE])
 _TEXT_ATTRIBUTES = ("guard", "body", "condition", "value")
-_TEXT = re.compile(r'"((?:[^"\\]|\\.)*)"')
-_NAME = r"[^\W\d][\w.]*"
-_VALUE = rf"-?\d+(?![\w.])|{_NAME}::\w+"
+_TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')
+_WORD = r"[^\W\d][\w.]*"
+_NAME = rf"{_WORD}|'(?:[^'\\]|\\.)*'"
+_VALUE = rf"-?\d+(?![\w.])|{_WORD}::\w+"
 _NAME_FIRST = re.compile(rf"({_NAME})\s*(?:==|!=|<=|>=|<|>|:=)\s*({_VALUE})")
 _VALUE_FIRST = re.compile(rf"(?<![\w.:])({_VALUE})\s*(?:==|!=|<=|>=|<|>)\s*({_NAME})")
 _CACHE_SIZE = 4096
@@ -293,5 +322,8 @@ def _find_values(text: str) -> tuple[tuple[str, ...], tuple[tuple[str, str], ...
 
     Regular expressions also find the values in texts that the grammar rejects.
     """
-    value_first = ((name, value) for value, name in _VALUE_FIRST.findall(text))
-    return tuple(_TEXT.findall(text)), (*_NAME_FIRST.findall(text), *value_first)
+    value_first = [(name, value) for value, name in _VALUE_FIRST.findall(text)]
+    pairs = [*_NAME_FIRST.findall(text), *value_first]
+    return tuple(map(unquote, _TEXT.findall(text))), tuple(
+        (unquote(name) if name.startswith("'") else name, value) for name, value in pairs
+    )

@@ -18,6 +18,7 @@ from sysmlc.logic.expressions.expression import (
     Member,
     Name,
     Unary,
+    describe_unsupported,
     dotted_name,
     last_name,
     name_of,
@@ -75,6 +76,7 @@ class Symbol(Struct, frozen=True):
 
 Scope = Callable[[str], Symbol | None]
 """Looks up a name; None if it is unknown."""
+FINITE_ADVICE = "use properties that are a Boolean, an enumeration or an Integer for a contract"
 _ORDER = {"<": Op.LT, "<=": Op.LE, ">": Op.GT, ">=": Op.GE}
 _EQUALITY = {"==": Op.EQ, "!=": Op.NE}
 _ARITHMETIC = {"+": Op.ADD, "-": Op.SUB, "*": Op.MUL, "/": Op.DIV, "%": Op.MOD}
@@ -132,7 +134,7 @@ def elaborate_value(
         case _:
             text = print_expression(expression)
             raise ElaborationError(
-                Fault.UNSUPPORTED, f"'{text}' is not a finite value", text, expression.offset
+                Fault.UNSUPPORTED, describe_unsupported(expression), text, expression.offset
             )
 
 
@@ -153,9 +155,7 @@ def _elaborate_literal(
     if isinstance(value, str) and isinstance(expected, EnumerationDomain):
         return _elaborate_string(expression, value, expected)
     text = print_expression(expression)
-    raise ElaborationError(
-        Fault.UNSUPPORTED, f"{text} is not a finite value", text, expression.offset
-    )
+    raise ElaborationError(Fault.UNSUPPORTED, f"{text} is not an Integer", text, expression.offset)
 
 
 def _elaborate_string(
@@ -282,12 +282,16 @@ def _check_range(expression: Binary, left: GuardedValue, right: GuardedValue) ->
     """Raise ElaborationError if a number is outside the range of the other operand.
 
     ``<``, ``<=``, ``>`` and ``>=`` may also use the number next to the range (``x < 8`` for 0..7).
+    An operand that reads nothing has no range: ``3 < 1`` is false.
     """
-    for operand, domain, other_domain in (
-        (expression.right, right.domain, left.domain),
-        (expression.left, left.domain, right.domain),
+    for operand, value, other in (
+        (expression.right, right, left),
+        (expression.left, left, right),
     ):
-        if not isinstance(operand, Literal | Unary) or not isinstance(domain, IntegerDomain):
+        if not isinstance(operand, Literal | Unary) or not _is_constant(value):
+            continue
+        domain, other_domain = value.domain, other.domain
+        if not isinstance(domain, IntegerDomain) or _is_constant(other):
             continue
         slack = 0 if expression.op in _EQUALITY else 1
         if isinstance(other_domain, IntegerDomain) and not (
@@ -296,6 +300,10 @@ def _check_range(expression: Binary, left: GuardedValue, right: GuardedValue) ->
             text = print_expression(operand)
             message = f"{text} is outside {domains.describe(other_domain)}"
             raise ElaborationError(Fault.OUTSIDE, message, text, operand.offset)
+
+
+def _is_constant(value: GuardedValue) -> bool:
+    return all(isinstance(case.value, Const) for case in value.cases)
 
 
 def _check_texts(expression: Binary, left: GuardedValue, right: GuardedValue) -> None:

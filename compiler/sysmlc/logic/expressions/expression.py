@@ -218,6 +218,8 @@ def _print_with_precedence(expression: Expression) -> tuple[str, int]:  # noqa: 
             return f"{_print(base, POSTFIX)}.{_print_name(name)}", POSTFIX
         case Call(function, args):
             return f"{_print(function, POSTFIX)}({_print_arguments(args)})", POSTFIX
+        case Index(Literal() as number, unit):
+            return f"{_print(number, POSTFIX)} [{_print(unit, 0)}]", POSTFIX
         case Index(base, index):
             return f"{_print(base, POSTFIX)}#({_print(index, 0)})", POSTFIX
         case Unary(op, operand):
@@ -249,3 +251,29 @@ def _print_name(name: str) -> str:
 def _quote(text: str, quote: str) -> str:
     escaped = text.replace("\\", "\\\\").replace("\n", "\\n").replace(quote, f"\\{quote}")
     return f"{quote}{escaped}{quote}"
+
+
+_OPERANDS = (
+    *("base", "function", "operand", "left", "right", "condition", "then", "otherwise", "index"),
+)
+
+
+def walk_expression(expression: Expression) -> list[Expression]:
+    """Return the expression and all its subexpressions."""
+    parts = [expression]
+    for slot in _OPERANDS:
+        operand = getattr(expression, slot, None)
+        if operand is not None and not isinstance(operand, str):
+            parts += walk_expression(operand)
+    for arg in getattr(expression, "args", ()):
+        parts += walk_expression(arg)
+    return parts
+
+
+def describe_unsupported(expression: Expression) -> str:
+    """Return why an expression has no finite value."""
+    text = print_expression(expression)
+    if isinstance(expression, Call):
+        return f"calls such as '{text}' are not evaluated"
+    is_quantity = isinstance(expression, Index) and isinstance(expression.base, Literal)
+    return f"'{text}' is {'a quantity with a unit' if is_quantity else 'not a finite value'}"

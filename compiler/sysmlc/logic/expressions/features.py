@@ -90,7 +90,8 @@ def make_feature(
     is_constant = element.attrs.get("readonly") is True and default is not None
     is_range = ".." in str(value)
     is_unknown = value is None or (isinstance(value, str) and _is_computed(graph, element))
-    is_unchecked = is_range or is_unknown
+    # The unlimited natural number is the greatest; an assumed range has it as little as others.
+    is_unchecked = is_range or is_unknown or (is_assumed and value == "*")
     invalid_default = "" if default is not None or is_unchecked else str(element.attrs["default"])
     return Feature(element, variable, domain, default, is_constant, is_assumed, invalid_default)
 
@@ -191,8 +192,13 @@ def _parse_default(element: Element) -> Expression | None:
 
 
 def _is_computed(graph: Graph, element: Element) -> bool:
-    """Whether an expression computes the default value, such as the name of another feature."""
+    """Whether an expression computes the default value, such as the name of another feature.
+
+    An expression outside the supported grammar, such as ``(1, 2)#(1)``, computes one too.
+    """
     expression = _parse_default(element)
+    if expression is None:
+        return "default_language" in element.attrs
     if not isinstance(expression, Name):
         return expression is not None and not isinstance(expression, LiteralExpression)
     owner = graph.owner(element)
@@ -299,10 +305,12 @@ def _iter_constraints(
     They belong to the owner, to the classifier that reaches the element by a dotted name, to the
     element itself, or to its types.
     """
-    owner = graph.owner(element)
-    if owner is not None:
-        names = frozenset([element.name, f"self.{element.name}"])
-        yield from _iter_bodies(graph, owner, names, element.name)
+    # A feature that redefines another one keeps the range of that feature.
+    for feature in (element, *query.redefined_features(graph, element)):
+        owner = graph.owner(feature)
+        if owner is not None:
+            names = frozenset([feature.name, f"self.{feature.name}"])
+            yield from _iter_bodies(graph, owner, names, feature.name)
     if access is not None:
         names = frozenset([access.name, f"self.{access.name}"])
         yield from _iter_bodies(graph, access.classifier, names, element.name)

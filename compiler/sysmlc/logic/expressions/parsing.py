@@ -131,7 +131,7 @@ class _TreeBuilder:
             case "REAL":
                 return Literal(float(token), offset)
             case "STRING":
-                return Literal(_unquote(token), offset)
+                return Literal(unquote(token), offset)
         try:
             return Literal(int(token), offset)
         except ValueError:
@@ -140,7 +140,7 @@ class _TreeBuilder:
 
     def name(self, _offset: int, children: "list[Token]") -> str:
         (token,) = children
-        return _unquote(token) if token.type == "QUOTED_NAME" else str(token)
+        return unquote(token) if token.type == "QUOTED_NAME" else str(token)
 
     def qualified_name(self, offset: int, children: list[str]) -> Name:
         return Name(tuple(children), offset)
@@ -208,5 +208,6 @@ def _normalise(operator: str) -> str:
     return _SPELLING.get(word, word)
 
 
-def _unquote(text: str) -> str:
+def unquote(text: str) -> str:
+    """Return the text between quotation marks, without escapes."""
     return re.sub(r"\\(.)", lambda match: _ESCAPE.get(match[1], match[1]), text[1:-1])

@@ -20,8 +20,14 @@ from sysmlc.logic.formats.contract_json import (
     read_domain,
     text_at,
 )
-from sysmlc.logic.formats.draft import SIDES, ContractDraft, SpecificationFile
-from sysmlc.logic.formats.located_json import LocatedList, LocatedObject, LocatedText
+from sysmlc.logic.formats.draft import (
+    SIDES,
+    ContractDraft,
+    LocatedList,
+    LocatedObject,
+    LocatedText,
+    SpecificationFile,
+)
 from sysmlc.logic.formats.writing import (
     LTL_WORDS,
     Notation,

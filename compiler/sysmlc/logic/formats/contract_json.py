@@ -20,8 +20,15 @@ from sysmlc.logic.contract import (
     Variable,
 )
 from sysmlc.logic.formats import rules
-from sysmlc.logic.formats.draft import SECTION_NAMES, SIDES, SpecificationFile
-from sysmlc.logic.formats.located_json import LocatedList, LocatedObject, LocatedText, parse_json
+from sysmlc.logic.formats.draft import (
+    SECTION_NAMES,
+    SIDES,
+    LocatedList,
+    LocatedObject,
+    LocatedText,
+    SpecificationFile,
+    parse_json,
+)
 from sysmlc.logic.formats.lowering import rename_ambiguous_literals
 from sysmlc.logic.infix import FormulaReader, parse_formula
 from sysmlc.logic.printing import print_formula

@@ -1,13 +1,18 @@
-"""Text of a contract file, and a contract that is collected while the text is read.
+"""Text of a contract file, JSON with locations, and a contract collected while a text is read.
 
 Every fault is reported. A contract with a fault is omitted from the result, so that no step after
 the reader works on half a contract.
 """
 
+import json
 from bisect import bisect_right
 from collections.abc import Callable, Iterator
+from json.decoder import scanstring  # type: ignore[attr-defined]
+from json.scanner import py_make_scanner  # type: ignore[attr-defined]
+from typing import Any
 
 from msgspec import Struct
+from msgspec.structs import replace
 
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.logic import formula as f
@@ -36,6 +41,8 @@ class SpecificationFile(Struct, frozen=True):
     path: str
     sink: Sink
     line_starts: tuple[int, ...]
+    appended: "tuple[tuple[int, SpecificationFile], ...]" = ()
+    """Files whose texts follow the text of this file, each with the offset where it begins."""
 
     @classmethod
     def from_text(cls, text: str, path: str, sink: Sink) -> "SpecificationFile":
@@ -44,24 +51,40 @@ class SpecificationFile(Struct, frozen=True):
         line_starts.extend(offset + 1 for offset, char in enumerate(text) if char == "\n")
         return cls(text, path, sink, tuple(line_starts))
 
+    def append(self, text: str, path: str) -> "SpecificationFile":
+        """Return this file followed by the text of another file, which keeps its locations."""
+        start = len(self.text) + 1
+        other = SpecificationFile.from_text(text, path, self.sink)
+        return replace(self, text=f"{self.text}\n{text}", appended=(*self.appended, (start, other)))
+
+    def find_path(self, offset: int) -> str:
+        """Return the path of the file that contains a character."""
+        return self._locate(offset)[0]
+
     def locate(self, offset: int) -> tuple[int, int]:
-        """Return line and column of a character, both counted from 1."""
+        """Return line and column of a character in its file, both counted from 1."""
+        return self._locate(offset)[1:]
+
+    def _locate(self, offset: int) -> tuple[str, int, int]:
+        for start, other in reversed(self.appended):
+            if offset >= start:
+                return other._locate(offset - start)
         line = bisect_right(self.line_starts, offset)
-        return line, offset - self.line_starts[line - 1] + 1
+        return self.path, line, offset - self.line_starts[line - 1] + 1
 
     def origin_at(self, offset: int) -> str:
         """Return a location as the origin of a conjunct: ``file:line:column``."""
-        line, column = self.locate(offset)
-        return f"{self.path}:{line}:{column}"
+        path, line, column = self._locate(offset)
+        return f"{path}:{line}:{column}"
 
     def report(self, rule: Rule, offset: int, **facts: str) -> None:
         """Report a rule about the character at the offset."""
-        line, column = self.locate(offset)
-        place = Place(self.path, line=line, column=column)
+        path, line, column = self._locate(offset)
+        place = Place(path, line=line, column=column)
         printable: dict[str, object] = {
             name: _replace_surrogates(fact) for name, fact in facts.items()
         }
-        self.sink.report(rule, Subject(place=place), notes=(), help="", **printable)
+        self.sink.report(rule, Subject(place=place), notes=(), help="", cause="", **printable)
 
 
 def _replace_surrogates(text: str) -> str:
@@ -195,3 +218,119 @@ def read_conjuncts(
         cursor.reset(start)
         conjuncts = [(reader.read_formula(), cursor.next.offset)]
     yield from conjuncts
+
+
+# -- JSON with locations -------------------------------------------------------------------------
+
+
+class LocatedText(str):
+    """A string of the file; ``offset`` is that of its first character, behind the quote."""
+
+    __slots__ = ("offset", "source")
+
+    offset: int
+    source: str
+    """The string as the file spells it, with escapes."""
+
+    def offset_of(self, index: int) -> int:
+        """Return the offset in the file of the character at an index of the string."""
+        if len(self.source) == len(self):
+            return self.offset + index
+        length = 0
+        for _ in range(index):
+            length += _measure_character(self.source, length)
+        return self.offset + min(length, len(self.source))
+
+
+def _measure_character(source: str, index: int) -> int:
+    """Return the length of the spelling of one character."""
+    if source[index : index + 1] != "\\":
+        return 1
+    if source[index + 1 : index + 2] != "u":
+        return 2
+    # JSON escapes a character beyond U+FFFF as two surrogates of six characters each.
+    is_high_surrogate = source[index + 2 : index + 4].lower() in ("d8", "d9", "da", "db")
+    return 12 if is_high_surrogate and source[index + 6 :][:2] == "\\u" else 6
+
+
+class LocatedList(list[Any]):
+    """A list of the file; ``offset`` is that of its opening bracket."""
+
+    __slots__ = ("offset",)
+    offset: int
+
+
+class LocatedObject(dict[str, Any]):
+    """An object of the file; ``offset`` is that of its opening brace."""
+
+    __slots__ = ("duplicates", "offset")
+    offset: int
+    duplicates: tuple[str, ...]
+    """Names that occur more than once."""
+
+
+def parse_json(text: str) -> object:
+    """Parse a JSON text.
+
+    Raises ValueError (json.JSONDecodeError has the offset), and RecursionError when the text is
+    nested too deeply.
+    """
+    return _LocatingDecoder().decode(text)
+
+
+class _LocatingDecoder(json.JSONDecoder):
+    """Python's decoder with parsers that record offsets.
+
+    The three attributes are not documented. The scanner of the standard library that is written in
+    Python calls all of them; the default scanner, written in C, does not.
+    """
+
+    parse_string: Callable[..., Any]
+    parse_object: Callable[..., Any]
+    parse_array: Callable[..., Any]
+
+    def __init__(self) -> None:
+        super().__init__(object_pairs_hook=_build_object)
+        parse_object, parse_array = self.parse_object, self.parse_array
+        self.parse_string = _parse_string
+        self.parse_object = lambda *arguments: _locate_object(parse_object, *arguments)
+        self.parse_array = lambda *arguments: _locate_list(parse_array, *arguments)
+        self.scan_once = py_make_scanner(self)
+
+
+def _parse_string(text: str, begin: int, strict: bool = True) -> tuple[LocatedText, int]:
+    value, end = scanstring(text, begin, strict)
+    located = LocatedText(value)
+    located.offset, located.source = begin, text[begin : end - 1]
+    return located, end
+
+
+def _build_object(pairs: list[tuple[str, Any]]) -> LocatedObject:
+    located = LocatedObject(pairs)
+    located.duplicates = ()
+    if len(located) < len(pairs):
+        names = [name for name, _ in pairs]
+        duplicates = dict.fromkeys(name for name in names if names.count(name) > 1)
+        located.duplicates = tuple(duplicates)
+    return located
+
+
+def _locate_object(
+    parse: Callable[..., Any],
+    text_and_begin: tuple[str, int],
+    *rest: Any,  # noqa: ANN401
+) -> tuple[LocatedObject, int]:
+    located, end = parse(text_and_begin, *rest)
+    located.offset = text_and_begin[1] - 1
+    return located, end
+
+
+def _locate_list(
+    parse: Callable[..., Any],
+    text_and_begin: tuple[str, int],
+    *rest: Any,  # noqa: ANN401
+) -> tuple[LocatedList, int]:
+    values, end = parse(text_and_begin, *rest)
+    located = LocatedList(values)
+    located.offset = text_and_begin[1] - 1
+    return located, end

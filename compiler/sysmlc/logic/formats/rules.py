@@ -1,4 +1,7 @@
-"""Rules about files of contracts and specifications (SM580-SM589)."""
+"""Rules about files of contracts and specifications (SM580 to SM589) and about recorded runs.
+
+Recorded runs have SM591 to SM594.
+"""
 
 from sysmlc.diagnostics import Severity, rule
 
@@ -58,4 +61,43 @@ NOT_STRICT = rule(
     Severity.INFO,
     "the semantics '{semantics}' is read as strict implication, as in games of GR(1)",
     help="write SEMANTICS: Mealy,Strict",
+)
+WEIGHT = rule(
+    "SM589",
+    "contract-weight",
+    Severity.WARNING,
+    "the weight is not used: it ranks controllers, and does not change whether one exists",
+)
+
+
+# -- recorded runs -----------------------------------------------------------------------------
+
+RECORDED_RUN_FAULT = rule(
+    "SM591",
+    "recorded-run-fault",
+    Severity.ERROR,
+    "the recorded run cannot be read: {fault}",
+    help="a run is a CSV file with names in its first line, or a JSON list of objects",
+)
+GUARANTEE_BROKEN_BY_RUN = rule(
+    "SM592",
+    "run-breaks-guarantee",
+    Severity.ERROR,
+    "step {step} ({location}) breaks a guarantee of '{component}': {text}",
+    help="correct the component or the model; the guarantee is {formula}",
+)
+ASSUMPTION_BROKEN_BY_RUN = rule(
+    "SM593",
+    "run-breaks-assumption",
+    Severity.WARNING,
+    "step {step} ({location}) breaks an assumption of '{component}', which guarantees nothing "
+    "from then on: {text}",
+    help="record a run in which the environment keeps the assumption, or assume less: {formula}",
+)
+VARIABLES_NOT_RECORDED = rule(
+    "SM594",
+    "variables-not-recorded",
+    Severity.WARNING,
+    "'{file}' has no values for {names}: {skipped} of {total} checks of '{component}' are skipped",
+    help="record these variables, too",
 )

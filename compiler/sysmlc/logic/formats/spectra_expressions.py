@@ -1,15 +1,20 @@
-"""Types and expressions of Spectra.
+"""Expressions of Spectra.
 
-Types are ``boolean``, ``{A, B}``, ``Int(0..7)`` and names for them. Expressions have next values,
-operators of the past, defines and predicates. Enumerations may share names of literals.
+They have next values, operators of the past, defines, predicates, quantifiers over the values of a
+type, and elements of arrays. Enumerations may share names of literals.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from itertools import product
 
+from msgspec import Struct
+
+from sysmlc.logic import domains
 from sysmlc.logic import formula as f
-from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, IntegerDomain
-from sysmlc.logic.formula import Const, Formula, Op
-from sysmlc.logic.infix import BOOLEAN, FormulaReader, Term
+from sysmlc.logic.contract import Domain
+from sysmlc.logic.evaluate import value_of
+from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
+from sysmlc.logic.infix import BOOLEAN, NUMBER, FormulaReader, Term, kind_of
 from sysmlc.logic.reduction.history import History
 from sysmlc.logic.syntax import (
     ARITHMETIC_SIGNS,
@@ -38,73 +43,38 @@ SYNTAX = Syntax(
     {"(": ")"},
     # In Spectra "iff" binds more strongly than "implies".
     PRECEDENCE | {Op.IMPLIES: 1, Op.IFF: 2},
-    signs=(";", ":", ":=", ",", "{", "}", "[", "]", ".."),
+    signs=(";", ":", ":=", ",", "{", "}", "[", "]", ".", ".."),
     comment=r"--[^\n]*|//[^\n]*|/\*[\s\S]*?\*/",
 )
 _PAST_PREFIX = ("PREV", "Y", "ONCE", "O", "HISTORICALLY", "H")
-_PAST_INFIX = ("SINCE", "TRIGGERED")
-
-ConstantReader = Callable[[], Term]
-"""Reads the bound of a range that is an expression such as the name of a define."""
-
-
-class TypeReader:
-    """Reads types from a cursor; ``named`` are the types that the file defines."""
-
-    def __init__(self, cursor: Cursor) -> None:
-        self._cursor = cursor
-        self.named: dict[str, Domain] = {}
-
-    def read_type(self, read_constant: ConstantReader) -> Domain:
-        """Read a type. Raises FormulaError."""
-        cursor = self._cursor
-        if cursor.accept("boolean"):
-            return BooleanDomain()
-        if cursor.accept("{"):
-            return self._read_literals()
-        if cursor.accept("Int"):
-            cursor.expect("(")
-            return self.read_range(read_constant, ")")
-        name = cursor.expect_kind("name", "a type")
-        if name.text not in self.named:
-            raise FormulaError(f"'{name.text}' is not a type", name.offset)
-        return self.named[name.text]
-
-    def _read_literals(self) -> Domain:
-        literals: list[str] = []
-        while not literals or self._cursor.accept(","):
-            token = self._cursor.next
-            if token.kind not in ("name", "number"):
-                self._cursor.fail("a value is expected")
-            if token.text in literals:
-                raise FormulaError(f"'{token.text}' is there twice", token.offset)
-            literals.append(self._cursor.take().text)
-        self._cursor.expect("}")
-        return EnumerationDomain(tuple(literals))
-
-    def read_range(self, read_constant: ConstantReader, end: str) -> IntegerDomain:
-        """Read ``0..7`` and the closing bracket after it. Raises FormulaError."""
-        offset = self._cursor.next.offset
-        low = self._read_bound(read_constant)
-        self._cursor.expect("..")
-        high = self._read_bound(read_constant)
-        self._cursor.expect(end)
-        if low > high:
-            raise FormulaError(f"the range {low}..{high} is empty", offset)
-        return IntegerDomain(low, high)
-
-    def _read_bound(self, read_constant: ConstantReader) -> int:
-        token = self._cursor.next
-        if token.kind != "name":
-            return self._cursor.read_integer()
-        term = read_constant()
-        if not isinstance(term.formula, Const) or not isinstance(term.formula.value, int):
-            raise FormulaError(f"'{token.text}' is not a number", token.offset)
-        return term.formula.value
-
+_PAST_INFIX = ("SINCE", "S", "TRIGGERED", "T")
+_MAX_CASES = 4_096
+"""Most combinations of values of the indexes of one array element."""
 
 Meaning = Callable[["SpectraReader", Token], Term]
 """Returns the term that a define or predicate means; reads the arguments of a predicate."""
+
+
+class Array(Struct, frozen=True):
+    """An array: the sizes of its dimensions, and the meaning of each element by its indexes."""
+
+    dimensions: tuple[int, ...]
+    elements: Mapping[tuple[int, ...], Meaning]
+
+
+class Scope(Struct, frozen=True):
+    """What names mean where an expression stands, and what all expressions of a file share."""
+
+    variables: Mapping[str, Domain]
+    definitions: Mapping[str, Meaning]
+    arrays: Mapping[str, Array]
+    history: History
+    read_type: Callable[[], Domain]
+    choices: dict[str, tuple[tuple[Formula, Formula], ...]]
+    """Values that depend on conditions, such as ``a[x]``: pairs of condition and value, by the name
+    of a variable that stands for the value until its comparison is complete."""
+    count_expansion: Callable[[str, Token], None]
+    """Counts an expansion; raises FormulaError with this reason at this token above a limit."""
 
 
 class SpectraReader(FormulaReader):
@@ -113,17 +83,10 @@ class SpectraReader(FormulaReader):
     allows_bare_negation = True
 
     def __init__(
-        self,
-        cursor: Cursor,
-        variables: Mapping[str, Domain],
-        history: History,
-        parameters: Mapping[str, Term],
-        definitions: Mapping[str, Meaning],
-        origin: str,
+        self, cursor: Cursor, scope: Scope, parameters: Mapping[str, Term], origin: str
     ) -> None:
-        super().__init__(cursor, SYNTAX, variables)
-        self.definitions = definitions
-        self._history = history
+        super().__init__(cursor, SYNTAX, scope.variables)
+        self.scope = scope
         self._parameters = parameters
         self._origin = origin
 
@@ -136,6 +99,8 @@ class SpectraReader(FormulaReader):
                 formula = self._build_since(
                     token, self.require_boolean(term), self.require_boolean(right)
                 )
+            elif min_precedence <= PRECEDENCE[Op.EQ] and self._is_membership():
+                formula = self._read_membership(term)
             elif min_precedence <= PRECEDENCE[Op.OR] and self.cursor.accept("xor"):
                 right = self.read_term(PRECEDENCE[Op.OR] + 1)
                 formula = f.negate(f.iff(self.require_boolean(term), self.require_boolean(right)))
@@ -147,8 +112,8 @@ class SpectraReader(FormulaReader):
                 term = self._read_infix(op, term)
 
     def _build_since(self, token: Token, left: Formula, right: Formula) -> Formula:
-        since = self._history.since
-        if token.text == "SINCE":
+        since = self.scope.history.since
+        if token.text in ("SINCE", "S"):
             return self._track_past(token, since, left, right)
         # "Triggered" is the dual of "since".
         return f.negate(self._track_past(token, since, f.negate(left), f.negate(right)))
@@ -162,30 +127,178 @@ class SpectraReader(FormulaReader):
         except ValueError as error:
             raise FormulaError(str(error), token.offset) from None
 
+    def _is_membership(self) -> bool:
+        cursor = self.cursor
+        return cursor.is_next("in") or (cursor.is_next("not") and cursor.after_next.text == "in")
+
+    def _read_membership(self, term: Term) -> Formula:
+        """Read ``in {A, B}``, ``in {1, 3-5}`` or ``not in {..}`` after a term."""
+        is_negated = self.cursor.accept("not")
+        offset = self.cursor.take().offset
+        self.cursor.expect("{")
+        equalities: list[Formula] = []
+        while not equalities or self.cursor.accept(","):
+            for value in self._read_listed_values():
+                equalities.append(self._build_comparison(Op.EQ, term, value, offset).formula)
+        self.cursor.expect("}")
+        membership = f.either(*equalities)
+        return f.negate(membership) if is_negated else membership
+
+    def _read_listed_values(self) -> Iterable[Term]:
+        low = self.read_operand()
+        if not self.cursor.accept("-"):
+            return [low]
+        high = self.cursor.read_integer()
+        first = value_of(self.require_number(low), {})
+        return [Term(Const(value), NUMBER, low.offset) for value in range(int(first), high + 1)]
+
+    def _build_comparison(self, op: Op, left: Term, right: Term, offset: int) -> Term:
+        comparison = super()._build_comparison(op, left, right, offset)
+        return Term(self._insert_choices(comparison.formula), BOOLEAN, comparison.offset)
+
     def resolve_name(self, token: Token) -> Term:
         if token.text in self._parameters:
             return self._parameters[token.text]
-        if token.text == "next" and self.cursor.accept("("):
-            term = self.read_term(0)
-            self.cursor.expect(")")
-            return Term(f.prime(term.formula), term.kind, token.offset)
+        if token.text in self.scope.arrays:
+            return self._read_array(token, self.scope.arrays[token.text])
         if token.text in self.variables:
             return self.build_variable(token, self.cursor.accept("'"))
-        if token.text in self.definitions:
-            return self.definitions[token.text](self, token)
-        if token.text in _PAST_PREFIX:
-            return Term(self._read_past(token), BOOLEAN, token.offset)
-        return super().resolve_name(token)
+        if token.text in self.scope.definitions:
+            return self.scope.definitions[token.text](self, token)
+        read_operator = _OPERATOR_READERS.get(token.text)
+        return read_operator(self, token) if read_operator else super().resolve_name(token)
 
-    def _read_past(self, token: Token) -> Formula:
+    def _read_next(self, token: Token) -> Term:
+        self.cursor.expect("(")
+        term = self.read_term(0)
+        self.cursor.expect(")")
+        return Term(f.prime(term.formula), term.kind, token.offset)
+
+    def _read_past(self, token: Token) -> Term:
         operand = self.require_boolean(self.read_term(PRECEDENCE[Op.NOT]))
+        history = self.scope.history
+        # PREV next(a) is about the step that ended now.
+        previous = history.last_step if f.has_primes(operand) else history.previous
         trackers = {
-            "P": self._history.previous,
-            "Y": self._history.previous,
-            "O": self._history.once,
-            "H": self._history.historically,
+            "P": previous,
+            "Y": previous,
+            "O": history.once,
+            "H": history.historically,
         }
-        return self._track_past(token, trackers[token.text[0]], operand)
+        formula = self._track_past(token, trackers[token.text[0]], operand)
+        return Term(formula, BOOLEAN, token.offset)
+
+    # -- quantifiers, arrays and case distinctions -------------------------------------------------
+
+    def _read_quantifier(self, token: Token) -> Term:
+        """Read ``i in Int(0..3). body``; the body is read once for each value of the type."""
+        name = self.cursor.expect_kind("name", "a name").text
+        self.cursor.expect("in")
+        domain = self.scope.read_type()
+        self.cursor.expect(".")
+        body, outer_parameters = self.cursor.mark(), self._parameters
+        parts: list[Formula] = []
+        for value in domains.values(domain):
+            self.scope.count_expansion("the quantifiers are too large", token)
+            self.cursor.reset(body)
+            constant = Term(Const(value), kind_of(domain), token.offset)
+            self._parameters = {**outer_parameters, name: constant}
+            parts.append(self.require_boolean(self.read_term(0)))
+        self._parameters = outer_parameters
+        formula = f.both(*parts) if token.text == "forall" else f.either(*parts)
+        return Term(formula, BOOLEAN, token.offset)
+
+    def _read_array(self, token: Token, array: Array) -> Term:
+        """Read the indexes of an element, or ``.sum`` and the like, after the name of an array."""
+        if self.cursor.accept("."):
+            return self._read_reduction(token, array)
+        positions: list[list[tuple[Formula, int]]] = []
+        for size in array.dimensions:
+            self.cursor.expect("[")
+            positions.append(self._read_index(size))
+            self.cursor.expect("]")
+        combinations = list(product(*positions))
+        if len(combinations) > _MAX_CASES:
+            raise FormulaError(f"'{token.text}' has too many possible indexes", token.offset)
+        cases = [
+            (
+                f.both(*(condition for condition, _ in combination)),
+                array.elements[tuple(index for _, index in combination)](self, token),
+            )
+            for combination in combinations
+        ]
+        return cases[0][1] if len(cases) == 1 else self._choose(cases)
+
+    def _read_index(self, size: int) -> list[tuple[Formula, int]]:
+        """Read an index; return its possible values, each with the condition for it.
+
+        No condition holds where the value of the index is outside of the array.
+        """
+        offset = self.cursor.next.offset
+        term = self.read_term(0)
+        index = self.require_number(term)
+        if not f.variables(index):
+            value = int(value_of(index, {}))
+            if not 0 <= value < size:
+                raise FormulaError(f"the index {value} is not below {size}", offset)
+            return [(f.TRUE, value)]
+        values = [Term(Const(value), NUMBER, offset) for value in range(size)]
+        return [
+            (self._build_comparison(Op.EQ, term, value, offset).formula, number)
+            for number, value in enumerate(values)
+        ]
+
+    def _read_reduction(self, token: Token, array: Array) -> Term:
+        word = self.cursor.expect("all", "any", "sum", "prod", "min", "max").text
+        elements = [meaning(self, token) for meaning in array.elements.values()]
+        if word in ("all", "any"):
+            parts = [self.require_boolean(element) for element in elements]
+            return Term((f.both if word == "all" else f.either)(*parts), BOOLEAN, token.offset)
+        if word in ("min", "max"):
+            op = Op.LE if word == "min" else Op.GE
+            return self._choose(
+                [
+                    (f.both(*(self._compare(op, element, other) for other in elements)), element)
+                    for element in elements
+                ]
+            )
+        result = self.require_number(elements[0])
+        for element in elements[1:]:
+            operands = (result, self.require_number(element))
+            result = f.compare(Op.ADD if word == "sum" else Op.MUL, *operands)
+        return Term(result, NUMBER, token.offset)
+
+    def _compare(self, op: Op, left: Term, right: Term) -> Formula:
+        return self._build_comparison(op, left, right, left.offset).formula
+
+    def _read_case_distinction(self, token: Token) -> Term:
+        arguments = self.read_arguments()
+        if len(arguments) != 3:
+            raise FormulaError("'ite' takes three arguments", token.offset)
+        condition = self.require_boolean(arguments[0])
+        return self._choose([(condition, arguments[1]), (f.negate(condition), arguments[2])])
+
+    def _choose(self, cases: list[tuple[Formula, Term]]) -> Term:
+        """Return the value of the first case whose condition holds."""
+        kind, offset = cases[0][1].kind, cases[0][1].offset
+        if kind == BOOLEAN:
+            parts = [f.both(condition, self.require_boolean(term)) for condition, term in cases]
+            return Term(f.either(*parts), BOOLEAN, offset)
+        name = f"?{len(self.scope.choices)}"
+        self.scope.choices[name] = tuple((condition, term.formula) for condition, term in cases)
+        return Term(Var(name), kind, offset)
+
+    def _insert_choices(self, atom: Formula) -> Formula:
+        """Replace values that depend on conditions: ``a[x]=3`` is ``x=0 & a_0=3 | ..``."""
+        choice = next((var for var in f.variables(atom) if var.name in self.scope.choices), None)
+        if choice is None:
+            return atom
+        cases: list[Formula] = []
+        for condition, value in self.scope.choices[choice.name]:
+            if choice.primed:
+                condition, value = f.prime(condition), f.prime(value)
+            cases.append(f.both(condition, self._insert_choices(_replace(atom, choice, value))))
+        return f.either(*cases)
 
     def read_arguments(self) -> list[Term]:
         """Read the arguments of a call in parentheses. Raises FormulaError."""
@@ -197,3 +310,23 @@ class SpectraReader(FormulaReader):
             arguments.append(self.read_term(0))
         self.cursor.expect(")")
         return arguments
+
+
+_OPERATOR_READERS: dict[str, Callable[[SpectraReader, Token], Term]] = {
+    "next": SpectraReader._read_next,
+    "ite": SpectraReader._read_case_distinction,
+    **dict.fromkeys(("forall", "exists"), SpectraReader._read_quantifier),
+    **dict.fromkeys(_PAST_PREFIX, SpectraReader._read_past),
+}
+"""Reads what follows an operator that is written like a function."""
+
+
+def _replace(formula: Formula, variable: Var, value: Formula) -> Formula:
+    """Return the formula with a value in place of a variable."""
+    match formula:
+        case Var() if formula == variable:
+            return value
+        case Apply(op, args):
+            return Apply(op, tuple(_replace(arg, variable, value) for arg in args))
+        case _:
+            return formula

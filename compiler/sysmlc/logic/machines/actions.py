@@ -3,8 +3,6 @@
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from msgspec import Struct
-
 from sysmlc.diagnostics import Rule, Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph
 from sysmlc.logic import formula as f
@@ -12,6 +10,7 @@ from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, Owne
 from sysmlc.logic.domains import describe
 from sysmlc.logic.expressions.context import Context, report_range
 from sysmlc.logic.expressions.elaboration import (
+    FINITE_ADVICE,
     ElaborationError,
     Fault,
     Symbol,
@@ -31,10 +30,12 @@ from sysmlc.logic.expressions.expression import (
     name_of,
     print_expression,
     print_statement,
+    walk_expression,
 )
 from sysmlc.logic.expressions.features import Feature
+from sysmlc.logic.expressions.named_elements import find_feature_elsewhere
 from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
-from sysmlc.logic.feature_writes import WriterIndex, find_label
+from sysmlc.logic.feature_writes import Sharing, find_label
 from sysmlc.logic.identifiers import Names
 from sysmlc.logic.machines.machine import Action, Assign, Raise
 
@@ -48,28 +49,14 @@ SHARED = rule(
 )
 
 
-class Sharing(Struct, frozen=True):
-    """Finds further writers of the features that a state machine writes."""
-
-    graph: Graph
-    machine: Element
-    writers: WriterIndex | None = None
-    """The writers of each feature; None if only the machine itself is considered."""
-
-    def find_other_writer(self, feature: Element) -> Element | None:
-        """Return a behaviour outside the machine that writes *feature*."""
-        if self.writers is None:
-            return None
-        return self.writers.find_other_writer(feature, self.machine)
-
-
 NOT_UNDERSTOOD = rule(
     "SM411",
     "opaque-condition",
     Severity.WARNING,
-    "{what} '{text}' is not understood: {reason}; the contract treats it as the input '{variable}'",
-    help="write an expression over the properties of the owner",
+    "{what} '{text}' has no formula: {reason}; the contract treats it as the input '{variable}'",
+    help=FINITE_ADVICE,
 )
+_SYNTAX_ADVICE = "write an expression over the properties of the owner"
 UNKNOWN_NAME = rule(
     "SM412",
     "unknown-name",
@@ -107,16 +94,14 @@ class TargetFault(NamedTuple):
 
 
 IS_CONSTANT = TargetFault("is constant", "make the property changeable, or assign another one")
-NOT_FINITE = TargetFault(
-    "has no finite type",
-    "type it by a Boolean, an enumeration or an Integer for a contract about it",
-)
+MISSING_TARGET_ADVICE = "correct the name, or let the owner of the property assign it"
 OPAQUE_EFFECT = rule(
     "SM416",
     "opaque-effect",
     Severity.INFO,
     "effect '{text}' is not understood: {reason}; the contract shows it as output '{variable}'",
 )
+_CHECKED_LANGUAGES = frozenset({"ocl", "ocl2.0", "kerml", "sysml", "sysmlv2", "alf"})
 RULE_OF_FAULT = {
     Fault.UNKNOWN: UNKNOWN_NAME,
     Fault.TYPE: TYPE_MISMATCH,
@@ -183,28 +168,6 @@ class ReadingContext:
                 report_range(self.graph, feature, self.sink)
 
 
-def walk_expression(expression: Expression) -> list[Expression]:
-    """Return the expression and all its subexpressions."""
-    parts = [expression]
-    for slot in (
-        "base",
-        "function",
-        "operand",
-        "left",
-        "right",
-        "condition",
-        "then",
-        "otherwise",
-        "index",
-    ):
-        operand = getattr(expression, slot, None)
-        if operand is not None and not isinstance(operand, str):
-            parts += walk_expression(operand)
-    for arg in getattr(expression, "args", ()):
-        parts += walk_expression(arg)
-    return parts
-
-
 def read_condition(reading: ReadingContext, text: str, what: str, element: Element) -> Expression:
     """Return the expression in *text*.
 
@@ -214,28 +177,62 @@ def read_condition(reading: ReadingContext, text: str, what: str, element: Eleme
         expression = parse_expression(text)
         elaborate_condition(expression, reading.find_symbol)
     except ExpressionError as error:
-        return _replace_by_input(reading, NOT_UNDERSTOOD, text, what, element, str(error), "")
+        return _replace_by_input(reading, text, what, element, error)
     except ElaborationError as error:
-        rule = RULE_OF_FAULT[error.fault]
-        return _replace_by_input(reading, rule, text, what, element, str(error), error.name)
+        return _replace_by_input(reading, text, what, element, error, expression)
     reading.record_reads(expression)
     return expression
 
 
+def _classify_fault(
+    reading: ReadingContext, error: ElaborationError, element: Element, text: str, *read: Expression
+) -> tuple[Rule, str]:
+    """Return the rule of a fault in a text of *element*, and the reason.
+
+    A text that only a contract cannot express is no error. *read* are the expressions at fault.
+    """
+    reason = str(error)
+    if error.fault is Fault.UNKNOWN:
+        reason = _explain_name(reading, element, text, error.name)
+        return (NOT_UNDERSTOOD, reason) if reason else (UNKNOWN_NAME, str(error))
+    if error.fault is Fault.OUTSIDE:
+        names = (name_of(part) for expression in read for part in walk_expression(expression))
+        features = reading.context.features
+        if any(features[name].is_assumed for name in names if name and name in features):
+            return NOT_UNDERSTOOD, f"{reason}, a range that is assumed"
+    return RULE_OF_FAULT[error.fault], reason
+
+
+def _explain_name(reading: ReadingContext, element: Element, text: str, name: str) -> str:
+    """Return why a name that is no property of the context is no error, or an empty text."""
+    graph = reading.graph
+    feature = find_feature_elsewhere(graph, reading.sharing.machine, element, name)
+    if feature is not None:
+        return f"'{name}' is a feature of '{(graph.owner(feature) or feature).name}'"
+    language = str(element.attrs.get("guard_language", element.attrs.get("language", "")))
+    if language and language.lower() not in _CHECKED_LANGUAGES:
+        return f"'{name}' is not known, and names in {language} are not checked"
+    return f"'{name}' in single quotes is not a text here" if f"'{name}'" in text else ""
+
+
 def _replace_by_input(
     reading: ReadingContext,
-    rule: Rule,
     text: str,
     what: str,
     element: Element,
-    reason: str,
-    name: str,
+    error: ExpressionError | ElaborationError,
+    *read: Expression,
 ) -> Expression:
     """Report an invalid condition and return the name of the Boolean input that replaces it."""
     variable = reading.input_for(f"condition {text}", text or what, element.id)
+    rule, reason, name, advice = NOT_UNDERSTOOD, str(error), "", _SYNTAX_ADVICE
+    if isinstance(error, ElaborationError):
+        rule, reason = _classify_fault(reading, error, element, text, *read)
+        name, advice = error.name, ""
     reading.sink.report(
         rule,
         reading.graph.subject(element),
+        help=advice,
         what=what,
         text=text,
         reason=reason,
@@ -332,6 +329,11 @@ def _read_assignment(
     """
     name = name_of(statement.target) or print_expression(statement.target)
     feature = reading.context.features.get(name)
+    reason = _explain_name(reading, behaviour, text, name) if feature is None else ""
+    if feature is not None and feature.domain is None and not feature.is_constant:
+        reason = f"'{name}' has no finite type"
+    if reason:
+        return _read_opaque_effect(reading, text, behaviour, reason)
     if feature is None or feature.domain is None or feature.is_constant:
         return _report_target(reading, text, name, feature, behaviour)
     if _has_other_writer(reading, feature, text, behaviour):
@@ -340,14 +342,17 @@ def _read_assignment(
         value = elaborate_value(statement.value, reading.find_symbol, feature.domain)
         check_assignable(value.domain, feature.domain, statement.value)
     except ElaborationError as error:
-        if error.fault is Fault.UNSUPPORTED:
-            return _read_opaque_effect(reading, text, behaviour, str(error))
+        rule, reason = _classify_fault(
+            reading, error, behaviour, text, statement.target, statement.value
+        )
+        if rule is NOT_UNDERSTOOD:
+            return _read_opaque_effect(reading, text, behaviour, reason)
         reading.sink.report(
-            RULE_OF_FAULT[error.fault],
+            rule,
             reading.graph.subject(behaviour),
             what="effect",
             text=text,
-            reason=str(error),
+            reason=reason,
             name=error.name,
             context=reading.context.name or "the context",
         )
@@ -362,13 +367,10 @@ def _report_target(
     reading: ReadingContext, text: str, name: str, feature: Feature | None, behaviour: Element
 ) -> Raise:
     """Report why the target of an assignment has no formula, and return the effect's output."""
+    fault = IS_CONSTANT
     if feature is None:
         context = reading.context.name or "the context"
-        fault = TargetFault(
-            f"is not a known property of {context}", "correct the name, or add the property"
-        )
-    else:
-        fault = IS_CONSTANT if feature.is_constant else NOT_FINITE
+        fault = TargetFault(f"is not a property of {context} itself", MISSING_TARGET_ADVICE)
     output = _effect_output(reading, text, behaviour)
     reading.sink.report(
         NOT_ASSIGNABLE,

@@ -18,9 +18,8 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Domain
 from sysmlc.logic.evaluate import compile_evaluation
 from sysmlc.logic.expressions.elaboration import Scope, elaborate_condition
-from sysmlc.logic.expressions.expression import Expression, name_of
+from sysmlc.logic.expressions.expression import Expression, name_of, walk_expression
 from sysmlc.logic.formula import Formula
-from sysmlc.logic.machines.actions import walk_expression
 from sysmlc.logic.machines.machine import (
     Action,
     AfterTicks,

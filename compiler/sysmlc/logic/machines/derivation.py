@@ -44,8 +44,12 @@ _Touches = Callable[[Path, str], bool]
 def derive_contract(graph: Graph, machine: Machine, component: str, sink: Sink) -> Contract | None:
     """Return the contract of a state machine; report and return None if it would be too large."""
     exploration = explore_machine(graph, machine, sink)
-    if exploration is None:
-        return None
+    return None if exploration is None else describe_exploration(exploration, component)
+
+
+def describe_exploration(exploration: Exploration, component: str) -> Contract:
+    """Return the contract of a state machine with known moves."""
+    machine = exploration.machine
     assumptions = tuple(_derive_assumptions(exploration))
     guarantees = (
         *_derive_start(exploration),
@@ -163,7 +167,7 @@ def _derive_transition(exploration: Exploration, move: Move) -> Iterator[Conjunc
     for path in move.paths:
         choices = [
             is_chosen_formula(pick, literal)
-            for pick, literal in _choices_on_path(exploration, move, path)
+            for pick, literal in iter_choices_on_path(exploration, move, path)
         ]
         taken = remove_redundant(f.both(move.fires, path.when, *choices), exploration.domains)
         formula = f.implies(taken, f.both(*_effect_formulas(exploration, path)))
@@ -178,11 +182,14 @@ def _derive_transition(exploration: Exploration, move: Move) -> Iterator[Conjunc
             yield Conjunct(formula, Class.SAFETY, origin, text)
     # The conjuncts above apply only if a choice variable names their branch. This conjunct excludes
     # a step that names no branch and therefore has no effect.
-    if any(list(_choices_on_path(exploration, move, path)) for path in move.paths):
+    if any(list(iter_choices_on_path(exploration, move, path)) for path in move.paths):
         branches = [
             f.both(
                 path.when,
-                *(is_chosen_formula(*pick) for pick in _choices_on_path(exploration, move, path)),
+                *(
+                    is_chosen_formula(*pick)
+                    for pick in iter_choices_on_path(exploration, move, path)
+                ),
             )
             for path in move.paths
         ]
@@ -197,7 +204,9 @@ def _find_overtaking(exploration: Exploration, move: Move, path: Path) -> Iterat
             yield other
 
 
-def _choices_on_path(exploration: Exploration, move: Move, path: Path) -> Iterator[tuple[str, str]]:
+def iter_choices_on_path(
+    exploration: Exploration, move: Move, path: Path
+) -> Iterator[tuple[str, str]]:
     """Yield the choices made at pseudostates on the path."""
     source_pick = exploration.machine.vertices[move.transition.source].pick
     yield from ((pick, literal) for pick, literal in path.picked.items() if pick != source_pick)
@@ -258,7 +267,7 @@ def _derive_frame(exploration: Exploration, name: str, touches: _Touches) -> Con
     changes = [
         change
         for move in exploration.moves
-        for change in _change_conditions(exploration, move, name, touches)
+        for change in iter_change_conditions(exploration, move, name, touches)
     ]
     formula = f.either(*changes, _frame_formula(exploration, name))
     if changes:
@@ -284,7 +293,7 @@ def _frame_formula(exploration: Exploration, name: str) -> Formula:
     return _equality(exploration, name, f.var(name), is_primed=True)
 
 
-def _change_conditions(
+def iter_change_conditions(
     exploration: Exploration, move: Move, name: str, touches: _Touches
 ) -> Iterator[Formula]:
     """Yield the conditions under which the move changes the variable."""
@@ -293,7 +302,9 @@ def _change_conditions(
         yield move.fires
         return
     for path in touching:
-        choices = [is_chosen_formula(*pick) for pick in _choices_on_path(exploration, move, path)]
+        choices = [
+            is_chosen_formula(*pick) for pick in iter_choices_on_path(exploration, move, path)
+        ]
         yield remove_redundant(f.both(move.fires, path.when, *choices), exploration.domains)
 
 
@@ -332,7 +343,7 @@ def _stay_condition(exploration: Exploration, state: Vertex) -> Formula:
     exits = [
         change
         for move in exploration.moves
-        for change in _change_conditions(
+        for change in iter_change_conditions(
             exploration, move, state.id, lambda path, id: id in path.left_states
         )
     ]

@@ -42,8 +42,7 @@ SATURATES = rule(
     "assignment-leaves-range",
     Severity.WARNING,
     "{transition} {can} take '{variable}' out of its range; it stops at the bound",
-    help="guard the transition so that the value stays in range, or give the property a "
-    "wider range",
+    help="test the value before the assignment, or give the property a wider range",
 )
 BLOCKED = rule(
     "SM429",

@@ -11,9 +11,9 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, query
 from sysmlc.logic.contract import EnumerationDomain, IntegerDomain, Owner, Variable
 from sysmlc.logic.expressions.context import context_of
-from sysmlc.logic.feature_writes import WriterIndex
+from sysmlc.logic.feature_writes import Sharing, WriterIndex
 from sysmlc.logic.identifiers import Names
-from sysmlc.logic.machines.actions import ReadingContext, Sharing
+from sysmlc.logic.machines.actions import ReadingContext
 from sysmlc.logic.machines.conflicts import (
     GuardComparison,
     TooManyValuationsError,
@@ -47,7 +47,9 @@ COINCIDING = rule(
     "SM432",
     "coinciding-triggers",
     Severity.INFO,
-    "transitions {transitions} that leave '{vertex}' have triggers that can occur in one step",
+    "transitions {transitions} can leave '{vertex}' in the same step; the contract leaves open "
+    "which of them does",
+    help="give them guards that exclude each other if it matters",
 )
 
 
@@ -76,15 +78,17 @@ def read_machine(
     sink: Sink,
     options: MachineOptions | None = None,
     writers: WriterIndex | None = None,
+    classifier: Element | None = None,
 ) -> Machine | None:
     """Read a state machine; return None if something in it cannot be derived.
 
     Every fault is reported. A feature that another behaviour of *writers* writes becomes an input;
-    without *writers* only the machine itself is searched for writers.
+    without *writers* only the machine itself is searched for writers. *classifier* is the type of
+    the object that has the machine, if it inherits the machine.
     """
     if not is_supported(graph, machine, sink):
         return None
-    sharing = Sharing(graph, machine, writers)
+    sharing = Sharing(graph, machine, writers, classifier)
     draft = _start_draft(graph, sharing, sink, options or MachineOptions())
     top = read_regions(draft, machine, "", machine)
     add_history_memories(draft)
@@ -122,7 +126,7 @@ def _start_draft(
     graph: Graph, sharing: Sharing, sink: Sink, options: MachineOptions
 ) -> MachineDraft:
     machine = sharing.machine
-    classifier = find_context_classifier(graph, machine)
+    classifier = sharing.classifier or find_context_classifier(graph, machine)
     context = context_of(graph, classifier, options.assumed_range, machine)
     reserved = [*context.variables.values(), *context.features]
     # No auxiliary variable may have the name of a property, which ``find_symbol`` finds first.

@@ -11,7 +11,7 @@ NOT_DERIVED = rule(
     "construct-not-derived",
     Severity.WARNING,
     "{what} of state machine '{machine}' is not derived; the component gets no contract",
-    help="draw it with states and pseudostates, or leave the machine without contract",
+    help="remove it, draw it with other states and pseudostates, or do without a contract",
 )
 
 
@@ -31,7 +31,7 @@ NO_INITIAL = rule(
     "region-without-initial",
     Severity.ERROR,
     "region '{region}' of '{owner}' {fault}",
-    help="add an initial pseudostate with one transition to the first state",
+    help="give the region one initial pseudostate with one transition to its first state",
 )
 DANGLING = rule(
     "SM423",
@@ -64,10 +64,12 @@ def is_supported(graph: Graph, machine: Element, sink: Sink) -> bool:
         ]
         if description
     ]
+    broken = [element for element in elements if _is_broken(graph, machine, element, sink)]
     for element, description in unsupported:
-        sink.report(NOT_DERIVED, graph.subject(element), what=description, machine=machine.name)
-    faults = [_is_broken(graph, machine, element, sink) for element in elements]
-    return not unsupported and not any(faults)
+        # The finding about a region that cannot start counts its initial pseudostates.
+        if element.subkind != "initial" or graph.owner(element) not in broken:
+            sink.report(NOT_DERIVED, graph.subject(element), what=description, machine=machine.name)
+    return not unsupported and not broken
 
 
 def _collect_submachines(graph: Graph, machine: Element) -> list[Element]:
@@ -128,7 +130,7 @@ def _describe_unsupported(graph: Graph, element: Element) -> str:
     """Describe an element that prevents a contract; return an empty text for supported elements."""
     if element.kind is Kind.PSEUDOSTATE:
         return _describe_unsupported_pseudostate(graph, element)
-    if element.kind in _REDEFINABLE and graph.targets(element, Edge.REDEFINES):
+    if element.kind in _REDEFINABLE and _starts_redefinition(graph, element):
         return f"the redefinition or extension by '{element.name or element.kind}'"
     if element.kind is not Kind.STATE:
         return ""
@@ -143,9 +145,19 @@ def _describe_unsupported(graph: Graph, element: Element) -> str:
     return f"submachine state '{element.name}'" if is_submachine and not is_readable else ""
 
 
+def _starts_redefinition(graph: Graph, element: Element) -> bool:
+    """Whether the element redefines another one, and no element around it does."""
+    return bool(graph.targets(element, Edge.REDEFINES)) and not any(
+        graph.targets(owner, Edge.REDEFINES)
+        for owner in graph.ancestors(element)
+        if owner.kind in _REDEFINABLE
+    )
+
+
 def _describe_unsupported_pseudostate(graph: Graph, element: Element) -> str:
     if element.subkind not in _SUPPORTED_PSEUDOSTATES:
-        return f"{element.subkind or 'pseudostate'} pseudostate '{element.name}'"
+        name = f" '{element.name}'" if element.name else ""
+        return f"{element.subkind or 'unknown'} pseudostate{name}"
     if element.subkind == "connection-point" and len(graph.targets(element, Edge.REFERENCES)) != 1:
         return f"the connection point '{element.name}' that stands for no one point"
     region = graph.owner(element)
@@ -189,9 +201,12 @@ def _explain_bad_start(graph: Graph, machine: Element, region: Element) -> str:
     initial = find_initial(graph, region)
     starts = [] if initial is None else graph.sources(initial, Edge.FLOW_SOURCE)
     if len(starts) > 1:
-        return f"has an initial pseudostate with {len(starts)} outgoing transitions; UML allows one"
+        initials = _count_initials(graph, region)
+        return f"has {initials} with {len(starts)} outgoing transitions; UML allows one"
     has_states = any(v.kind in (Kind.STATE, Kind.FINAL_STATE) for v in graph.owned(region))
-    if starts or not has_states or graph.owner(region) is not machine:
+    # A region that extends another one has the initial pseudostate of that one (14.3.3.1).
+    is_extension = bool(graph.targets(region, Edge.REDEFINES))
+    if starts or is_extension or not has_states or graph.owner(region) is not machine:
         return ""
     return f"{describe_missing_start(graph, region)}, but the machine starts there"
 
@@ -200,7 +215,12 @@ def describe_missing_start(graph: Graph, region: Element) -> str:
     """Describe what a region without initial transition lacks."""
     if find_initial(graph, region) is None:
         return "has no initial pseudostate"
-    return "has an initial pseudostate without outgoing transition"
+    return f"has {_count_initials(graph, region)} without outgoing transition"
+
+
+def _count_initials(graph: Graph, region: Element) -> str:
+    number = sum(vertex.subkind == "initial" for vertex in graph.owned(region))
+    return "an initial pseudostate" if number == 1 else f"{number} initial pseudostates, the first"
 
 
 def report_bad_start(graph: Graph, region: Element, fault: str, sink: Sink) -> None:

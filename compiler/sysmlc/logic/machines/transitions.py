@@ -5,6 +5,7 @@ transitions that lead to a join are combined into one.
 """
 
 import re
+from itertools import combinations
 from math import ceil
 
 from msgspec.structs import replace
@@ -154,10 +155,10 @@ def _make_time_input(reading: ReadingContext, trigger: Element) -> str:
     variable = reading.input_for(f"time {text}", f"time_{text}", trigger.id)
     if _is_relative(trigger, text):
         reason = "is not a number"
-        advice = "write a number, or a number with a unit (after 5 s), if the duration is constant"
+        advice = "write a number, or a number with a unit, if the duration is constant"
     else:
         reason = "is absolute"
-        advice = "use a relative time (after 5 s) if it counts from the entry of the state"
+        advice = "write 'after' and a duration if the time counts from the entry of the state"
     reading.sink.report(
         OPAQUE_TIME,
         reading.graph.subject(trigger),
@@ -281,8 +282,9 @@ def _share_occurrence(left: Transition, right: Transition) -> bool:
 def combine_joins(graph: Graph, machine: Machine, sink: Sink) -> bool:
     """Combine the transitions that lead to each join into one transition.
 
-    A fork or join is moved to the region that contains the state whose regions it connects. If a
-    source of a join has another completion transition, the fault is reported and the result is
+    A fork or join is moved to the region that contains the state whose regions it connects. An exit
+    point to which several regions lead is a join (UML 2.5.1, 14.2.3.7). If a source of a join has
+    another completion transition, the fault is reported and the result is
     False. A malformed fork or join is not changed; ``well_formedness`` reports it.
     """
     is_valid = True
@@ -293,18 +295,32 @@ def combine_joins(graph: Graph, machine: Machine, sink: Sink) -> bool:
                 vertex,
                 [transition.target for transition in machine.outgoing.get(vertex.id, ())],
             )
-        elif vertex.kind == "join":
-            incoming = [
-                transition
-                for transition in machine.list_transitions()
-                if transition.target == vertex.id
-            ]
-            if len(incoming) > 1 and all(_can_join(machine, transition) for transition in incoming):
-                _move_to_outer_region(
-                    machine, vertex, [transition.source for transition in incoming]
-                )
-                is_valid = _combine(graph, machine, incoming, sink) and is_valid
+            continue
+        incoming = [
+            transition
+            for transition in machine.list_transitions()
+            if transition.target == vertex.id
+        ]
+        if _is_joining_exit_point(machine, vertex, incoming):
+            machine.vertices[vertex.id] = vertex = replace(vertex, kind="join")
+        if vertex.kind == "join" and _can_combine(machine, incoming):
+            _move_to_outer_region(machine, vertex, [transition.source for transition in incoming])
+            is_valid = _combine(graph, machine, incoming, sink) and is_valid
     return is_valid
+
+
+def _can_combine(machine: Machine, incoming: list[Transition]) -> bool:
+    return len(incoming) > 1 and all(_can_join(machine, transition) for transition in incoming)
+
+
+def _is_joining_exit_point(machine: Machine, vertex: Vertex, incoming: list[Transition]) -> bool:
+    """Whether the vertex is an exit point at which all transitions come from different regions."""
+    if vertex.kind != "exit-point" or len(machine.outgoing.get(vertex.id, ())) != 1:
+        return False
+    pairs = combinations([transition.source for transition in incoming], 2)
+    return _can_combine(machine, incoming) and all(
+        find_common_state(machine, *pair) is not None for pair in pairs
+    )
 
 
 def _can_join(machine: Machine, transition: Transition) -> bool:

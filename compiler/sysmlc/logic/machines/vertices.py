@@ -231,8 +231,12 @@ def list_outgoing(draft: MachineDraft, vertex: str) -> list[tuple[Element, str]]
 
 
 def _list_transitions(graph: Graph, element: Element) -> list[Element]:
+    """Return the outgoing transitions; those of a machine that extends this one are not of it."""
+    machines = [a for a in graph.ancestors(element) if a.kind is Kind.STATE_MACHINE]
+    extensions = {e for machine in machines for e in graph.sources(machine, Edge.REDEFINES)}
     return [
         transition
         for transition in graph.sources(element, Edge.FLOW_SOURCE)
         if transition.kind is Kind.TRANSITION
+        and not (extensions and extensions.intersection(graph.ancestors(transition)))
     ]

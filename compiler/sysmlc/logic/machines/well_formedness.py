@@ -8,9 +8,13 @@ from collections.abc import Iterator
 from itertools import combinations
 
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.ir import Graph
+from sysmlc.ir import Edge, Graph
 from sysmlc.logic.machines.machine import HISTORIES, Machine, Region, Transition, element_id
-from sysmlc.logic.machines.supported_constructs import describe_missing_start, report_bad_start
+from sysmlc.logic.machines.supported_constructs import (
+    NOT_DERIVED,
+    describe_missing_start,
+    report_bad_start,
+)
 
 PSEUDO_CYCLE = rule(
     "SM424",
@@ -63,7 +67,15 @@ def is_well_formed(graph: Graph, machine: Machine, sink: Sink) -> bool:
 def _report_foreign_targets(graph: Graph, machine: Machine, sink: Sink) -> Iterator[str]:
     """Report transitions to a target outside this machine. Yield their ids."""
     for transition in machine.list_transitions():
-        if transition.target not in machine.vertices:
+        if transition.target in machine.vertices:
+            continue
+        target = graph.get(element_id(transition.target))
+        if target is not None and target.subkind == "exit-point" and target.owner == machine.id:
+            what = f"the end at exit point '{target.name}'"
+            subject = graph.subject(graph[element_id(transition.id)])
+            sink.report(NOT_DERIVED, subject, what=what, machine=graph[machine.id].name)
+            yield transition.id
+        else:
             where = "to a vertex outside of this machine"
             yield _report_stray(graph, transition, where, sink)
 
@@ -99,10 +111,18 @@ def _report_dead_ends(graph: Graph, machine: Machine, sink: Sink) -> Iterator[st
     for vertex in machine.vertices.values():
         is_nested_start = vertex.kind == "initial" and machine.regions[vertex.region].state != ""
         is_transient = not (vertex.is_stable or vertex.kind in HISTORIES or is_nested_start)
-        if is_transient and not machine.outgoing.get(vertex.id):
-            element = graph[element_id(vertex.id)]
-            name = element.name or vertex.kind
+        if not is_transient or machine.outgoing.get(vertex.id):
+            continue
+        element = graph[element_id(vertex.id)]
+        name = element.name or vertex.kind
+        if vertex.kind not in ("entry-point", "exit-point"):
             sink.report(DEAD_END, graph.subject(element), kind=vertex.kind, vertex=name)
+            yield vertex.id
+        elif graph.sources(element, Edge.FLOW_TARGET):
+            # UML states constraints on the transitions of the other pseudostates only (14.5.6).
+            what = f"{vertex.kind.replace('-', ' ')} '{name}' without outgoing transition"
+            machine_name = graph[machine.id].name
+            sink.report(NOT_DERIVED, graph.subject(element), what=what, machine=machine_name)
             yield vertex.id
 
 

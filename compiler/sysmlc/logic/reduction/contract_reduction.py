@@ -14,14 +14,18 @@ from sysmlc.logic.reduction.formula_reduction import (
     NotReducibleError,
     reduce_formula,
 )
-from sysmlc.logic.reduction.history import History
+from sysmlc.logic.reduction.history import History, HistoryBit
 
 
 class ReducedContract(Struct, frozen=True):
-    """A contract whose conjuncts are in GR(1), except those in ``irreducible``, unchanged."""
+    """A contract whose conjuncts are in GR(1), except those in ``irreducible``, unchanged.
+
+    ``bits`` are the history bits whose rules are the last guarantees.
+    """
 
     contract: Contract
     irreducible: tuple[Conjunct, ...]
+    bits: tuple[HistoryBit, ...] = ()
 
 
 def reduce_contract(contract: Contract) -> ReducedContract:
@@ -35,7 +39,7 @@ def reduce_contract(contract: Contract) -> ReducedContract:
     assumptions = tuple(_reduce_conjuncts(contract.assumptions, history, irreducible))
     guarantees = tuple(_reduce_conjuncts(contract.guarantees, history, irreducible))
     extended = _extend(contract, assumptions, guarantees, history)
-    return ReducedContract(extended, tuple(irreducible))
+    return ReducedContract(extended, tuple(irreducible), tuple(history.bits))
 
 
 def _reduce_conjuncts(

@@ -7,10 +7,20 @@ choice (the past temporal testers of Pnueli; Spectra and TuLiP do the same).
 
 from collections.abc import Iterable
 
+from msgspec import Struct
+
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Owner, Source, Variable
 from sysmlc.logic.formula import Formula, Var, has_primes
 from sysmlc.logic.printing import print_formula
+
+
+class HistoryBit(Struct, frozen=True):
+    """A history bit: its value in the first step, and the formula that it stores for one step."""
+
+    name: str
+    start: bool
+    rule: Formula
 
 
 class History:
@@ -21,20 +31,23 @@ class History:
 
     def __init__(self, taken: Iterable[str]) -> None:
         self._taken = set(taken)
-        self._bits: dict[tuple[str, Formula, Formula], Var] = {}
+        self._bits_by_fact: dict[tuple[str, Formula, Formula], Var] = {}
+        self.bits: list[HistoryBit] = []
         self.variables: list[Variable] = []
         self.conjuncts: list[Conjunct] = []
 
     def copy(self) -> "History":
         """Return an independent copy, which can be extended and then adopted or dropped."""
         duplicate = History(self._taken)
-        duplicate._bits = dict(self._bits)
+        duplicate._bits_by_fact = dict(self._bits_by_fact)
+        duplicate.bits = list(self.bits)
         duplicate.variables, duplicate.conjuncts = list(self.variables), list(self.conjuncts)
         return duplicate
 
     def adopt(self, extended: "History") -> None:
         """Replace the bits by those of *extended*, a copy to which bits were added."""
-        self._taken, self._bits = extended._taken, extended._bits
+        self._taken, self._bits_by_fact = extended._taken, extended._bits_by_fact
+        self.bits = extended.bits
         self.variables, self.conjuncts = extended.variables, extended.conjuncts
 
     def previous(self, formula: Formula, origin: str = "") -> Formula:
@@ -61,10 +74,10 @@ class History:
         It is false in the first step, which no step precedes.
         """
         key = ("did", step, f.FALSE)
-        if key not in self._bits:
-            self._bits[key] = Var(self._make_name("did"))
-            self.define(self._bits[key].name, step, False, origin)
-        return self._bits[key]
+        if key not in self._bits_by_fact:
+            self._bits_by_fact[key] = Var(self._make_name("did"))
+            self.define(self._bits_by_fact[key].name, step, False, origin)
+        return self._bits_by_fact[key]
 
     def define(self, name: str, rule: Formula, start: bool, origin: str = "") -> None:
         """Add a bit with an initial value; in each next step it has the present value of *rule*."""
@@ -73,6 +86,7 @@ class History:
         update = f.iff(Var(name, primed=True), rule)
         text = f"'{name}' remembers {print_formula(rule)}."
         self._taken.add(name)
+        self.bits.append(HistoryBit(name, start, rule))
         self.variables.append(Variable(name, Owner.SYSTEM, BooleanDomain(), origin))
         for formula, class_ in ((initial, Class.INIT), (update, Class.SAFETY)):
             conjunct = Conjunct(formula, class_, origin, text, source=Source.DERIVED)
@@ -87,12 +101,12 @@ class History:
         if has_primes(stay) or has_primes(goal):
             raise ValueError("a history bit cannot refer to the next step")
         key = (stem, stay, goal)
-        if key not in self._bits:
-            bit = self._bits[key] = Var(self._make_name(stem))
+        if key not in self._bits_by_fact:
+            bit = self._bits_by_fact[key] = Var(self._make_name(stem))
             rules = {"was": stay, "always_was": f.both(stay, bit)}
             rule = rules.get(stem, f.either(goal, f.both(stay, bit)))
             self.define(bit.name, rule, start, origin)
-        return self._bits[key]
+        return self._bits_by_fact[key]
 
     def _make_name(self, stem: str) -> str:
         number = 1

@@ -28,9 +28,11 @@ NOT_FORMAL = rule(
     "condition-not-formal",
     Severity.INFO,
     "the {kind} '{text}' of '{service}' is in no contract: {reason}{further}",
+    help="compare Booleans, enumerations and Integers for a contract about it",
 )
 _ORDERS = frozenset(["<", "<=", ">", ">="])
 _KINDS = ("", "precondition", "postcondition", "body")
+_KIND_WORDS = {"": "constraint", "body": "body condition"}
 _LANGUAGE_ADVICE = "choose OCL or no language for conditions that are expressions over features"
 _LANGUAGES = ("", "kerml", "sysml", "ocl", "alf")
 
@@ -67,7 +69,7 @@ def iter_services(graph: Graph, assumed: tuple[int, int], sink: Sink) -> Iterato
     constraints_by_service: dict[str, tuple[Element, list[Element]]] = {}
     for constraint in graph.of_kind(Kind.CONSTRAINT):
         owner = graph.owner(constraint)
-        if owner is not None and _is_condition(constraint):
+        if owner is not None and _is_condition(constraint) and not _is_in_profile(graph, owner):
             for service in _performed_services(graph, owner):
                 constraints_by_service.setdefault(service.id, (service, []))[1].append(constraint)
     for service, constraints in constraints_by_service.values():
@@ -85,6 +87,11 @@ def _is_condition(constraint: Element) -> bool:
     if not language:
         return True
     return not is_formal(language, body)
+
+
+def _is_in_profile(graph: Graph, owner: Element) -> bool:
+    """Whether a stereotype owns the element: its operations query models and are no services."""
+    return any(above.kind is Kind.STEREOTYPE for above in graph.ancestors(owner))
 
 
 def _performed_services(graph: Graph, owner: Element) -> Iterator[Element]:
@@ -267,7 +274,7 @@ class _InformalConditions:
             sink.report(
                 NOT_FORMAL,
                 graph.subject(constraint),
-                kind=constraint.subkind or "constraint",
+                kind=_KIND_WORDS.get(constraint.subkind, constraint.subkind),
                 text=str(constraint.attrs["body"]),
                 service=service.name,
                 reason=reason,

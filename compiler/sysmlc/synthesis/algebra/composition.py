@@ -106,9 +106,14 @@ def _compose(composite: Composite, manager: Manager) -> Composition:
     ]
     failures = tuple(_find_violations(demands, runs))
     losses = tuple(_find_violations(composite.exclusions, runs))
-    # An assumption that the compiler derives is no demand on those who wrote the model.
+    # The environment ends what no part ends: such an assumption of the compiler is no demand on
+    # those who wrote the model. Where another part decides the end, it has to come.
+    decided = {name for part in parts for name in outputs_of(part)}
     open_assumptions = tuple(
-        assumption for assumption in discharge_result.open if not assumption.conjunct.is_derived
+        assumption
+        for assumption in discharge_result.open
+        if not assumption.conjunct.is_derived
+        or not _list_inputs(assumption.part, assumption.conjunct).isdisjoint(decided)
     )
     unchecked = {
         name for conjunct in whole_contract.guarantees for name in _list_variables(conjunct)
@@ -123,13 +128,15 @@ def _find_possible_endings(
 ) -> tuple[Conjunct, ...]:
     """Return the derived assumptions of the parts: actions end, and loops are left.
 
-    The result is empty if no run of the parts satisfies all of them.
+    Ends that another part decides are left out, because that part has to bring them about. The
+    result is empty if no run of the parts satisfies all of them.
     """
+    decided = {name for part in composite.parts for name in outputs_of(part)}
     endings = tuple(
         conjunct
         for part in composite.parts
         for conjunct in part.contract.assumptions
-        if conjunct.is_derived
+        if conjunct.is_derived and _list_inputs(part, conjunct).isdisjoint(decided)
     )
     guarantees = (conjunct for part in composite.parts for conjunct in part.contract.guarantees)
     conjuncts = (*assumed, *composite.wiring, *guarantees, *endings)
@@ -152,6 +159,11 @@ def _find_undecided(composite: Composite, whole: Contract) -> set[str]:
     decided = {name for part in composite.parts for name in outputs_of(part)}
     own = {variable.name for variable in variables if variable.owner is Owner.SYSTEM}
     return own - decided - _list_defined_names(whole)
+
+
+def _list_inputs(part: Part, conjunct: Conjunct) -> set[str]:
+    """Return the variables of an assumption that the part itself does not decide."""
+    return _list_variables(conjunct) - set(outputs_of(part))
 
 
 def _list_variables(conjunct: Conjunct) -> set[str]:

@@ -5,6 +5,7 @@ differ between the two libraries, or that may run for long, are methods of ``Man
 """
 
 import logging
+import sys
 import time
 import warnings
 from collections.abc import Collection, Iterator, Mapping
@@ -26,6 +27,7 @@ from sysmlc.synthesis.bdd.limits import (
     intercept_interrupts,
 )
 
+_NETWORKX = "networkx"
 ENGINES = ("cudd", "autoref")
 """Names of the libraries, the fast one first."""
 _DEFAULT_MEMORY = 8 << 30
@@ -34,11 +36,13 @@ _GIBIBYTE = 1 << 30
 _EXPECTED_MEMORY = 1 << 26
 """Bytes that CUDD is told to expect. CUDD allocates and clears a share of them at once, which for
 8 GiB takes longer than solving most games."""
-REORDER_AT = 40_000
-"""Live nodes above which automatic reordering is switched on. With a smaller value, a grid of 25
-cells with four robots did not end."""
-_LATE_REORDER_AT = 1_000_000
-"""Live nodes above which it is switched on inside ``without_reordering``."""
+REORDER_AT = 15_000
+"""Live nodes above which automatic reordering (sifting) is switched on. With 40,000 nodes, AMBA
+with three masters took eight times as long; with 10,000, robots on 25 cells took 1.5 times as long.
+"""
+MAX_SIFTED_NODES = 150_000
+"""Live nodes above which it is switched off again. CUDD can be stopped only between two bits that
+it sifts. The time for one bit grows fast: 0.1 s at 100,000 nodes, 12 s at 500,000."""
 _CACHE_SLOTS = 1 << 14
 """Initial slots of CUDD's cache, which grows."""
 _NODE_SIZE = 32
@@ -68,20 +72,25 @@ class Manager:
     """
 
     def __init__(
-        self, engine: str = "", limits: Limits | None = None, progress: Progress | None = None
+        self,
+        engine: str = "",
+        limits: Limits | None = None,
+        progress: Progress | None = None,
+        start_time: float | None = None,
     ) -> None:
         """Create an empty manager on the library *engine*, or on the fastest one that is installed.
 
-        Raises ImportError if the requested library cannot be loaded.
+        The CPU time counts from *start_time* (``time.process_time``), or else from now. Raises
+        ImportError if the requested library cannot be loaded.
         """
         self.limits = limits or Limits()
         self.engine, library = _import_library(engine)
         self._library = library
         self._progress = progress
-        self._start_time = time.process_time()
+        self._start_time = time.process_time() if start_time is None else start_time
         self._peak = self._nodes = self._ceiling = 0
         self._next_limit_check = 0.0
-        self._reorder_at = REORDER_AT
+        self._may_reorder, self._is_reordering = True, False
         self._declaration_order: dict[str, int] = {}
         self._supports: WeakKeyDictionary[Node, frozenset[str]] = WeakKeyDictionary()
         self._stop_reason: StopReason | None = None
@@ -200,16 +209,17 @@ class Manager:
         """Switch the library's automatic reordering of bits on or off."""
         # CUDD reorders inside operations, so a switch takes effect with the next one.
         self._bdd.configure(reordering=is_on)
+        self._is_reordering = is_on
 
     @contextmanager
     def without_reordering(self) -> Iterator[None]:
-        """Inside the block, reorder bits only if there are many more nodes than ``REORDER_AT``."""
-        previous, self._reorder_at = self._reorder_at, _LATE_REORDER_AT
+        """Inside the block, do not reorder bits."""
+        previous, self._may_reorder = self._may_reorder, False
         self.reorder_automatically(False)
         try:
             yield
         finally:
-            self._reorder_at = previous
+            self._may_reorder = previous
 
     @contextmanager
     def limit_nodes(self, nodes: int) -> Iterator[None]:
@@ -241,26 +251,29 @@ class Manager:
         """Report *activity* as progress and adapt reordering. Raises LimitError at a limit."""
         if activity and self._progress is not None:
             self._progress(activity)
-        # Reordering depends on nodes alone: results must not depend on the speed of the machine.
-        nodes = self._nodes if self._count_live_nodes is None else self._count_live_nodes()
-        # Nodes are compared in each call, because small games end before the next check by time.
-        if self._stop_reason is None:
-            self._stop_reason = find_exceeded_limit(Usage(nodes, nodes, 0.0), self.limits, 0)
         if self.should_stop() and self._stop_reason is not None:
             raise self._stop_reason()
-        if nodes > self._reorder_at:
+        # Reordering depends on nodes alone: results must not depend on the speed of the machine.
+        is_sifted = self._may_reorder and REORDER_AT < self._nodes <= MAX_SIFTED_NODES
+        if is_sifted and not self._is_reordering:
             self.reorder_automatically(True)
 
     def should_stop(self) -> bool:
         """Return whether a limit is exceeded or Ctrl-C was pressed; called by CUDD, too."""
+        if self._stop_reason is not None:
+            return True
+        if self._count_live_nodes is not None:
+            self._nodes = self._count_live_nodes()
+            usage = Usage(self._nodes, self._nodes, 0.0)
+            self._stop_reason = find_exceeded_limit(usage, self.limits, self._ceiling)
+        if self._is_reordering and self._nodes > MAX_SIFTED_NODES:
+            self.reorder_automatically(False)
         time_now = time.process_time()
         if self._stop_reason is None and time_now >= self._next_limit_check:
             self._next_limit_check = time_now + _SECONDS_BETWEEN_LIMIT_CHECKS
             usage = self.usage()
-            self._nodes, self._stop_reason = (
-                usage.nodes,
-                find_exceeded_limit(usage, self.limits, self._ceiling),
-            )
+            self._nodes = usage.nodes
+            self._stop_reason = find_exceeded_limit(usage, self.limits, self._ceiling)
         return self._stop_reason is not None
 
     def _count_nodes(self) -> tuple[int, int]:
@@ -311,11 +324,30 @@ def _import_library(engine: str) -> tuple[str, ModuleType]:
     names = (engine,) if engine else ENGINES
     for name in names:
         try:
-            return name, import_module(f"dd.{name}")
+            with _hide_networkx():
+                return name, import_module(f"dd.{name}")
         except ImportError:
             if name == names[-1]:
                 raise
     raise ImportError(engine)
+
+
+@contextmanager
+def _hide_networkx() -> Iterator[None]:
+    """Inside the block, let imports of networkx fail.
+
+    dd works without networkx, which it uses only to export diagrams as graphs, and importing it
+    takes longer than most decisions.
+    """
+    if _NETWORKX in sys.modules:
+        yield
+        return
+    hidden: dict[str, Any] = {_NETWORKX: None}
+    sys.modules.update(hidden)
+    try:
+        yield
+    finally:
+        del sys.modules[_NETWORKX]
 
 
 def _create_bdd(library: ModuleType, engine: str, memory: int) -> Any:  # noqa: ANN401

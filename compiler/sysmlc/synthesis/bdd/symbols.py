@@ -14,7 +14,7 @@ from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
 from sysmlc.synthesis.bdd import bit_vectors as vectors
 from sysmlc.synthesis.bdd.bit_vectors import Vector
 from sysmlc.synthesis.bdd.manager import Manager, Node
-from sysmlc.synthesis.bdd.variable_order import order_bits
+from sysmlc.synthesis.bdd.variable_order import VariableOrder, order_bits
 
 
 class SymbolError(ValueError):
@@ -32,8 +32,9 @@ class Symbols:
         manager: Manager,
         variables: Iterable[Variable],
         edges: Iterable[Collection[str]] = (),
+        order: VariableOrder = VariableOrder.CONJUNCTS,
     ) -> None:
-        """Declare the bits of the variables in the order of ``variable_order``.
+        """Declare the bits of the variables in an order of ``variable_order``.
 
         Each of *edges* contains the names of the variables of one conjunct.
         """
@@ -42,7 +43,7 @@ class Symbols:
         self._bits = {name: _bit_names(variable) for name, variable in self.variables.items()}
         self._nodes: dict[Formula, Node] = {}
         self._vectors: dict[Formula, Vector] = {}
-        bit_order = order_bits(self.variables.values(), self._bits, edges)
+        bit_order = order_bits(self.variables.values(), self._bits, edges, order)
         manager.declare([name for bit in bit_order for name in (bit, next_bit(bit))])
         self._to_next = {bit: manager.var(next_bit(bit)) for bit in bit_order}
         self._to_current = {next_bit(bit): manager.var(bit) for bit in bit_order}

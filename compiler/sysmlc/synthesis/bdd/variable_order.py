@@ -4,12 +4,12 @@ Integers with the same range usually are quantities of one kind: positions and t
 Formulas compare them, so their bits are interleaved, the most significant ones first. Relations
 between three or more of them then need a fifth of the nodes. Wide integers are interleaved whatever
 their ranges: without that, the comparison of two integers needs as many nodes as they have values.
-Other variables keep the order of their declaration. If there are many variables (tokens of an
-activity), the heuristic FORCE (Aloul, Markov, Sakallah 2003) places variables close together that
-occur in the same conjuncts.
+
+No order suits all contracts. ``VariableOrder`` names those that are tried in turn.
 """
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from enum import StrEnum
 from itertools import zip_longest
 
 from sysmlc.logic import domains
@@ -21,17 +21,38 @@ in any order."""
 MIN_INTERLEAVED_BITS = 7
 """Least width of integers that are interleaved with one another although their ranges differ."""
 MIN_FORCE_VARIABLES = 40
-"""Least number of variables to order with FORCE."""
+"""From so many variables on, the order of FORCE is always used."""
+_MIN_HUB_NEIGHBOURS = 4
+_HUB_SHARE = 1 / 3
+"""A hub occurs in conjuncts with at least this share of the variables."""
+_MAX_HUBS_SHARE = 1 / 5
+"""Among more variables than this share, none is a hub: an arbiter relates all grants."""
+_MIN_SPAN_SHARE = 0.7
+"""FORCE must reduce the distances in conjuncts to this share of those in the declared order."""
 MAX_FORCE_ROUNDS = 300
 """Rounds after which FORCE ends even if the order still improves."""
 MAX_EDGE_VARIABLES = 20
 """Conjuncts with more variables are ignored by FORCE: they relate nearly everything."""
 
 
+class VariableOrder(StrEnum):
+    """A way to order the variables of a contract."""
+
+    CONJUNCTS = "by conjuncts"
+    """First *hubs*: few variables that conjuncts relate to many others, such as the floor of an
+    elevator with a call for each floor. They select which of the others count; below the others, a
+    diagram has a node for each combination of these. Then variables of the same conjuncts close
+    together, by the heuristic FORCE (Aloul, Markov, Sakallah 2003), or as they are declared if that
+    is nearly as close: authors keep together what belongs together."""
+    DECLARED = "declared"
+    """As they are declared."""
+
+
 def order_bits(
     variables: Iterable[Variable],
     bits: Mapping[str, tuple[str, ...]],
     edges: Iterable[Collection[str]] = (),
+    order: VariableOrder = VariableOrder.CONJUNCTS,
 ) -> tuple[str, ...]:
     """Return all bits in the order in which they shall be declared.
 
@@ -43,15 +64,57 @@ def order_bits(
         is_broad = is_number and len(bits[variable.name]) >= MIN_INTERLEAVED_BITS
         key = MIN_INTERLEAVED_BITS if is_broad else variable.domain if is_number else variable.name
         groups.setdefault(key, []).append(variable.name)
-    if len(bits) >= MIN_FORCE_VARIABLES and all(
-        len(names) < MIN_INTERLEAVED_VARIABLES for names in groups.values()
-    ):
-        return tuple(
-            bit for name in order_by_force(tuple(bits), tuple(edges)) for bit in bits[name]
-        )
-    return tuple(
-        bit for names in groups.values() for bit in _interleave([bits[member] for member in names])
-    )
+    units = _list_units(groups.values(), bits)
+    names = tuple(units)
+    if order is VariableOrder.CONJUNCTS:
+        names = _order_by_conjuncts(names, _join_names(units, edges))
+    return tuple(bit for name in names for bit in _interleave([bits[n] for n in units[name]]))
+
+
+def _list_units(
+    groups: Iterable[list[str]], bits: Mapping[str, tuple[str, ...]]
+) -> dict[str, list[str]]:
+    """Return the variables that are ordered as one, by the name of the first of them."""
+    units: dict[str, list[str]] = {}
+    for names in groups:
+        are_interleaved = len(names) >= MIN_INTERLEAVED_VARIABLES
+        are_interleaved |= len(bits[names[0]]) >= MIN_INTERLEAVED_BITS
+        units |= {names[0]: names} if are_interleaved else {name: [name] for name in names}
+    return units
+
+
+def _join_names(
+    units: Mapping[str, list[str]], edges: Iterable[Collection[str]]
+) -> list[tuple[str, ...]]:
+    """Return the edges between units, without those that relate nearly everything."""
+    unit_of = {name: unit for unit, names in units.items() for name in names}
+    joined = (tuple(dict.fromkeys(unit_of[name] for name in edge)) for edge in edges)
+    return [edge for edge in joined if 1 < len(edge) <= MAX_EDGE_VARIABLES]
+
+
+def _order_by_conjuncts(names: tuple[str, ...], edges: Sequence[Sequence[str]]) -> tuple[str, ...]:
+    hubs = _find_hubs(names, edges)
+    others = tuple(name for name in names if name not in hubs)
+    inner_edges = [tuple(name for name in edge if name not in hubs) for edge in edges]
+    ordered = order_by_force(others, inner_edges)
+    allowed_span = _MIN_SPAN_SHARE * _total_span(others, inner_edges)
+    is_closer = _total_span(ordered, inner_edges) < allowed_span
+    return (*hubs, *(ordered if is_closer or len(names) >= MIN_FORCE_VARIABLES else others))
+
+
+def _find_hubs(names: Sequence[str], edges: Iterable[Sequence[str]]) -> tuple[str, ...]:
+    """Return the hubs, the one with the most neighbours first."""
+    neighbours: dict[str, set[str]] = {name: set() for name in names}
+    # A conjunct about many variables ("there is no call") would make hubs of all of them.
+    least = max(_MIN_HUB_NEIGHBOURS, _HUB_SHARE * len(names))
+    for edge in edges:
+        for name in edge if len(edge) <= least else ():
+            neighbours[name].update(edge)
+    # A name counts as its own neighbour.
+    hubs = [name for name in names if len(neighbours[name]) > least]
+    if len(hubs) > _MAX_HUBS_SHARE * len(names):
+        return ()
+    return tuple(sorted(hubs, key=lambda name: -len(neighbours[name])))
 
 
 def _interleave(bit_lists: list[tuple[str, ...]]) -> Iterable[str]:
@@ -101,5 +164,6 @@ def _total_span(order: Sequence[str], edges: Iterable[Sequence[str]]) -> int:
     return sum(
         max(edge_positions) - min(edge_positions)
         for edge in edges
+        if edge
         for edge_positions in [[positions[name] for name in edge]]
     )

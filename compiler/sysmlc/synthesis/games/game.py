@@ -12,6 +12,7 @@ from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owne
 from sysmlc.logic.formula import Formula, variables
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.bdd.symbols import SymbolError, Symbols
+from sysmlc.synthesis.bdd.variable_order import VariableOrder
 
 
 class OutsideGr1Error(Exception):
@@ -86,7 +87,9 @@ class Game(Struct, frozen=True):
         )
 
 
-def make_game(contract: Contract, manager: Manager) -> Game:
+def make_game(
+    contract: Contract, manager: Manager, order: VariableOrder = VariableOrder.CONJUNCTS
+) -> Game:
     """Translate a contract into a game; the manager must be new.
 
     Raises OutsideGr1Error for a conjunct that GR(1) cannot express, LimitError if a limit is
@@ -100,9 +103,8 @@ def make_game(contract: Contract, manager: Manager) -> Game:
     # An order of bits that suits single constraints can be bad for the whole game, so the
     # initial order is kept while the contract is translated.
     with manager.guard(), manager.without_reordering():
-        return _translate(
-            contract, Symbols(manager, contract.variables, _variables_of_conjuncts(contract))
-        )
+        edges = _variables_of_conjuncts(contract)
+        return _translate(contract, Symbols(manager, contract.variables, edges, order))
 
 
 def _variables_of_conjuncts(contract: Contract) -> Iterator[tuple[str, ...]]:
