@@ -3,14 +3,11 @@
 ``JUSTIFIED`` states why each error in a real model is right.
 """
 
-import json
 import re
 from collections import Counter
 
 import pytest
-from click.testing import CliRunner
-
-from sysmlc.cli.group import sysmlc
+from corpus_findings import build_model, list_repeated_facts
 
 pytestmark = pytest.mark.corpus
 
@@ -39,20 +36,8 @@ def list_entries(corpus):
 @pytest.fixture(scope="module")
 def outcomes(corpus, tmp_path_factory):
     names = [name for name in list_entries(corpus) if name not in READ_ELSEWHERE]
-    return {name: build(corpus, name, tmp_path_factory.mktemp("out")) for name in names}
-
-
-def build(corpus, name, output):
-    """Build a model; return the exit code, the diagnostics and the number of outputs."""
-    model = str(corpus / "xmi" / name)
-    result = CliRunner().invoke(
-        sysmlc, ["build", model, "-o", str(output), "--format", "json", "--no-cache"]
-    )
-    assert result.exception is None or isinstance(result.exception, SystemExit), name
-    outputs = [
-        path for folder in output.iterdir() if folder.is_dir() for path in folder.rglob("*.*")
-    ]
-    return result.exit_code, json.loads(result.stdout)["diagnostics"], len(outputs)
+    folder = corpus / "xmi"
+    return {name: build_model(folder / name, tmp_path_factory.mktemp("out")) for name in names}
 
 
 @pytest.mark.long
@@ -84,6 +69,15 @@ def test_every_error_on_a_real_model_is_justified(outcomes):
         if finding["severity"] == "error" and name not in NOT_MODELS
     }
     assert errors == set(JUSTIFIED)
+
+
+def test_every_fact_is_reported_once(outcomes):
+    repeated = [
+        f"{name}: {line}"
+        for name, (_, findings, _) in outcomes.items()
+        for line in list_repeated_facts(findings)
+    ]
+    assert repeated == []
 
 
 def test_every_diagnostic_has_a_location(outcomes):

@@ -50,8 +50,12 @@ NEVER_WRITTEN = {
         f"sysmlc-diagnostics#/requirements/{member}"
         for member in (
             *("requirement", "component", "formula", "verdict", "reason"),
-            *("witness", "witness/loop", "witness/steps"),
+            *("witness", "witness/loop", "witness/steps", "vacuous", "needs"),
         )
+    ),
+    *(
+        f"sysmlc-diagnostics#/behaviours/{member}"
+        for member in ("component", "unreachable", "write_conflicts")
     ),
 }
 

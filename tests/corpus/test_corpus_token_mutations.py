@@ -7,57 +7,35 @@ import pytest
 from corpus.token_mutations import draw_mutations, find_imported, is_noticed, look_at
 
 pytestmark = pytest.mark.corpus
-_SEED = 26
 _REVIEWED = {
-    "the import of a library only makes names visible; its verdict is external": (
-        r".*\| (private|public|protected) import .*"
+    "a flow is from its first end with and without the word (SysML 2.0, 8.2.2.16)": (
+        r"'from' -> '' \| (then )?(succession )?flow .* to .*"
     ),
-    "a keyword that another word of the declaration implies": (
-        r"'(from|flow|ref|enum|use|abstract|library|doc|def)' -> ''.*"
+    "a directed usage is a reference anyway (SysML 2.0, 8.2.2.6.2, note 1)": (
+        r"'ref' -> '' \| (in|out|inout) .*"
     ),
-    "documentation and a comment of its owner have the same meaning": (r"'doc' -> 'comment'.*"),
-    "a usage without a keyword is a reference, or has the kind of what it redefines": (
-        r"'(attribute|part|item|port|occurrence|action)' -> ''.*"
+    "a usage without a keyword is a reference (SysML 2.0, 8.2.2.6.3)": (
+        r"'ref' -> '' \| (:>>|:>|\w+ ?[:;=]).*"
     ),
-    "a feature in a place where the graph has another kind of element, or none": (
-        r"'(attribute|part|item|port|action|occurrence)' -> "
-        r"'(attribute|part|item|ref|port|calc|state)'.*"
+    "a member that is no import is public unless it states another visibility": (
+        r"'public' -> '' \| (?!import).*"
     ),
-    "a feature that specialises a definition has the type of one that it types": (r"':' -> ':>'.*"),
-    "redefinition or subsetting of a feature of a library, of which the graph keeps the types": (
-        r"'(:>>|:>|redefines|subsets)' -> '.*"
+    "a member of an enumeration definition is an enumerated value (SysML 2.0, 8.2.2.8)": (
+        r"'enum' -> '' \| \w+;?( .*)?"
     ),
-    "the name of a subject, actor, event, end or parameter that the graph does not represent": (
-        r"'\w+' -> '(\w+x)?' \| ("
-        r"(then )?(subject|actor|event|end|in|out|include|message|objective)\b"
-        r"|from |to |\w+ ::>|part  :).*"
+    "a default value is written with and without the sign (KerML 1.0, 8.2.5.10)": (
+        r"'=' -> '' \| .* default .*"
     ),
-    "the kind of a value that the graph does not represent: of subjects, actors, messages": (
-        r"'=' -> ':='.*"
-    ),
-    "the direction of a parameter of a constraint, which is an input unless it is stated": (
-        r"'in' -> ('out'|'inout'|'').*"
-    ),
-    "a condition of an objective, which SM481 reports as not read": (
-        r".*\| (vehicle\.|fuelEconomyResult).*"
-    ),
-    "an attribute of a usage outside of a definition, which has no multiplicity in the graph": (
-        r"'(nonunique|ordered)' -> ''.*"
-    ),
-    "whether a constraint is assumed or required, which the graph does not represent yet": (
-        r"'(assume|require)' -> '.*"
-    ),
-    "the multiplicity of an actor or an event": (r".*\| (actor|event) .*"),
 }
-"""Patterns of changes without a difference and a finding, by the reason why they have none."""
+"""Patterns of changes that do not change the model, by the reason for it."""
 
 
-def find_unnoticed(folder, count):
+def find_unnoticed(folder, count, seed):
     """Return the mutations that the compiler does not notice and that no reason explains."""
     paths = sorted(folder.rglob("*.sysml"))
     texts = {path.relative_to(folder).as_posix(): path.read_text() for path in paths}
     views, unnoticed = {}, []
-    for mutation in draw_mutations(texts, count, _SEED):
+    for mutation in draw_mutations(texts, count, seed):
         path = mutation.path
         if path not in views:
             imported = find_imported(path, texts)
@@ -68,14 +46,21 @@ def find_unnoticed(folder, count):
     return unnoticed
 
 
-@pytest.mark.parametrize("count", [30, pytest.param(1_000, marks=pytest.mark.long)])
-def test_a_changed_token_is_noticed_or_reviewed(corpus, count):
-    unnoticed = find_unnoticed(corpus / "sysml2" / "omg-release" / "training", count)
+@pytest.mark.parametrize(
+    ("count", "seed"),
+    [
+        (30, 26),
+        pytest.param(1_000, 26, marks=pytest.mark.long),
+        pytest.param(1_000, 7, marks=pytest.mark.long),
+    ],
+)
+def test_a_changed_token_is_noticed_or_reviewed(corpus, count, seed):
+    unnoticed = find_unnoticed(corpus / "sysml2" / "omg-release" / "training", count, seed)
     unexplained = [
         mutation.line
         for mutation in unnoticed
-        if not any(re.search(f"(^|: ){reason}$", mutation.line) for reason in _REVIEWED.values())
+        if not any(re.search(f": {reason}$", mutation.line) for reason in _REVIEWED.values())
     ]
-    # The list covers the drawn mutations of the quick suite; some 5 of 1,000 have no reason yet.
-    assert unexplained[count // 50 :] == []
-    assert len(unnoticed) <= count // 10
+    assert unexplained == []
+    # 3 of 1,000 when this test was written.
+    assert len(unnoticed) <= max(1, count // 100)

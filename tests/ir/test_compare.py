@@ -353,3 +353,45 @@ Package valves "Valves"
     assert list_changes_after(model, ("references pumps", "references valves")) == [
         ": changed package Plant, import: {} => {}".format(*imported)
     ]
+
+
+def test_a_value_that_is_an_id_of_automationml_leads_to_the_element_in_both_notations():
+    plant = """\
+Class gate "Gate" role="block"
+  Property id-1 "belt" role="part"
+  Property target "target" default="id-1"
+"""
+    same = plant.replace("Property id-1", 'Property belt caex_id="id-1"').replace(
+        'belt caex_id="id-1" "belt"', 'belt "belt" caex_id="id-1"'
+    )
+    assert list_changes(plant, same, "id") == []
+    other = same.replace('default="id-1"', 'default="id-2"')
+    assert list_changes(plant, other, "id") == [
+        "Gate: changed property target, default: belt => id-2"
+    ]
+
+
+def test_a_comment_without_an_annotated_element_is_about_its_owner():
+    about_nothing = """\
+Class gate "Gate" role="block"
+  Comment c body="slow"
+Class belt "Belt" role="block"
+"""
+    about_owner = about_nothing.replace("Class belt", "  -> references gate\nClass belt")
+    about_owner = about_owner.replace("  -> references", "    -> references")
+    assert list_changes(about_nothing, about_owner) == []
+    assert list_changes(about_nothing, about_owner.replace("references gate", "references belt"))
+
+
+def test_a_first_node_without_a_name_is_called_start():
+    model = """\
+Activity a "Fill"
+  Control first "" subkind="initial"
+  Action pump "pump" subkind="opaque"
+  ControlFlow f
+    -> flow-source first
+    -> flow-target pump
+"""
+    assert list_changes(model, model.replace('first ""', 'first "start"'), "id") == []
+    renamed = list_changes(model, model.replace('first ""', 'first "begin"'))
+    assert [change for change in renamed if "renamed" in change]

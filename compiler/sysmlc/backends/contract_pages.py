@@ -12,10 +12,10 @@ from msgspec import Struct
 
 from sysmlc.backends.templates import Templates
 from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.compare.titles import separate_words
 from sysmlc.logic.contract import Class, Conjunct, Contract, Variable
 from sysmlc.logic.domains import describe
 from sysmlc.logic.printing import print_formula
-from sysmlc.support.camel_case import separate_words
 from sysmlc.support.escapes import escape_code, escape_markdown
 
 _SHIPPED = Templates("contracts", None)

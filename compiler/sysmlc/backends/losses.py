@@ -31,7 +31,7 @@ class LossCounter:
     def report(self, sink: Sink) -> None:
         """Report one diagnostic for each combination of rule and facts."""
         for loss, first, facts in self.list_losses():
-            sink.report(loss, self.graph.subject(first), notes=(), help="", **facts)
+            sink.report(loss, self.graph.subject(first), notes=(), help="", cause="", **facts)
 
     def list_losses(self) -> list[tuple[Rule, Element, dict[str, object]]]:
         """Return each loss with its first element and the facts of its message."""

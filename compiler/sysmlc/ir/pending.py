@@ -1,5 +1,7 @@
-"""What front ends store for passes: references to resolve, and the diagrams of authors."""
+"""What front ends store beside the graph: references to resolve, and what authors wrote."""
 
+from collections.abc import Callable, Iterable, Mapping
+from functools import cached_property
 from typing import NamedTuple
 
 from msgspec import Struct
@@ -22,6 +24,12 @@ class Reference(NamedTuple):
     kind: Kind = Kind.CLASS
     name: str = ""
     ordinal: int = -1
+
+
+class TextFile(NamedTuple):
+    """A file whose elements follow the rules of SysML v2 where those of UML differ."""
+
+    path: str
 
 
 class Drawing(Struct, frozen=True):
@@ -47,3 +55,33 @@ class Drawing(Struct, frozen=True):
     paths: tuple[tuple[str, ...], ...] = ()
     listed: tuple[str, ...] = ()
     relations: tuple[tuple[Edge, str, str], ...] = ()
+
+
+class Statement(NamedTuple):
+    """A part of an element's declaration, such as its keyword or a feature that it subsets.
+
+    ``element`` is the id of the element, ``aspect`` the name of the part. ``words`` are texts, and
+    ids of elements in place of their names.
+    """
+
+    element: str
+    aspect: str
+    words: tuple[str, ...]
+
+
+class Declarations:
+    """How the authors of texts in SysML v2 declared the elements, for the comparison of texts.
+
+    ``read`` returns the statements; it is called at most once, and only by a comparison.
+    """
+
+    def __init__(self, read: Callable[[], Iterable[Statement]]) -> None:
+        self._read = read
+
+    @cached_property
+    def statements(self) -> Mapping[str, list[Statement]]:
+        """The statements by the id of their element."""
+        index: dict[str, list[Statement]] = {}
+        for statement in self._read():
+            index.setdefault(statement.element, []).append(statement)
+        return index

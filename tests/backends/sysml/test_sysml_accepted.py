@@ -97,3 +97,123 @@ def test_an_action_sends_via_a_port_of_its_own_block():
     model = SENDING.format(port="motor.p")
     assert not any(" via " in line for line in lines_of(model))
     assert [loss[:5] for loss in find_losses(model)] == ["SM736"]
+
+
+UNKNOWN_FEATURE = """
+Package p "Plant"
+  Class gate "Gate" role="block"
+    Property gate.s "speed" role="value"
+  Instance i "gate1"
+    -> instance-of gate
+    Slot s "" value="5"
+      -> instance-of {feature}
+Class u "unknown" external=true href="lost#unknown"
+"""
+ARGUMENT = """
+Package p "Plant"
+  DataType position "Position" role="value type"
+  Signal s "Start"
+  Activity a "work"
+    Action c "notify" subkind="{action}"
+      -> calls {called}
+      Pin c.x "position" direction="in"
+        -> typed-by position
+  Activity b "move"
+    Parameter b.x "what" direction="in"
+      -> typed-by thing
+  Class thing "Thing" role="block"
+"""
+GUARD = """
+Package p "Plant"
+  Class thing "Thing" role="block"
+  DataType boolean "Boolean" external=true
+  Activity a "work"
+    Parameter a.x "acquired" direction="in"
+      -> typed-by {type}
+    ActivityParameter a.n "acquired"
+      -> references a.x
+    Control d "choose" subkind="decision"
+    Action x "act" subkind="opaque"
+    ControlFlow f guard="acquired"
+      -> flow-source d
+      -> flow-target x
+"""
+FLOW_OF_FEATURES = """
+Package p "Plant"
+  Class motor "Motor" role="block"
+    Port motor.p "line" role="proxy port"
+  Class gate "Gate" role="block"
+    Port gate.p "line" role="proxy port"
+  ItemFlow f "" role="item flow"
+    -> flow-source motor.p
+    -> flow-target gate.p
+"""
+
+
+@pytest.mark.parametrize(
+    "model",
+    [
+        pytest.param(UNKNOWN_FEATURE.format(feature="u"), id="slot-of-an-unknown-feature"),
+        pytest.param(ARGUMENT.format(action="send", called="s"), id="value-that-is-sent"),
+        pytest.param(ARGUMENT.format(action="call-behavior", called="b"), id="value-for-a-part"),
+        pytest.param(GUARD.format(type="thing"), id="guard-that-is-a-part"),
+        pytest.param(FLOW_OF_FEATURES, id="flow-between-features-of-blocks"),
+    ],
+)
+def test_both_tools_accept_what_sysml_v1_allows_more_freely(model):
+    assert find_errors(model) == []
+
+
+def test_a_value_of_an_unknown_feature_is_lost():
+    assert [loss[:5] for loss in find_losses(UNKNOWN_FEATURE.format(feature="u"))] == ["SM736"]
+    assert find_losses(UNKNOWN_FEATURE.format(feature="gate.s")) == []
+
+
+def test_the_arguments_of_a_signal_are_references():
+    assert "in position : Position;" in lines_of(ARGUMENT.format(action="send", called="s"))
+    assert "in attribute position : Position;" in lines_of(ARGUMENT.format(action="x", called="s"))
+
+
+def test_a_guard_that_names_a_part_is_a_text():
+    def find_line(type_):
+        return next(line for line in lines_of(GUARD.format(type=type_)) if line.startswith("if "))
+
+    assert find_line("thing") == "if acquired_2 then act;"
+    assert find_line("boolean") == "if acquired then act;"
+
+
+def test_a_flow_between_features_of_two_definitions_is_lost():
+    assert [loss[:5] for loss in find_losses(FLOW_OF_FEATURES)] == ["SM736"]
+
+
+REDEFINED_IN_ANOTHER_ORDER = """
+Package p "Plant"
+  DataType flag "Flag" role="value type"
+  Class piece "Piece" role="block"
+  Class store "Store" role="block"
+    Operation store.add "add"
+      Parameter store.add.r "result" direction="{first}"
+        -> typed-by flag
+      Parameter store.add.e "element" direction="in"
+        -> typed-by piece
+  Class shelf "Shelf" role="block"
+    -> specializes store
+    Operation shelf.add "add"
+      -> redefines store.add
+      Parameter shelf.add.e "element" direction="in"
+        -> typed-by {type}
+      Parameter shelf.add.r "result" direction="out"
+        -> typed-by {other}
+"""
+
+
+def test_parameters_that_redefine_others_by_position_may_have_another_kind():
+    model = REDEFINED_IN_ANOTHER_ORDER.format(first="out", type="piece", other="flag")
+    assert find_errors(model) == []
+    assert "in ref element : Piece;" in lines_of(model)
+
+
+def test_parameters_of_the_same_kind_keep_their_keywords():
+    model = REDEFINED_IN_ANOTHER_ORDER.format(first="in", type="flag", other="piece")
+    assert find_errors(model) == []
+    assert "in attribute element : Flag;" in lines_of(model)

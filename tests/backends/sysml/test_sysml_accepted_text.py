@@ -72,7 +72,7 @@ def test_a_guard_that_is_a_number_is_a_boolean_feature_of_that_name():
     """The number of a branch is no condition; UML compares it with an input that is not drawn."""
     lines, losses = write_accepted(GUARD.replace("{guard}", "1"))
     assert "if '1' then a;" in lines
-    assert "attribute '1' : Boolean;" in lines
+    assert "#inWords attribute '1' : Boolean;" in lines
     assert [loss for loss in losses if loss.startswith("SM735")] == [
         "SM735 '1' is not an expression over the model; it is written as a feature of that name"
     ]

@@ -391,7 +391,7 @@ def test_state_machines_are_exhibited_states():
         "}",
         "}",
         "transition first Both.left.A then done;",
-        "attribute 'the door is free' : Boolean;",
+        "#inWords attribute 'the door is free' : Boolean;",
         "}",
         "}",
         "}",

@@ -1,7 +1,7 @@
 """Content that no schema of CAEX allows: unknown attributes, and text between elements."""
 
 import pytest
-from reading_caex import CAEX_2, Read, aml, classes, plant, types
+from reading_caex import CAEX_2, Read, aml, classes, interfaces, plant, types
 
 from sysmlc.frontends.caex import conformance
 
@@ -35,6 +35,16 @@ UNKNOWN = [
 def test_an_unknown_attribute_is_reported_once(body, message):
     reading = Read(body)
     assert reading.findings == [f"SM633: {message}"]
+
+
+def test_an_interface_with_its_class_in_a_wrong_attribute_has_an_unresolved_type():
+    wrong = '<ExternalInterface Name="p" ID="2" RefBaseSystemUnitPath="Interfaces/Power"/>'
+    reading = Read(interfaces('<InterfaceClass Name="Power"/>') + element_with(wrong))
+    assert reading.find("Plant::i::p").attrs["unresolved"] == ("typed-by",)
+    right = wrong.replace("RefBaseSystemUnitPath", "RefBaseClassPath")
+    reading = Read(interfaces('<InterfaceClass Name="Power"/>') + element_with(right))
+    assert reading.targets("Plant::i::p", "typed-by") == ["Interfaces::Power"]
+    assert "unresolved" not in reading.find("Plant::i::p").attrs
 
 
 def test_an_element_with_an_unknown_attribute_is_approximated():

@@ -327,7 +327,7 @@ def cell_with_link(side_a, side_b, more=""):
     ("side", "end"),
     [
         ("10", "a.out"),
-        ("11", "a.pin"),
+        ("11", "a.out.pin"),
         ("9", "f"),
         ("1:out", "a.out"),
         ("{1}:out", "a.out"),

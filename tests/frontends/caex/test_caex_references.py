@@ -3,6 +3,8 @@
 import pytest
 from reading_caex import Read, aml, aml_2, classes, interfaces, plant, roles, types
 
+from sysmlc.diagnostics.renderers import make_report
+
 BRACKETS = classes(
     '<SystemUnitClass Name="B/2"><SystemUnitClass Name="T.1"/></SystemUnitClass>'
     '<SystemUnitClass Name="http://a.b/c"/>'
@@ -114,6 +116,14 @@ def file_with_alias(path, alias="Al", more=""):
     )
 
 
+def test_a_library_in_another_file_needs_an_alias_as_the_advice_says():
+    plain = roles('<RoleClass Name="Gate" RefBaseClassPath="Shared/Base"/>')
+    reading = Read(aml(plain, "plant/main.aml"), BASE)
+    diagnostic = next(found for found in reading.sink if found.rule.code == "SM131")
+    assert diagnostic.help.endswith("with an alias and write <alias>@Shared/... in the paths")
+    assert Read(file_with_alias("../libs/base.aml"), BASE).findings == []
+
+
 @pytest.mark.parametrize("path", ["../libs/base.aml", "..%2Flibs/base.aml", "./../libs/./base.aml"])
 def test_an_alias_leads_into_another_file_of_the_unit(path):
     reading = Read(file_with_alias(path), BASE)
@@ -145,6 +155,20 @@ def test_an_alias_without_declaration_is_a_located_error():
     assert reading.findings == [
         "SM133: 'Roles::Gate' uses the alias 'Al', which no ExternalReference declares"
     ]
+
+
+def test_references_to_one_missing_alias_class_or_end_are_one_finding():
+    doors = "".join(f'<RoleClass Name="{n}" RefBaseClassPath="Al@Base/Door"/>' for n in "ABC")
+    missing = "".join(f'<RoleClass Name="{n}" RefBaseClassPath="Roles/Gone"/>' for n in "DE")
+    other = '<RoleClass Name="F" RefBaseClassPath="Bl@Base/X"/>'
+    source = aml(roles(doors + missing + other) + plant('<InternalElement Name="i" ID="1"/>'))
+    (_, *findings) = make_report(Read(source).sink, [source]).findings
+    assert [finding.diagnostic.message for finding in findings] == [
+        "'Roles::A' uses the alias 'Al', which no ExternalReference declares (3 places)",
+        "'Roles::D' refers to the class 'Roles/Gone', which does not exist (2 places)",
+        "'Roles::F' uses the alias 'Bl', which no ExternalReference declares",
+    ]
+    assert findings[0].diagnostic.notes[0].startswith("also Roles::B (plant.aml:1:")
 
 
 def test_unresolved_references_are_stored_in_the_graph():

@@ -155,8 +155,8 @@ def test_elements_that_mtip_omits_are_stubs():
         packet(data("Property", "p", "c", "speed", typedBy="gone"), data("Class", "c", name="C"))
     )
     assert read.findings == [
-        "SM152 'MTIP:not-exported' is not part of the compile unit; its elements (1) are "
-        "known by name only"
+        "SM152 'MTIP:not-exported' is not part of the compile unit; the model refers "
+        "to 1 of its elements"
     ]
     assert read.graph.target(read.graph["p"], Edge.TYPED_BY).attrs["external"] is True
 

@@ -46,7 +46,7 @@ def list_reported_losses(text):
         ("use case u { subject e : Engine = engine; }", "the value of a subject is read as its"),
         (
             "analysis a { subject e : Engine; objective : Mass; }",
-            "the type of an objective is read as nothing",
+            "the type of an objective is not read",
         ),
         (
             "use case u; part t { perform u; }",
@@ -80,7 +80,7 @@ def test_a_loss_is_listed_with_the_number_of_its_members():
     text += " objective { assume constraint { e.mass > 2 } verify engine2; } }"
     text += " requirement engine2 : Mass; private import ScalarValues::*; }"
     assert list_reported_losses(text) == [
-        ("ConstraintUsage", "approximated", 5, "a part of an objective is read as nothing"),
+        ("ConstraintUsage", "approximated", 5, "a part of an objective is not read"),
         ("NamespaceImport", "external", 1, "stands for an element of a library"),
     ]
 

@@ -35,8 +35,8 @@ def list_messages(text, *passes):
     [
         (
             "assign heat := heat + 1.5",
-            "SM415: 'heat := heat + 1.5' assigns to 'heat', which has no finite type; the contract "
-            "shows the assignment as output 'heat_heat_1_5'",
+            "SM416: effect 'heat := heat + 1.5' is not understood: 'heat' has no finite type; the "
+            "contract shows it as output 'heat_heat_1_5'",
         ),
         (
             "assign fixed := 4",
@@ -54,6 +54,38 @@ def list_messages(text, *passes):
 def test_an_effect_without_formula_has_one_finding_with_the_reason(effect, message):
     text = MACHINE.replace("TRIGGER", "accept Start").replace("EFFECT", effect)
     assert list_messages(text, "contracts") == [message]
+
+
+GATES = """
+package Plant {
+    private import ScalarValues::*;
+    attribute def Open;
+    part def Hall {
+        attribute free : Boolean;
+        part gate {
+            OWN
+            exhibit state behaviour {
+                entry; then closed;
+                state closed;
+                transition first closed accept Open if free do assign free := false then open;
+                state open;
+            }
+        }
+    }
+}
+"""
+
+
+@pytest.mark.parametrize("own", ["", "attribute free : Boolean;"])
+def test_a_property_of_the_surrounding_part_may_be_read_and_assigned(own):
+    assert list_messages(GATES.replace("OWN", own), "contracts") == []
+
+
+def test_a_property_of_another_part_is_not_one_of_the_surrounding_part():
+    text = GATES.replace("OWN", "").replace(
+        "attribute free : Boolean;", "part door { attribute free : Boolean; }"
+    )
+    assert list_messages(text, "contracts") != []
 
 
 def test_an_assignment_with_a_formula_has_no_finding():
@@ -127,9 +159,7 @@ package Plant {
 def test_a_port_that_redefines_an_undirected_one_is_reported_there_only():
     assert list_messages(PORTS) == ["SM300: ports of 'Plant::Pump' without a direction (1): 'plug'"]
     (diagnostic,) = read(PORTS, passes=PASSES).sink
-    assert diagnostic.help == (
-        "give the features of the port definition a direction: in, out or inout"
-    )
+    assert diagnostic.help == "say what flows through the ports, such as 'in item part : Part;'"
 
 
 STARTS = """

@@ -61,4 +61,4 @@ def test_the_path_is_written_again():
     graph = Reading(TWO, passes=(*PASSES, "flows")).graph
     again, _ = read_back(graph)
     assert list_paths(again) == [["a"], []]
-    assert list(compare(graph, again, ("id",))) == []
+    assert list(compare(graph, again, ("id", "declaration"))) == []

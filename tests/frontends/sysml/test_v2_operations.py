@@ -190,10 +190,12 @@ def test_a_binding_selects_one_of_two_actions_that_could_perform_a_step():
 
 
 @pytest.mark.long
-def test_an_operation_whose_requests_nothing_reads_counts_as_ended_by_the_environment():
-    """The end of the operation is an assumption of the compiler, which no part has to guarantee."""
+def test_an_operation_whose_requests_nothing_reads_is_reported():
+    """Its steps end when the actions are executed, which nobody asks for."""
     text = write_machine(ACTIONS, CLAMPS.replace("bind clamp.asked = asked;", ""))
-    assert check_composition(text) == ("Cells::Machine: its 6 parts fit together", [])
+    verdict, diagnostics = check_composition(text)
+    assert verdict == "Cells::Machine: its 6 parts do not fit together"
+    assert {code for code, _ in diagnostics} == {"SM595", "SM596"}
 
 
 PAGE = (Path(__file__).parents[3] / "docs" / "elementary-actions.md").read_text(encoding="utf-8")

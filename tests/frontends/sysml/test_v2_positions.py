@@ -4,8 +4,7 @@ from codecs import BOM_UTF8
 
 import pytest
 
-from sysmlc.frontends.sysml.positions import DocumentPositions
-from sysmlc.language.tree import Document, Node
+from sysmlc.language.tree import Document, DocumentPositions, Node
 from sysmlc.sources import Source
 
 LONG = f"{'a' * 300}\u00e9{'b' * 255}\u2013\U0001f600{'c' * 300}"

@@ -15,7 +15,7 @@ from sysmlc.backends.sysml.profiles import is_standard
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.sysml import FRONTEND
 from sysmlc.frontends.xmi import FRONTEND as XMI
-from sysmlc.ir import Graph, Kind
+from sysmlc.ir import Graph, Kind, parse_text
 from sysmlc.ir.compare import compare
 from sysmlc.logic.expressions.expression import ExpressionError, print_expression
 from sysmlc.logic.expressions.parsing import parse_expression
@@ -100,7 +100,7 @@ def list_differences(graph):
     errors = [
         str(diagnostic.message) for diagnostic in sink if diagnostic.rule.code in ("SM205", "SM482")
     ]
-    changes = compare(remove_unwritten(graph), remove_unwritten(again), ("id",))
+    changes = compare(remove_unwritten(graph), remove_unwritten(again), ("id", "declaration"))
     unexpected = [
         difference
         for difference in changes
@@ -173,3 +173,70 @@ def test_the_plant_of_automationml_is_a_plant_again():
     assert {kind: before[kind] - list_names(again, kind) for kind in kinds} == {
         kind: set() for kind in kinds
     }
+
+
+NODES = """
+Package p "Plant"
+  Activity a "Fill"
+    Structured body "body" subkind="structured"
+      Action x "pump" subkind="{subkind}"
+    Control end "end" subkind="final"
+    ControlFlow f ""
+      -> flow-source x
+      -> flow-target end
+"""
+ENDS = """
+Package p "Plant"
+  Class belt "Belt" role="block"
+  Class motor "Motor" role="block"
+    Property motor.b "" role="reference"
+      -> typed-by belt
+  Association a ""
+    -> end motor.b a.m
+    Property a.m "" aggregation="shared"
+      -> typed-by motor
+"""
+CONJUGATED = """
+Package p "Plant"
+  Class line "Line" role="interface block"
+  Class motor "Motor" role="block"
+    Port motor.p "line" role="proxy port" conjugated=true
+      -> typed-by line
+  Class servo "Servo" role="block"
+    -> specializes motor
+    Port servo.p "line" role="proxy port" conjugated=true
+      -> typed-by line
+      -> redefines motor.p
+"""
+TYPE_WITH_DEFAULT = """
+Package p "Plant"
+  DataType d "Protection" role="value type" default=true
+"""
+SPELLING_OF_XML = """
+Package p "Plant"
+  Profile q "Profile"
+    Stereotype s "Plant Part"
+      Property s.t "Long Name"
+  Class c "Gate" role="block"
+    Application x "Plant_Part" stereotype="Plant_Part" tag.Long_Name="5"
+      -> subject c
+      -> instance-of s
+"""
+
+
+@pytest.mark.parametrize(
+    "model",
+    [
+        pytest.param(NODES.format(subkind="opaque"), id="end-of-the-activity-from-inside"),
+        pytest.param(NODES.format(subkind="call-behavior"), id="call-of-nothing"),
+        pytest.param(NODES.format(subkind="accept"), id="acceptance-of-nothing"),
+        pytest.param(ENDS, id="ends-without-names"),
+        pytest.param(CONJUGATED, id="conjugated-port-that-redefines"),
+        pytest.param(TYPE_WITH_DEFAULT, id="default-of-a-type"),
+        pytest.param(SPELLING_OF_XML, id="stereotype-as-xml-spells-it"),
+    ],
+)
+def test_the_graph_of_the_text_has_no_differences(model):
+    graph = parse_text(model)
+    pipeline.build_pipeline(PASSES).run(graph, Sink())
+    assert [str(change) for change in compare(graph, read_back(graph)[0], ("id",))] == []

@@ -59,9 +59,9 @@ def test_individuals_portions_variations_and_variants_are_in_the_graph():
         ("state t { state f; transition first f then f { attribute x; } }", "a transition usage"),
         (
             "action go { action k { out e; in g; } flow k.e to k.g { attribute x; } }",
-            "a flow usage",
+            "a flow or message",
         ),
-        ("action go { in h; out i; bind h = i { attribute x; } }", "a binding connector as usage"),
+        ("action go { in h; out i; bind h = i { attribute x; } }", "a binding"),
         ("action go { action k { in h { attribute x; } } }", "a reference usage"),
         ("port h { out : M { attribute x; } }", "a reference usage"),
         ("verification v { objective { verify q { attribute x; } } }", "a verification"),
@@ -71,7 +71,7 @@ def test_sm481_members_of_elements_without_members_in_the_graph_are_reported(mem
     around = "requirement q; part def M { attribute x; } part a : M; part b : M;"
     sink = read(f"package P {{ part def Cell {{ {around} {member} }} }}").sink
     messages = [diagnostic.message for diagnostic in sink if diagnostic.rule.code == "SM481"]
-    assert messages == [f"a member of {owner} is read as nothing (1 in the unit)"]
+    assert messages == [f"a member of {owner} is not read (1 in the unit)"]
     nearly = member.replace("attribute x;", "doc /* x */")
     assert (
         "SM481" not in read(f"package P {{ part def Cell {{ {around} {nearly} }} }}").list_codes()
@@ -81,16 +81,16 @@ def test_sm481_members_of_elements_without_members_in_the_graph_are_reported(mem
 @pytest.mark.parametrize(
     ("member", "expected"),
     [
-        ("action a { action b[4]; }", "the multiplicity of an action usage is read as nothing"),
-        ("state a { state b[4]; }", "the multiplicity of a state usage is read as nothing"),
+        ("action a { action b[4]; }", "the multiplicity of an action usage is not read"),
+        ("state a { state b[4]; }", "the multiplicity of a state usage is not read"),
         ("action a { variation action b; }", "a variation is read as a plain usage"),
         (
             "use case u { include use case v : V { doc /* x */ } } use case def V;",
-            "a member of an include use case usage is read as nothing",
+            "a member of an include use case usage is not read",
         ),
         (
             "part def D { @M { y { :>> z = 3; } } }",
-            "a member of a reference usage is read as nothing",
+            "a member of a reference usage is not read",
         ),
     ],
 )
@@ -131,7 +131,7 @@ def test_sm480_a_succession_to_no_step_does_not_lead_to_the_next_step(body, name
     messages = [
         diagnostic.message for diagnostic in reading.sink if diagnostic.rule.code == "SM480"
     ]
-    assert messages == ["succession as usage is not read (1 in the unit, with all that they own)"]
+    assert messages == ["succession is not read (1 in the unit, with all that they own)"]
     assert [element for element in reading.graph if element.kind == name] == []
     nearly = body.replace("action z", "state z").replace("part z", "action z")
     reading = read(f"package P {{ {nearly} }}")

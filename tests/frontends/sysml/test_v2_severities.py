@@ -1,5 +1,6 @@
 """Rules for SysML v1 in valid text of SysML v2, and the names in its contracts."""
 
+import pytest
 from reading_v2 import read
 
 from sysmlc.diagnostics import Coverage, Place, Severity, Sink, Subject, catalogue
@@ -109,6 +110,87 @@ package P {
     assert "env look_mass" not in names
 
 
+ACTIONS = ["SM402", "SM412", "SM450", "SM451", "SM454", "SM457", "SM464", "SM466", "SM486"]
+
+
+@pytest.mark.parametrize(
+    ("port", "codes"),
+    [
+        ("port p : ~Orders { out :>> order; }", []),
+        ("port p : ~Orders;", []),
+        ("port p : Orders { in :>> order; }", ["SM315"]),
+        ("port p : Orders;", ["SM315"]),
+    ],
+)
+def test_a_conjugated_port_does_not_reverse_what_it_declares_itself(port, codes):
+    text = """
+package P {
+    item def Order;
+    port def Orders { in ref order : Order; }
+    part def Sender { PORT }
+    part def Taker { port q : Orders; }
+    part def Shop { part s : Sender; part t : Taker; connect s.p to t.q; }
+}"""
+    assert read(text.replace("PORT", port), passes=ALL).list_codes() == codes
+
+
+def list_action_findings(members):
+    """Return the findings about actions, as ``code: message`` and ``help: advice``."""
+    sink = read(f"package P {{ item def Go; item def Stop; {members} }}", passes=ALL).sink
+    return [
+        line
+        for diagnostic in sink
+        if diagnostic.rule.code in ACTIONS
+        for line in (f"{diagnostic.rule.code}: {diagnostic.message}", f"help: {diagnostic.help}")
+    ]
+
+
+def test_an_accept_action_happens_once_in_each_performance_of_its_owner():
+    first = "action wait accept Go; then action work; then action rest;"
+    assert list_action_findings(f"action run {{ {first} }}") == []
+    loop = "first start; then merge again; then action wait accept Go; then again;"
+    assert list_action_findings(f"action run {{ {loop} }}") == [
+        "SM466: action 'run' never finishes",
+        "help: let a succession lead to 'done' if it is meant to end",
+    ]
+
+
+def test_several_successions_after_the_start_are_all_taken():
+    both = "first start then a; first start then b; action a; action b;"
+    assert list_action_findings(f"action run {{ {both} }}") == []
+    merged = "first start; then merge m; first m then a; first m then b; action a; action b;"
+    assert list_action_findings(f"action run {{ {merged} }}") == []
+
+
+def test_a_step_may_specialise_a_step():
+    steps = "action def Work { action step; } part def Cell { action move; }"
+    special = "part def Fast :> Cell { action run :> move { action a; then action b; } }"
+    assert list_action_findings(f"{steps} {special}") == []
+
+
+def test_findings_about_steps_speak_of_steps():
+    assert list_action_findings("action run { action a; action b; }") == [
+        "SM486: action 'run' does not order its steps; it gets no contract",
+        "help: order the steps with 'first <step> then <step>;'",
+    ]
+    assert list_action_findings("action run { action a; then action b; }") == []
+    ring = "action a; action b; first a then b; first b then a;"
+    assert list_action_findings(f"action run {{ {ring} }}") == [
+        "SM450: action 'run' has no first step: a succession leads to each of its steps",
+        "help: write 'first start then <step>;'",
+    ]
+
+
+def test_a_redefined_function_gets_its_arguments_where_the_function_is_called():
+    base = "calc def Grade { in x; }"
+    assert list_action_findings(f"{base} action def Study {{ calc grade {{ in x; }} }}") == [
+        "SM464: parameter 'x' of action 'grade' gets no value; it is taken as available",
+        "help: bind the parameter, or let a flow lead to it",
+    ]
+    study = "action def Trial { calc grade : Grade; } action t : Trial { calc :>> grade { in x; } }"
+    assert "SM464" not in " ".join(list_action_findings(f"{base} {study}"))
+
+
 MACHINE = """
 package P {
     private import ScalarValues::*;
@@ -205,16 +287,24 @@ package P {
     assert not any("name" in name for name in names)
 
 
-def test_what_has_no_finite_values_is_an_opaque_effect_with_a_warning():
+def test_what_has_no_finite_values_is_an_opaque_effect():
     reading = read(MACHINE, passes=ALL)
-    diagnostics = [diagnostic for diagnostic in reading.sink if diagnostic.rule.code == "SM415"]
+    diagnostics = [d for d in reading.sink if d.rule.code in ("SM415", "SM416")]
     assert [(diagnostic.severity, diagnostic.message) for diagnostic in diagnostics] == [
         (
-            Severity.WARNING,
-            "'machine.age := 1.5' assigns to 'machine.age', which has no finite type; the contract "
-            "shows the assignment as output 'machine_age_1_5'",
+            Severity.INFO,
+            "effect 'machine.age := 1.5' is not understood: 'machine.age' has no finite type; the "
+            "contract shows it as output 'machine_age_1_5'",
         )
     ]
+
+
+def test_an_action_may_subset_an_action_but_not_perform_a_part():
+    subset = "package P { part def A { action general [1..*]; action echo :> general; } }"
+    assert not any(d.severity is not Severity.INFO for d in read(subset, passes=ALL).sink)
+    performed = "package P { part def A { part x; perform x; } }"
+    errors = [d.rule.code for d in read(performed, passes=ALL).sink if d.is_error]
+    assert errors == ["SM236"]
 
 
 def test_states_without_a_first_one_are_no_error():
@@ -231,13 +321,12 @@ def test_actions_without_successions_are_correct_but_have_no_contract():
     ]
 
 
-def test_components_of_one_name_in_two_files_are_reported_with_both():
+def test_components_of_one_name_in_two_files_are_reported_once_with_both():
     text = "package P { action def A { first start; then action x; then done; } }"
     reading = read(text, text, passes=ALL)
-    (first, second) = [diagnostic for diagnostic in reading.sink if diagnostic.rule.code == "SM500"]
-    assert first.notes == ("another 'P::A' is in model.sysml",)
-    assert second.notes == ("another 'P::A' is in m0.sysml",)
-    assert first.help.startswith("packages of two files have one name")
+    (finding,) = [diagnostic for diagnostic in reading.sink if diagnostic.rule.code == "SM500"]
+    assert finding.notes == ("another 'P::A' is in model.sysml",)
+    assert finding.help.startswith("packages of two files have one name")
 
 
 LOOP = """

@@ -89,7 +89,7 @@ def test_an_output_that_is_bound_to_a_feature_writes_it():
     graph, sink = write_plant(step=step, elsewhere=reset)
     assert list_messages(sink) == [
         "the contract of 'work' treats 'full' as an input although action 'fill' and action "
-        "'reset' assign it: its new value is unknown"
+        "'reset' assign it: the contract does not follow the assigned value"
     ]
     assert list_owners(graph, "full") == {Owner.ENVIRONMENT}
 

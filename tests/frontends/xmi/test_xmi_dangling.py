@@ -3,6 +3,7 @@
 import pytest
 from reading_xmi import magicdraw, papyrus, read
 
+from sysmlc.diagnostics.renderers import make_report
 from sysmlc.passes import pipeline
 
 ACTIVITY = '<packagedElement xmi:type="uml:Activity" xmi:id="a" name="Open">{}</packagedElement>'
@@ -87,6 +88,26 @@ def test_rows_that_become_no_elements_are_checked_too(what):
     assert [item for item in findings(papyrus(model)) if item[:5] in ("SM116", "SM120")] == [
         f"{expected} 'gone', which does not exist"
     ]
+
+
+SLOTS = (
+    '<packagedElement xmi:type="uml:InstanceSpecification" xmi:id="i" name="i">'
+    '<slot xmi:id="s"><value xmi:type="uml:InstanceValue" xmi:id="v" instance="{}"/></slot>'
+    '<slot xmi:id="t"><value xmi:type="uml:InstanceValue" xmi:id="w" instance="{}"/></slot>'
+    "</packagedElement>"
+)
+
+
+def test_a_missing_element_is_one_fact_and_not_a_missing_file():
+    source = papyrus(SLOTS.format("gone", "gone"))
+    assert not any(line.startswith("SM152") for line in findings(source))
+    reading = read(source)
+    pipeline.load("resolve").run(reading.graph, reading.sink)
+    (finding,) = make_report(reading.sink, [source]).findings
+    assert finding.diagnostic.message.endswith("'gone', which does not exist (2 places)")
+    outside = SLOTS.replace(' instance="{}"/>', '><instance href="other.uml#o"/></value>')
+    other = papyrus(outside)
+    assert [line[:5] for line in findings(other)] == ["SM152"]
 
 
 def test_a_target_in_another_file_of_the_unit_exists():

@@ -86,7 +86,8 @@ def _resolve_end(context: Context, connector: Element, holder: Node, end: Elemen
             node = context.nodes.get(step.id)
         elif node is not None and step.kind is Kind.PROPERTY:
             node = node.parts.get(step.id) or _repeat_part(context, node, step, file)
-        elif step is not port:
+        elif step.kind is not Kind.PORT:
+            # The interface at the end of a link is found by its ID, without the ones around it.
             node = None
     return "" if node is None else _find_interface_id(context, node, port, file)
 

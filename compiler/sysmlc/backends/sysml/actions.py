@@ -53,9 +53,16 @@ def _format_head(writer: Writer, member: Member, element: Element) -> str:
 
 def _write_body(writer: Writer, member: Member, element: Element) -> list[Line]:
     annotations = []
-    if element.subkind not in _EXPRESSED_SUBKINDS:
+    if element.subkind not in _EXPRESSED_SUBKINDS or _has_no_target(writer, element):
         annotations.append(make_annotation(writer, member, "Kind", {"name": element.subkind}))
     return annotations + write_contents(writer, member)
+
+
+def _has_no_target(writer: Writer, action: Element) -> bool:
+    """Whether an action calls or accepts nothing, so that no word of its text states its kind."""
+    if action.subkind in ("call-behavior", "call-operation"):
+        return not writer.graph.targets(action, Edge.CALLS)
+    return action.subkind == "accept" and not _list_triggers(writer, action)
 
 
 # -- calls ---------------------------------------------------------------------------------------
@@ -146,9 +153,7 @@ def _write_send(writer: Writer, member: Member, element: Element) -> Line:
 
 def _write_accept(writer: Writer, member: Member, element: Element) -> Line:
     body = _write_body(writer, member, element)
-    triggers = writer.graph.targets(element, Edge.TRIGGER)
-    if not triggers:
-        triggers = [t for t in writer.graph.owned(element) if t.kind is Kind.TRIGGER]
+    triggers = _list_triggers(writer, element)
     writer.expressed.update(trigger.id for trigger in triggers)
     accepts = [format_trigger(writer, member, trigger) for trigger in triggers]
     if len(accepts) > 1:
@@ -156,6 +161,12 @@ def _write_accept(writer: Writer, member: Member, element: Element) -> Line:
         writer.record_approximation(element, construct, "its first one")
     accept = f" {accepts[0]}" if accepts else ""
     return Line(f"{_format_head(writer, member, element)}{accept}", body)
+
+
+def _list_triggers(writer: Writer, action: Element) -> list[Element]:
+    """Return the triggers of an accept action, or those that it owns."""
+    owned = [child for child in writer.graph.owned(action) if child.kind is Kind.TRIGGER]
+    return writer.graph.targets(action, Edge.TRIGGER) or owned
 
 
 def _write_other(writer: Writer, member: Member, element: Element) -> Line:

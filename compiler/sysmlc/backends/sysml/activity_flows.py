@@ -20,7 +20,12 @@ from sysmlc.backends.sysml.references import (
     format_reference,
     visible_members,
 )
-from sysmlc.backends.sysml.relocation import find_common_namespace, find_object_node
+from sysmlc.backends.sysml.relocation import (
+    find_behaviour,
+    find_common_namespace,
+    find_object_node,
+    iter_reaching_namespaces,
+)
 from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import AttrValue, Edge, Element, Kind
@@ -134,12 +139,17 @@ def _write_succession(writer: Writer, member: Member, flow: Element) -> Line | N
 
 
 def _find_succession_scope(writer: Writer, member: Member, target: Element | None) -> Member | None:
-    """Return the innermost namespace around a node that contains the target of a flow, too."""
+    """Return the innermost namespace around a node that contains the target of a flow, too.
+
+    A final node without a member needs its behaviour: in another action, ``done`` ends that action.
+    """
     step = find_step_after_merge(writer.graph, target) or target
     if step is not None and step.kind is Kind.PIN:
         step = writer.graph.owner(step)
-    if writer.plan.find(step) is None:
-        return member.parent
+    if step is not None and writer.plan.find(step) is None:
+        behaviour = find_behaviour(writer.plan, step)
+        is_around = any(behaviour is namespace for namespace in iter_reaching_namespaces(member))
+        return behaviour if is_around else member.parent
     return find_common_namespace(writer.plan, member, (member.element, step)) or member.parent
 
 
@@ -241,11 +251,9 @@ def _refer_to_start_or_done(writer: Writer, scope: Member | None, node: Element)
     word = {"initial": "start", "final": "done", "flow-final": "done"}.get(node.subkind)
     if word is None:
         return None
-    owners = (writer.plan.find(ancestor) for ancestor in writer.graph.ancestors(node))
-    behaviour = next((owner for owner in owners if owner is not None), None)
-    if behaviour is None or behaviour is scope:
-        return word
-    if scope is not None and any(behaviour is namespace for namespace in scope.namespaces):
+    behaviour = find_behaviour(writer.plan, node)
+    around = () if scope is None else (scope, *scope.namespaces)
+    if behaviour is None or any(behaviour is namespace for namespace in around):
         return word
     name = format_element_reference(writer.plan, scope, behaviour.element)
     return None if name is None else f"{name}.{word}"

@@ -11,7 +11,7 @@ from sysmlc.backends.sysml.printing import (
     quote_string,
     replace_control_characters,
 )
-from sysmlc.backends.sysml.profiles import is_standard
+from sysmlc.backends.sysml.profiles import find_tag_name, is_standard
 from sysmlc.backends.sysml.references import format_reference, visible_members
 from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE
 from sysmlc.backends.sysml.shapes import is_part_port
@@ -248,18 +248,19 @@ def _iter_applications(writer: Writer, member: Member, element: Element) -> Iter
 def _write_application(
     writer: Writer, member: Member, application: Element, definition: Member
 ) -> Line:
-    name = format_reference(writer.plan, member, definition)
+    stereotype_name = format_reference(writer.plan, member, definition)
     body = []
     for key, value in application.attrs.items():
         tag = key.removeprefix("tag.")
         if not key.startswith("tag."):
             continue
-        if tag not in visible_members(writer.plan, definition):
+        name = find_tag_name(visible_members(writer.plan, definition), tag)
+        if name is None:
             facts = {"attribute": key, "kind": application.name or "Application"}
             writer.losses.record(UNSAID_ATTRIBUTE, application, **facts)
             continue
-        body.append(Line(f"{quote_name(tag)} = {_format_tag(writer, value)}"))
-    return Line(f"@{name}", body, is_short=True)
+        body.append(Line(f"{quote_name(name)} = {_format_tag(writer, value)}"))
+    return Line(f"@{stereotype_name}", body, is_short=True)
 
 
 def _format_tag(writer: Writer, value: AttrValue) -> str:

@@ -82,9 +82,12 @@ _Check = Callable[[Writer, Member | None, Element], bool]
 """Whether the text does not express the attribute of this element."""
 
 
-def _has_unexpressed_aggregation(_writer: Writer, member: Member | None, element: Element) -> bool:
+def _has_unexpressed_aggregation(writer: Writer, member: Member | None, element: Element) -> bool:
     if element.kind is Kind.PORT:
         return True
+    owner = writer.graph.owner(element)
+    if owner is not None and owner.kind is Kind.ASSOCIATION:
+        return element.attrs["aggregation"] != "none"
     if element.kind is not Kind.PROPERTY or element.attrs["aggregation"] != "composite":
         return False
     is_composite = member is not None and member.shape.keyword in _COMPOSITE
@@ -174,9 +177,9 @@ def _has_unexpressed_visibility(writer: Writer, _member: Member | None, element:
 
 
 def _has_unexpressed_default(writer: Writer, member: Member | None, element: Element) -> bool:
-    """Whether the text lacks the default: that of a port, or a text not written as a string."""
+    """Whether the text lacks the default: of a port or a type, or a text that is no string."""
     default = element.attrs["default"]
-    if element.kind is Kind.PORT or member is None:
+    if element.kind in (Kind.PORT, Kind.DATA_TYPE) or member is None:
         return True
     if "default_instance" in element.attrs:
         return True

@@ -22,12 +22,10 @@ def write_comment(writer: Writer, member: Member) -> list[Line]:
     annotated = writer.graph.targets(element, Edge.REFERENCES)
     owner = writer.graph.owner(element)
     body = element.attrs.get("body", "")
-    stripped = _strip_lines(str(body))
     text = format_comment(str(body))
     name = f" {quote_name(member.name)}" if member.name else ""
     children = _write_children(writer, member)
-    if text != format_comment(stripped) or stripped != body:
-        writer.record_approximation(element, "white space around a text", "none")
+    record_text_changes(writer, element, str(body))
     if not annotated and owner is not None:
         construct = "a comment about nothing"
         writer.record_approximation(element, construct, "documentation of its owner")
@@ -45,6 +43,14 @@ def _write_children(writer: Writer, member: Member) -> list[Line]:
     return [line for child in member.members for line in writer.write_member(child)]
 
 
+def record_text_changes(writer: Writer, element: Element, text: str) -> None:
+    """Record what a comment of SysML v2 cannot contain: white space around lines, its end mark."""
+    if text != _strip_lines(text):
+        writer.record_approximation(element, "white space around a text", "none")
+    if "*/" in text:
+        writer.record_approximation(element, "'*/' in a text", "'* /'")
+
+
 def _strip_lines(text: str) -> str:
     """Return the text without white space around its lines: a reader of a comment removes it."""
     lines = text.replace("\r\n", "\n").strip().splitlines()
@@ -58,8 +64,7 @@ def write_opaque_bodies(writer: Writer, element: Element) -> list[Line]:
     texts = () if bodies is None else as_items(bodies)
     if not isinstance(languages, tuple):
         languages = (languages,) * len(texts)
-    if any(str(text) != _strip_lines(str(text)) for text in texts):
-        writer.record_approximation(element, "white space around a text", "none")
+    record_text_changes(writer, element, "\n".join(str(text) for text in texts))
     padded = (*languages, *([""] * len(texts)))
     return [
         Line(f"language {quote_string(str(language))}", text=format_comment(str(text)))

@@ -10,6 +10,7 @@ from sysmlc.backends.sysml.expressions import format_expression
 from sysmlc.backends.sysml.library import UNITS
 from sysmlc.backends.sysml.plan import Member
 from sysmlc.backends.sysml.printing import quote_name
+from sysmlc.backends.sysml.references import look_up
 from sysmlc.backends.sysml.rules import TEXT_AS_NAME
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import Edge, Element
@@ -35,7 +36,13 @@ _WITHOUT_DECLARATIONS = frozenset({"transition", "succession", "flow", "constrai
 
 
 def format_condition(writer: Writer, scope: Member | None, element: Element, text: str) -> str:
-    """Return a condition as an expression, else as the name of a Boolean attribute."""
+    """Return a condition as an expression, else as the name of a Boolean attribute.
+
+    The name of an item or a part is no condition.
+    """
+    feature = look_up(writer.plan, scope, text.strip())
+    if feature is not None and feature.shape.keyword in ("item", "part"):
+        return declare_condition(writer, scope, element, text)
     return _format(writer, scope, element, text, "ScalarValues::Boolean")
 
 

@@ -11,7 +11,12 @@ from sysmlc.backends.sysml.declarations import (
 from sysmlc.backends.sysml.definitions import write_contents
 from sysmlc.backends.sysml.plan import Member
 from sysmlc.backends.sysml.printing import Line, quote_name
-from sysmlc.backends.sysml.references import format_chain, is_accessible, visible_members
+from sysmlc.backends.sysml.references import (
+    format_chain,
+    is_accessible,
+    is_path_accessible,
+    visible_members,
+)
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import (
@@ -225,11 +230,27 @@ def _list_flow_ends(
     members = [writer.plan.find(end) for end in (source, target)]
     if not all(end is not None and end.shape.is_usage for end in members):
         return []
-    source_path = [*flow_path(graph, flow, Edge.FLOW_SOURCE), source]
-    target_path = [*flow_path(graph, flow, Edge.FLOW_TARGET), target]
+    source_path = _find_path_to_end(graph, flow, Edge.FLOW_SOURCE, source)
+    target_path = _find_path_to_end(graph, flow, Edge.FLOW_TARGET, target)
     scope = member.parent
+    firsts = [writer.plan.find(path[0]) for path in (source_path, target_path)]
+    if not all(first and is_path_accessible(writer.plan, scope, first) for first in firsts):
+        return []
     source_chain = format_chain(writer.plan, scope, source_path)
     return [(source_chain, format_chain(writer.plan, scope, target_path))]
+
+
+def _find_path_to_end(graph: Graph, flow: Element, edge: Edge, end: Element) -> list[Element]:
+    """Return the features that lead from the owner of a flow to its end.
+
+    A flow without a path leads to the feature of the only part of the owner that has the feature.
+    """
+    path, owner = flow_path(graph, flow, edge), graph.owner(flow)
+    if path or owner is None:
+        return [*path, end]
+    classifier = graph.owner(end)
+    holders = [part for part in graph.owned(owner) if type_of(graph, part) is classifier]
+    return [*holders, end] if classifier is not None and len(holders) == 1 else [end]
 
 
 def _order_ends(

@@ -72,6 +72,10 @@ def _is_below_dropped(writer: Writer, element: Element, dropped: Mapping[str, st
 
 
 def _is_omitted(writer: Writer, element: Element) -> bool:
+    if element.kind is Kind.APPLICATION and element.id not in writer.expressed:
+        # A partition is metadata of its actions, which has no metadata of its own.
+        subject = writer.graph.target(element, Edge.SUBJECT)
+        return subject is not None and subject.kind is Kind.PARTITION
     if element.id in writer.expressed or element.kind in (_EXPRESSED_BY_OTHERS | _TRANSPARENT):
         return False
     if element.kind is Kind.PARTITION:

@@ -292,7 +292,11 @@ def _redefine(writer: Writer, member: Member, head: Head) -> None:
         head.redefines.append(name)
     head.name = "" if has_redefined_name else quote_name(member.name)
     types = list(iter_types(writer.graph, element))
-    if has_redefined_name and all(
-        list(iter_types(writer.graph, feature)) == types for feature in redefined_features
+    # Only a type states that a port is conjugated.
+    is_conjugated = bool(element.attrs.get("conjugated"))
+    if (
+        has_redefined_name
+        and not is_conjugated
+        and all(list(iter_types(writer.graph, feature)) == types for feature in redefined_features)
     ):
         head.types = []

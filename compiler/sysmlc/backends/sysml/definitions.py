@@ -1,6 +1,7 @@
 """Packages, imports and definitions."""
 
 from sysmlc.backends.sysml.annotations import make_annotation, write_annotations
+from sysmlc.backends.sysml.comments import record_text_changes
 from sysmlc.backends.sysml.declarations import list_visibility, make_definition_head
 from sysmlc.backends.sysml.library import (
     find_quantity,
@@ -213,6 +214,7 @@ def write_requirement(writer: Writer, member: Member) -> list[Line]:
         body.append(make_annotation(writer, member, "Requirement", {"id": id}))
     text = element.attrs.get("text")
     if text:
+        record_text_changes(writer, element, str(text))
         body.append(Line("doc", text=format_comment(str(text))))
     return [Line(head.format(), body + write_contents(writer, member))]
 

@@ -128,6 +128,7 @@ def _write_satisfaction(writer: Writer, member: Member) -> list[Line]:
     if client.shape.keyword in _SATISFYING:
         lines = _write_requirement_references(writer, member, client, suppliers, keyword, "")
         client.added_lines += lines
+        _record_owner(writer, member, client)
         return []
     if client.shape.is_usage and client.shape.keyword != "requirement":
         definition = _find_definition(client)
@@ -137,8 +138,17 @@ def _write_satisfaction(writer: Writer, member: Member) -> list[Line]:
         if definition is None:
             return lines
         definition.added_lines += lines
+        _record_owner(writer, member, definition)
         return []
     return _write_plain(writer, member)
+
+
+def _record_owner(writer: Writer, member: Member, owner: Member) -> None:
+    """Record that a dependency stands in the definition that has its end, not in its namespace."""
+    if owner is not member.parent:
+        element = member.require_element()
+        construct = f"the owner of a dependency ({element.role})"
+        writer.record_approximation(element, construct, "the definition at its end")
 
 
 def _write_verification(writer: Writer, member: Member) -> list[Line]:
@@ -235,6 +245,7 @@ def _write_usage_allocation(
     line = Line(f"{head} {names[0]} to {names[1]}", write_contents(writer, member))
     if scope is member.parent or scope is None:
         return [line]
+    _record_owner(writer, member, scope)
     scope.added_lines.append(line)
     return []
 

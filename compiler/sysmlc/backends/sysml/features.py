@@ -15,7 +15,7 @@ from sysmlc.backends.sysml.plan import Member
 from sysmlc.backends.sysml.printing import Line, quote_name
 from sysmlc.backends.sysml.references import is_accessible
 from sysmlc.backends.sysml.writer import Writer
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import direction_of, flow_directions, type_of
 
 _DIRECTIONS = ("in", "out", "inout")
@@ -144,11 +144,40 @@ def write_parameter(writer: Writer, member: Member) -> list[Line]:
     element = member.require_element()
     head = make_feature_head(writer, member)
     _add_direction(head)
+    if _redefines_other_kind(writer, member, element):
+        # A reference may have the types of both parameters.
+        head.keyword = "ref"
     if "default" in element.attrs:
         sign = SIGNS[str(element.attrs.get("default_kind", "default"))]
         default = format_value(writer, member.parent, element, element, "default")
         head.value = f" {sign} {default}"
     return [Line(head.format(), write_contents(writer, member))]
+
+
+def _redefines_other_kind(writer: Writer, member: Member, parameter: Element) -> bool:
+    """Whether only one of the parameters at the same position of redefined operations is a value.
+
+    In SysML v2, a parameter redefines the parameter at its position.
+    """
+    graph = writer.graph
+    operation = graph.owner(parameter)
+    if operation is None:
+        return False
+    position = _list_parameters(graph, operation).index(parameter)
+    for redefined in graph.targets(operation, Edge.REDEFINES):
+        general = writer.plan.find(next(iter(_list_parameters(graph, redefined)[position:]), None))
+        if general is not None and _are_value_and_object(member, general):
+            return True
+    return False
+
+
+def _list_parameters(graph: Graph, operation: Element) -> list[Element]:
+    return [element for element in graph.owned(operation) if element.kind is Kind.PARAMETER]
+
+
+def _are_value_and_object(first: Member, second: Member) -> bool:
+    keywords = {first.shape.keyword, second.shape.keyword}
+    return "attribute" in keywords and bool(keywords & {"item", "part", "occurrence"})
 
 
 def _add_direction(head: Head) -> None:
@@ -178,8 +207,12 @@ def write_pin(writer: Writer, member: Member) -> list[Line]:
 def _redefine_parameter(writer: Writer, member: Member, parameter: Element, head: Head) -> None:
     """Add the redefinition of *parameter* to the head; drop a name and types equal to its own."""
     name = writer.refer_to_redefined(member.parent, parameter)
-    if name is None:
+    general = writer.plan.find(parameter)
+    if name is None or general is None:
         return
+    if _are_value_and_object(member, general):
+        # A reference may have the type of the pin although its parameter is no attribute.
+        head.keyword = "ref"
     head.redefines = [*(head.redefines or ()), name]
     if name == quote_name(member.name):
         head.name = ""

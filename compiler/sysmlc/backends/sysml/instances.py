@@ -82,7 +82,10 @@ def _choose_operator(writer: Writer, member: Member, element: Element, part: Ele
 def _write_slot(writer: Writer, member: Member, slot: Element) -> list[Line]:
     """Write the redefinition of a feature with its value; a list if there are several values."""
     feature = writer.graph.target(slot, Edge.INSTANCE_OF)
-    name = None if feature is None else writer.refer_to_redefined(member, feature)
+    feature_member = writer.plan.find(feature)
+    # Of a feature outside of the model only the id may be known: its stub is a definition.
+    is_feature = feature_member is not None and not feature_member.shape.is_definition
+    name = writer.refer_to_redefined(member, feature) if feature and is_feature else None
     children = [line for child in writer.graph.owned(slot) for line in _write_child(writer, child)]
     if name is None or feature is None:
         if feature is None or not feature.attrs.get("library"):

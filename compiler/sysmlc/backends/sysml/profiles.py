@@ -1,11 +1,12 @@
 """Stereotypes as metadata definitions: those of the model, and added ones for unknown profiles."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 from sysmlc.backends.sysml.plan import Member, Plan
 from sysmlc.backends.sysml.shapes import Shape
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.ir.query import generals
+from sysmlc.ir.query.names import spell_for_xml
 
 _UNKNOWN_PROFILES = "Stereotypes"
 """Name of the package for the definitions of stereotypes that no file of the model defines."""
@@ -77,12 +78,19 @@ def _add_tags(plan: Plan, definition: Member, application: Element) -> None:
         tag = key.removeprefix("tag.")
         if not key.startswith("tag."):
             continue
-        if tag not in names:
+        if find_tag_name(names, tag) is None:
             plan.add(Shape("attribute"), definition, tag, None)
         candidates = (m for m in definition.members if m.name == tag and m.element is None)
         attribute = next(candidates, None)
         if attribute is not None:
             attribute.added_type = _widen_type(attribute.added_type, value)
+
+
+def find_tag_name(names: Collection[str], tag: str) -> str | None:
+    """Return the name of the attribute for a tag: the same, or one that XML spells like the tag."""
+    if tag in names:
+        return tag
+    return next((name for name in names if spell_for_xml(name) == tag), None)
 
 
 def _iter_attribute_names(plan: Plan, definition: Member) -> Iterator[str]:

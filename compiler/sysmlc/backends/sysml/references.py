@@ -280,10 +280,14 @@ def format_library_name(plan: Plan, scope: Member | None, name: str) -> str:
 
 
 def format_redefined_name(plan: Plan, scope: Member | None, target: Member) -> str | None:
-    """Return the name of a feature that a member of *scope* redefines: short if inherited."""
+    """Return the name of a feature that a member of *scope* redefines: short if inherited.
+
+    If *scope* inherits another member of the same name, the short name may denote that one.
+    """
     if scope is not None and target.name:
-        for general in iter_generals(plan, scope):
-            if any(member is target for member in general.members):
-                plan.expose(target)
-                return quote_name(target.name)
+        generals = _iter_direct_generals(plan, scope)
+        namesakes = [visible_members(plan, general).get(target.name) for general in generals]
+        if target in namesakes and all(member in (None, target) for member in namesakes):
+            plan.expose(target)
+            return quote_name(target.name)
     return format_reference(plan, None if scope is None else scope.parent, target)

@@ -81,9 +81,15 @@ def find_common_namespace(
     shared = list(flow.namespaces)
     for node in nodes:
         member = find_object_node(plan, node)
-        reachable = [] if member is None else list(_iter_reaching_namespaces(member))
+        reachable = [] if member is None else list(iter_reaching_namespaces(member))
         shared = [space for space in shared if any(space is other for other in reachable)]
     return shared[0] if shared else None
+
+
+def find_behaviour(plan: Plan, node: Element) -> Member | None:
+    """Return the member of the nearest owner of a node that the text has a member for."""
+    owners = (plan.find(ancestor) for ancestor in plan.graph.ancestors(node))
+    return next((owner for owner in owners if owner is not None), None)
 
 
 def find_object_node(plan: Plan, node: Element | None) -> Member | None:
@@ -94,7 +100,7 @@ def find_object_node(plan: Plan, node: Element | None) -> Member | None:
     return member
 
 
-def _iter_reaching_namespaces(member: Member) -> Iterator[Member]:
+def iter_reaching_namespaces(member: Member) -> Iterator[Member]:
     """Yield the namespaces from which a feature chain through usages leads to a member."""
     for namespace in member.namespaces:
         yield namespace

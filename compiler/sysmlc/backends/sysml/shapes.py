@@ -124,6 +124,7 @@ _FEATURES_BY_TYPE = {
 }
 """Keyword of a feature by the keyword of its type; ``ref`` for all other types."""
 PACKAGES = (Kind.PACKAGE, Kind.PROFILE)
+_MESSAGING = ("send", "broadcast", "accept", "accept-call")
 _WITH_ROLE = (Kind.CLASS, Kind.DATA_TYPE, Kind.COMPONENT, Kind.PACKAGE)
 """Kinds whose role may change the keyword."""
 
@@ -169,10 +170,17 @@ def _is_part_port(graph: Graph, port: Element, type_shapes: _TypeShapes) -> bool
 
 
 def _find_parameter_shape(graph: Graph, element: Element, type_shapes: _TypeShapes) -> Shape | None:
-    """Return the shape of a parameter or pin; None for the node of a parameter, written with it."""
+    """Return the shape of a parameter or pin; None for the node of a parameter, written with it.
+
+    The pins of send and accept actions redefine parameters of the standard library that are no
+    attributes (Actions::SendAction, Actions::AcceptAction).
+    """
     if element.kind is Kind.ACTIVITY_PARAMETER and graph.targets(element, Edge.REFERENCES):
         return None
     keyword = _find_feature_keyword(graph, element, type_shapes)
+    action = graph.owner(element) if keyword == "attribute" and element.kind is Kind.PIN else None
+    if action is not None and action.kind is Kind.ACTION and action.subkind in _MESSAGING:
+        return Shape("ref")
     return Shape("item" if keyword == "part" else keyword)
 
 

@@ -140,7 +140,7 @@ class Writer:
     # -- lines -----------------------------------------------------------------------------------
 
     def declare_attribute(self, namespace: Member, name: str, type_: str) -> str:
-        """Declare an attribute without an element of the graph. Return its name as it is written.
+        """Declare an attribute whose name is a condition in words. Return its name as written.
 
         A second declaration of the same name in the namespace reuses the first attribute.
         """
@@ -154,7 +154,10 @@ class Writer:
         attribute = self.plan.add(Shape("attribute"), namespace, free_name, None)
         namespace.visible_names = None
         type_name = self.refer_to_library(namespace, type_)
-        namespace.added_lines.append(Line(f"attribute {quote_name(free_name)} : {type_name}"))
+        keyword = "attribute"
+        if not free_name.isidentifier():
+            keyword = f"#{self.refer_to_sysmlc(namespace, 'inWords')} attribute"
+        namespace.added_lines.append(Line(f"{keyword} {quote_name(free_name)} : {type_name}"))
         attribute.is_declared = True
         return quote_name(free_name)
 

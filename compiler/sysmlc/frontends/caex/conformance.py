@@ -12,6 +12,7 @@ from sysmlc.frontends.caex import rules
 from sysmlc.frontends.caex.context import Context, qualified_name
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.vocabulary import CLASS_TAGS, LIBRARIES
+from sysmlc.ir import Edge
 from sysmlc.sources import Source
 from sysmlc.sources.caex_vocabulary import ATTRIBUTES, ORDER, TEXTS
 from sysmlc.sources.xml import SEPARATOR, make_parser, parse
@@ -82,12 +83,21 @@ def _report_unknown_attributes(context: Context, document: Document) -> None:
         for row in rows:
             if document.verdicts[row] is Verdict.MAPPED:
                 document.verdicts[row] = Verdict.APPROXIMATED
+            if (tag, name) == ("ExternalInterface", "RefBaseSystemUnitPath"):
+                _mark_misplaced_class(context, document, row)
         node = document.node(rows[0])
         count = f" ({len(rows)} elements)" if len(rows) > 1 else ""
         facts = {"tag": tag, "attribute": name, "more": count}
         facts["hint"] = did_you_mean(name, ATTRIBUTES[tag] or ())
         element = _quote_name(node, document)
         context.report(UNKNOWN_ATTRIBUTE, document, node, element=element, **facts)
+
+
+def _mark_misplaced_class(context: Context, document: Document, row: int) -> None:
+    """Record that an interface names its class in a wrong attribute: no other rule reports it."""
+    port = context.graph.get(document.element_ids[row])
+    if port is not None and context.graph.target(port, Edge.TYPED_BY) is None:
+        context.graph.set(port, unresolved=(Edge.TYPED_BY.value,))
 
 
 def _iter_shapes(document: Document) -> Iterator[_Shape]:

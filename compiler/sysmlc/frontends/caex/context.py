@@ -169,9 +169,13 @@ class Context:
 
     # -- findings ----------------------------------------------------------------------------------
 
-    def report(self, rule: Rule, document: Document, node: Node, **facts: str) -> None:
+    def report(
+        self, rule: Rule, document: Document, node: Node, cause: str = "", **facts: str
+    ) -> None:
         """Report a rule about a node, at its location."""
-        self.sink.report(rule, self.subject(document, node), notes=(), help="", **facts)
+        self.sink.report(
+            rule, self.subject(document, node), notes=(), help="", cause=cause, **facts
+        )
 
     def subject(self, document: Document, node: Node) -> Subject:
         """Return the node as the subject of a diagnostic."""
@@ -198,7 +202,9 @@ class Context:
             files: set[Document] = set()
             for document, node in nodes:
                 if document in files:
-                    self.report(rules.REPEATED_ID, document, node, id=id, element=node.name)
+                    self.report(
+                        rules.REPEATED_ID, document, node, f"ID {id}", id=id, element=node.name
+                    )
                 files.add(document)
         for document in self.documents:
             self._report_elements_without_id(document)

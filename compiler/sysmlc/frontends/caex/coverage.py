@@ -145,9 +145,10 @@ def _report_reference(
     if library in STANDARD_LIBRARIES:
         _report_library_fault(context, target, document, node, library)
         return
-    facts = {"element": f"'{qualified_name(node)}'", "family": "class"}
-    rule = _RULES_PER_REFERENCE[target.kind]
-    context.report(rule, document, node, path=target.name, alias=target.name, **facts)
+    facts = {"path": target.name, "alias": target.name, "family": "class"}
+    rule, cause = _RULES_PER_REFERENCE[target.kind], f"no {target.kind} {target.name}"
+    element = f"'{qualified_name(node)}'"
+    context.report(rule, document, node, cause, element=element, **facts)
 
 
 def _report_library_fault(
@@ -159,7 +160,8 @@ def _report_library_fault(
     subject = Subject(name, place=document.locate(node))
     facts = {"element": f"'{name}'", "library": library, "path": target.name}
     facts["problem"] = _PROBLEMS[target.kind]
-    context.sink.report(rules.LIBRARY_FAULT, subject, notes=(), help="", **facts)
+    cause = f"{library} without {target.name}"
+    context.sink.report(rules.LIBRARY_FAULT, subject, notes=(), help="", cause=cause, **facts)
 
 
 def _report_file_or_library(

@@ -82,7 +82,9 @@ class LinkEndResolver:
         end = self._resolve_text(text, document, node)
         if isinstance(end, Problem):
             facts = {"side": side, "reference": text, "problem": end.text}
-            self._context.report(rules.DANGLING_LINK, document, node, element=node.name, **facts)
+            self._context.report(
+                rules.DANGLING_LINK, document, node, f"no end {text}", element=node.name, **facts
+            )
         return end
 
     def _resolve_text(self, text: str, document: Document, node: Node) -> LinkEnd | Problem:

@@ -129,7 +129,7 @@ class LinkLowering:
             self._linked_ancestors.clear()
 
     def _add_ends(self, connector: Element, ends: list[LinkEnd], leaves_tree: bool) -> None:
-        """Add the ends of a connector, each with the parts from the owner down to its port."""
+        """Add the ends of a connector, each with the parts and ports from the owner to its port."""
         graph, owner = self._context.graph, connector.id
         source, ordinal = connector.source, connector.ordinal
         connector_ends: list[Element] = []
@@ -145,9 +145,21 @@ class LinkLowering:
             starts_at_owner = bool(component.root.instance_id) and not leaves_tree
             for step in path[1:] if starts_at_owner else path:
                 graph.connect(_PATH, end, step)
+            for step in self._list_enclosing_ports(port):
+                graph.connect(_PATH, end, step)
         self._ends += connector_ends
         for end in connector_ends:
             graph.connect(_END, connector, end)
+
+    def _list_enclosing_ports(self, port: str) -> list[Element]:
+        """Return the ports around a nested port (CAEX 3.0), the outermost first."""
+        graph = self._context.graph
+        enclosing_ports: list[Element] = []
+        block = graph.owner(graph[port])
+        while block is not None and block.subkind == "external-interface":
+            enclosing_ports.insert(0, graph[block.id.removesuffix("#type")])
+            block = graph.owner(block)
+        return enclosing_ports
 
     def _find_path(self, component: Component) -> list[Element]:
         """Return the Instance at the top, if any, and the parts down to a component; memoised."""

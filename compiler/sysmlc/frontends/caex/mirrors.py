@@ -144,7 +144,7 @@ def _store_masters(
 def _report_missing(context: Context, document: Document, node: Node, reference: str) -> None:
     _record_path(context, node)
     facts = {"element": node.name, "reference": reference}
-    context.report(rules.MIRROR_WITHOUT_MASTER, document, node, **facts)
+    context.report(rules.MIRROR_WITHOUT_MASTER, document, node, f"no master {reference}", **facts)
 
 
 def _report_cycle(context: Context, document: Document, node: Node) -> None:

@@ -14,7 +14,10 @@ MISSING_CLASS_LIBRARY = rule(
     "missing-class-library",
     Severity.WARNING,
     "the library '{library}' is not in the file; {count} to classes of it",
-    help="give the file that contains it as a further input, or declare it as ExternalReference",
+    help=(
+        "add the library to the file, or declare the file that has it as ExternalReference with an "
+        "alias and write <alias>@{library}/... in the paths"
+    ),
 )
 MISSING_FILE = rule(
     "SM132",

@@ -114,6 +114,8 @@ class FileLowering:
         MTIP does not export elements of some types: a target that is not in the graph gets an id
         that says so, for which an external stub is created.
         """
+        if id in v.PRIMITIVES and id not in self.by_id:
+            return v.PRIMITIVE_TYPES + id
         graph_id = self.graph_id(id)
         return graph_id if graph_id in self.graph else f"MTIP:not-exported#{id}"
 

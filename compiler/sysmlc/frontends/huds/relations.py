@@ -29,16 +29,19 @@ def add_relations(file: _FileLowering, record: Record, element: Element | None) 
     for relation, id in record.relations:
         edge = v.RELATIONS.get(relation)
         if edge is not None:
-            _refer(file, edge, element.id, [id])
+            kind = v.TARGET_KINDS.get(relation, Kind.CLASS)
+            _refer(file, edge, element.id, [id], kind)
     if element.kind in v.ENDS:
         _add_ends(file, record, element)
     if element.kind in _COMPLETIONS:
         _COMPLETIONS[element.kind](file, record, element)
 
 
-def _refer(file: _FileLowering, edge: Edge, source: str, ids: Iterable[str]) -> None:
+def _refer(
+    file: _FileLowering, edge: Edge, source: str, ids: Iterable[str], kind: Kind = Kind.CLASS
+) -> None:
     for id in ids:
-        file.graph.pending.append(Reference(edge, source, file.target_id(id)))
+        file.graph.pending.append(Reference(edge, source, file.target_id(id), kind))
 
 
 def _add_ends(file: _FileLowering, record: Record, element: Element) -> None:

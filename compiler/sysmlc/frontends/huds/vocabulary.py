@@ -123,6 +123,22 @@ RELATIONS: dict[str, Edge] = {
 }
 """Relations that are an edge from the element to its target."""
 
+TARGET_KINDS: dict[str, Kind] = {
+    "property": Kind.PROPERTY,
+    "behavior": Kind.ACTIVITY,
+    "operation": Kind.OPERATION,
+    "signal": Kind.SIGNAL,
+    "represents": Kind.PROPERTY,
+    "doActivity": Kind.ACTIVITY,
+    "entry": Kind.ACTIVITY,
+    "exit": Kind.ACTIVITY,
+}
+"""Kinds of targets by relation, for targets that MTIP does not export; otherwise a class."""
+
+PRIMITIVES = frozenset({"Boolean", "Integer", "Real", "String", "UnlimitedNatural"})
+"""Ids of UML's primitive types: MTIP writes their names."""
+PRIMITIVE_TYPES = "http://www.omg.org/spec/UML/20161101/PrimitiveTypes.xmi#"
+
 ENDS: dict[Kind, tuple[Edge, Edge]] = {
     Kind.CONTROL_FLOW: (Edge.FLOW_SOURCE, Edge.FLOW_TARGET),
     Kind.OBJECT_FLOW: (Edge.FLOW_SOURCE, Edge.FLOW_TARGET),

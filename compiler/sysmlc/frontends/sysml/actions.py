@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING
 from sysmlc.frontends.sysml import annotations, expressions, nodes, values
 from sysmlc.frontends.sysml.activities import list_members_beside
 from sysmlc.frontends.sysml.definitions import visibility_attributes
-from sysmlc.frontends.sysml.successions import lower_steps
+from sysmlc.frontends.sysml.kinds import ACTIVITIES
+from sysmlc.frontends.sysml.successions import defer_implied_start, lower_steps
 from sysmlc.frontends.sysml.triggers import lower_trigger
 from sysmlc.ir import AttrValue, Edge, Element, Kind, as_items
 from sysmlc.language.tree import Node
@@ -112,7 +113,7 @@ def _connect_called(lowering: "Lowering", action: Element, called: Node) -> None
 
 def _assign_partitions(lowering: "Lowering", node: Node, owner: Element, action: Element) -> None:
     """Assign an action to the partitions that metadata names."""
-    if "Partition" not in annotations.shipped_metadata_of(node):
+    if "Partition" not in nodes.shipped_metadata_of(node):
         return
     names = _list_texts(annotations.metadata_value(node, "Partition", "names"))
     represented = _list_texts(annotations.metadata_value(node, "Partition", "represents"))
@@ -196,6 +197,8 @@ def lower_accept(lowering: "Lowering", node: Node, owner: Element) -> Element:
     """Lower an accept action with its trigger."""
     action = _add_action(lowering, node, owner, "accept")
     lower_trigger(lowering, node, action)
+    if owner.kind in ACTIVITIES:
+        defer_implied_start(lowering, node, owner, action)
     _lower_members(lowering, node, action)
     return action
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Collection, Iterator
 from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import nodes, preserved_facts, values
-from sysmlc.frontends.sysml.libraries import OUR_LIBRARY, PROFILE, RECIPES
+from sysmlc.frontends.sysml.libraries import PROFILE, RECIPES
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.language.tree import Node
 
@@ -100,7 +100,7 @@ def lower_textual_representation(lowering: "Lowering", node: Node, owner: Elemen
 
 def lower_metadata(lowering: "Lowering", node: Node, owner: Element | None) -> None:
     """Lower metadata to an applied stereotype; metadata of our library describes its owner."""
-    shipped_name = _shipped_metadata_name(node)
+    shipped_name = nodes.shipped_metadata_name(node)
     if shipped_name:
         if owner is not None and shipped_name in _SHIPPED_HANDLERS:
             _SHIPPED_HANDLERS[shipped_name](lowering, node, owner)
@@ -151,7 +151,7 @@ _SHIPPED_HANDLERS: dict[str, Callable[["Lowering", Node, Element], None]] = {
 
 def is_owned_by_type(node: Node) -> bool:
     """Whether metadata is an element that the class of its feature owns, not the feature."""
-    is_element = _shipped_metadata_name(node) == "Element"
+    is_element = nodes.shipped_metadata_name(node) == "Element"
     return is_element and bool(dict(iter_constants(node)).get("isOfType"))
 
 
@@ -171,7 +171,7 @@ def _namespace_of(definition: Node | None) -> str:
     if root_member is not definition and nodes.name_of(root_member) == RECIPES:
         return PROFILE
     for member in nodes.iter_by_metaclass(definition, "MetadataUsage"):
-        if _shipped_metadata_name(member) == "External":
+        if nodes.shipped_metadata_name(member) == "External":
             return str(dict(iter_constants(member)).get("href", ""))
     return ""
 
@@ -236,28 +236,9 @@ def iter_constants(node: Node) -> Iterator[tuple[str, AttrValue]]:
             yield name, value
 
 
-def _shipped_metadata_name(node: Node) -> str:
-    """Return the name of the definition in our library that types metadata, else ''."""
-    reference = nodes.find_reference(node, "FeatureTyping")
-    definition = None if reference is None else reference.target
-    owner = None if definition is None else definition.owner
-    if definition is None or owner is None or owner.name != OUR_LIBRARY:
-        return ""
-    return definition.name or definition.short_name or ""
-
-
-def shipped_metadata_of(node: Node) -> dict[str, Node]:
-    """Return the metadata of a node that our library defines, by the names of the definitions."""
-    return {
-        name: member
-        for member in node.members
-        if member.kind == "MetadataUsage" and (name := _shipped_metadata_name(member))
-    }
-
-
 def metadata_value(node: Node, name: str, key: str) -> AttrValue:
     """Return the value *key* in the metadata *name* of our library, or None."""
-    metadata = shipped_metadata_of(node).get(name)
+    metadata = nodes.shipped_metadata_of(node).get(name)
     return None if metadata is None else dict(iter_constants(metadata)).get(key)
 
 

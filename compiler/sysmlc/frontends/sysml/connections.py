@@ -222,16 +222,20 @@ def _connect_association(lowering: "Lowering", ends: list[Node], association: El
 
 
 def _find_opposite_feature(lowering: "Lowering", end: Node, ends: list[Node]) -> Element | None:
-    """Return the feature of the opposite end's type that has the name and type of an end."""
+    """Return the feature of the opposite end's type that has the name and type of an end.
+
+    The names are those of the text: metadata may have restored another one in the graph.
+    """
     if len(ends) != 2:
         return None
     end_types = [lowering.element_of(type_) for type_ in nodes.types_of(lowering, end)]
     opposite = ends[1] if end is ends[0] else ends[0]
     for type_ in nodes.types_of(lowering, opposite):
-        classifier = lowering.element_of(type_)
-        if classifier is not None:
-            for feature in lowering.graph.owned(classifier):
-                is_same = feature.name == nodes.name_of(end) and feature.kind in _FEATURES
-                if is_same and type_of(lowering.graph, feature) in end_types:
-                    return feature
+        for member in type_.members:
+            if nodes.name_of(member) != nodes.name_of(end):
+                continue
+            feature = lowering.element_of(member)
+            is_feature = feature is not None and feature.kind in _FEATURES
+            if feature and is_feature and type_of(lowering.graph, feature) in end_types:
+                return feature
     return None

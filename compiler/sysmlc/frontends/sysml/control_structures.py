@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import nodes, values
-from sysmlc.frontends.sysml.successions import lower_steps
+from sysmlc.frontends.sysml.successions import SUCCESSIONS, defer_implied_start, lower_steps
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.language.tree import Node
 
@@ -26,7 +26,7 @@ def lower_if(lowering: "Lowering", node: Node, owner: Element) -> None:
     merge = _add_control_node(lowering, node, owner, "merge")
     lowering.elements[id(node)] = decision
     lowering.spans[id(node)] = (decision, merge)
-    _defer_implied_start(lowering, node, owner, decision)
+    defer_implied_start(lowering, node, owner, decision)
     guards: list[Node | str] = [conditions[0] if conditions else "true", "else"]
     for number, guard in enumerate(guards):
         action = actions[number] if number < len(actions) else None
@@ -52,7 +52,7 @@ def lower_while(lowering: "Lowering", node: Node, owner: Element) -> None:
     exit_ = _add_control_node(lowering, node, owner, "merge")
     lowering.elements[id(node)] = entry
     lowering.spans[id(node)] = (entry, exit_)
-    _defer_implied_start(lowering, node, owner, entry)
+    defer_implied_start(lowering, node, owner, entry)
     # The next flow leaves `source`; its guard is the while condition until it has been tested.
     source, guard = entry, while_condition
     if while_condition is not None:
@@ -66,6 +66,8 @@ def lower_while(lowering: "Lowering", node: Node, owner: Element) -> None:
         source, guard = block[1], None
     if until_condition is None:
         _add_flow(lowering, node, source, entry, guard)
+        if while_condition is None:
+            _defer_removal(lowering, exit_)
         return
     decision = _add_control_node(lowering, node, owner, "decision")
     _add_flow(lowering, node, source, decision, guard)
@@ -138,33 +140,47 @@ def _lower_block(
     exit_ = _add_control_node(lowering, action, owner, "merge")
     entry_and_exit += (entry, exit_)
     lowering.defer_until_edges(lambda: _connect_block(lowering, action, steps, entry, exit_))
+    _defer_removal(lowering, exit_)
     return entry, exit_
 
 
 def _connect_block(
     lowering: "Lowering", action: Node, steps: Iterable[Element], entry: Element, exit_: Element
 ) -> None:
-    """Connect the entry to the steps that nothing precedes, and the last steps to the exit."""
+    """Connect the entry to the steps that nothing precedes, and the last steps to the exit.
+
+    Flows back to the entry of a loop do not precede it. Nothing leads to the exit of a loop without
+    conditions.
+    """
+    spans = list(lowering.spans.values())
+    entries, exits = ({ends[index].id for ends in spans} for index in (0, 1))
     for step in steps:
-        if not lowering.graph.sources(step, Edge.FLOW_TARGET):
+        flows = lowering.graph.sources(step, Edge.FLOW_TARGET)
+        if step.id in entries:
+            node = lowering.origin_of(step)
+            flows = [flow for flow in flows if lowering.origin_of(flow) is not node]
+        if not flows and step.id not in exits:
             _add_flow(lowering, action, entry, step)
-        if not lowering.graph.sources(step, Edge.FLOW_SOURCE) and step.subkind != "final":
+        is_end = step.subkind != "final" and (flows or step.id not in exits)
+        if is_end and not lowering.graph.sources(step, Edge.FLOW_SOURCE):
             _add_flow(lowering, action, step, exit_)
 
 
-def _defer_implied_start(lowering: "Lowering", node: Node, owner: Element, entry: Element) -> None:
-    """Add a flow from the start of the behaviour if no other node of it leads to the structure.
+def _defer_removal(lowering: "Lowering", exit_: Element) -> None:
+    """Remove the exit of an endless loop, or of a block that ends with one.
 
-    Flows of the structure itself, such as that back to the entry of a loop, do not count."""
+    A step that the model states after the loop keeps the exit, from which it waits for a token.
+    """
 
-    def connect_start() -> None:
-        flows = lowering.graph.sources(entry, Edge.FLOW_TARGET)
-        if all(lowering.is_derived_from(flow, node) for flow in flows):
-            start = lowering.ensure_control_node(owner, "start")
-            _add_flow(lowering, node, start, entry)
+    def remove_exit() -> None:
+        flows = lowering.graph.sources(exit_, Edge.FLOW_SOURCE)
+        origins = [lowering.origin_of(flow) for flow in flows]
+        is_stated = any(node is not None and node.kind in SUCCESSIONS for node in origins)
+        if not lowering.graph.sources(exit_, Edge.FLOW_TARGET) and not is_stated:
+            for element in (*flows, exit_):
+                lowering.graph.remove(element)
 
-    # Deferred twice: blocks around this node add their flows in the first round.
-    lowering.defer_until_edges(lambda: lowering.defer_until_edges(connect_start))
+    lowering.defer_until_edges(lambda: lowering.defer_until_edges(remove_exit))
 
 
 # -- nodes and flows ---------------------------------------------------------------------------

@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from sysmlc.diagnostics import Coverage, Rule, Verdict
 from sysmlc.diagnostics.coverage import Loss
-from sysmlc.frontends.sysml.positions import DocumentPositions
 from sysmlc.frontends.sysml.rules import APPROXIMATED, UNSUPPORTED
-from sysmlc.language.tree import Node
+from sysmlc.language.tree import DocumentPositions, Node
 
 if TYPE_CHECKING:
     from sysmlc.frontends.sysml.lowering import Lowering
@@ -76,6 +75,12 @@ class Verdicts:
             container = container.owner
 
 
+def describe_loss(construct: str, approximation: str) -> str:
+    """Return what becomes of a construct that the graph represents in part."""
+    treatment = "not read" if approximation == "nothing" else f"read as {approximation}"
+    return f"{construct} is {treatment}"
+
+
 class _Judged(NamedTuple):
     """A node with its verdict, and whether the node only shares the verdict of its owner."""
 
@@ -135,7 +140,7 @@ def _iter_losses(
 ) -> Iterator[Loss]:
     """Yield one loss for each node with a verdict, with the number of nodes that share it."""
     reasons = {
-        id(node): (APPROXIMATED, f"{construct} is read as {approximation}")
+        id(node): (APPROXIMATED, describe_loss(construct, approximation))
         for construct, approximation, nodes in lowering.iter_losses()
         for node in nodes
         if construct

@@ -140,7 +140,7 @@ def _defer_general(lowering: "Lowering", element: Element, reference: Reference)
 
 def read_kind(node: Node, kind: Kind) -> tuple[Kind, str]:
     """Return kind and subkind of an element as metadata of our library states them, else *kind*."""
-    if not annotations.shipped_metadata_of(node):
+    if not nodes.shipped_metadata_of(node):
         return kind, ""
     name = annotations.metadata_value(node, "Kind", "name")
     name = name or annotations.metadata_value(node, "AutomationML", "kind")
@@ -162,13 +162,13 @@ def external_attributes(node: Node) -> dict[str, AttrValue]:
 
 def foreign_attributes(node: Node) -> dict[str, AttrValue]:
     """Return the attributes that metadata preserves of an element of another notation."""
-    if not annotations.shipped_metadata_of(node):
+    if not nodes.shipped_metadata_of(node):
         return {}
     return external_attributes(node) | _aml_attributes(node)
 
 
 def _aml_attributes(node: Node) -> dict[str, AttrValue]:
-    metadata = annotations.shipped_metadata_of(node).get("AutomationML")
+    metadata = nodes.shipped_metadata_of(node).get("AutomationML")
     if metadata is None:
         return {}
     constants = dict(annotations.iter_constants(metadata))
@@ -241,7 +241,7 @@ def _set_quantity_and_unit(lowering: "Lowering", node: Node, type_: Element) -> 
 
 def _add_unit_of_metadata(lowering: "Lowering", node: Node, type_: Element) -> None:
     """Add the unit and quantity kind that metadata states because the library has no such unit."""
-    metadata = annotations.shipped_metadata_of(node).get("Unit")
+    metadata = nodes.shipped_metadata_of(node).get("Unit")
     if metadata is None:
         return
     texts = {key: str(value) for key, value in annotations.iter_constants(metadata)}

@@ -39,7 +39,7 @@ def lower_classifier_feature(lowering: "Lowering", node: Node, owner: Element) -
         return _lower_literal(lowering, node, owner)
     if node.kind == "PortUsage":
         return _lower_port(lowering, node, owner)
-    for keyword in annotations.shipped_metadata_of(node):
+    for keyword in nodes.shipped_metadata_of(node):
         if keyword in _PART_PORTS:
             return _lower_part_port(lowering, node, owner, _PART_PORTS[keyword])
     return lower_property(lowering, node, owner)
@@ -79,7 +79,7 @@ def _feature_attributes(node: Node, owner: Element) -> dict[str, AttrValue]:
 
 
 def _set_aggregation(node: Node, property_: Element) -> None:
-    keywords = annotations.shipped_metadata_of(node)
+    keywords = nodes.shipped_metadata_of(node)
     is_owned = not node.attributes.get("isReference") and "direction" not in node.attributes
     if "shared" in keywords or "SharedAggregation" in keywords:
         property_.attrs["aggregation"] = "shared"
@@ -203,7 +203,7 @@ def _describes_feature(member: Node, feature: Node) -> bool:
     if nodes.is_annotation(member):
         return not annotations.is_owned_by_type(member)
     is_realization = member.kind == "Dependency" and "Realization" in (
-        annotations.shipped_metadata_of(member)
+        nodes.shipped_metadata_of(member)
     )
     return is_realization and not member.name and nodes.find_target(member, "client") is feature
 
@@ -213,7 +213,7 @@ def read_interface_id(lowering: "Lowering", node: Node, element: Element) -> boo
 
     The id becomes part of the attribute ``interface_ids`` of *element*, the usage with the port.
     """
-    if node.kind != "PortUsage" or "AutomationML" not in annotations.shipped_metadata_of(node):
+    if node.kind != "PortUsage" or "AutomationML" not in nodes.shipped_metadata_of(node):
         return False
     target = nodes.find_target(node, "Redefinition")
     if len(nodes.body_of(node)) != 1 or target is None:
@@ -243,7 +243,7 @@ def _add_interface_id(
 
 def _lower_port(lowering: "Lowering", node: Node, owner: Element) -> Element:
     """Lower a port; a port that only has a flow without a name is a flow port of SysML 1.2."""
-    keywords = annotations.shipped_metadata_of(node)
+    keywords = nodes.shipped_metadata_of(node)
     kind_name = annotations.metadata_value(node, "Kind", "name")
     role = "proxy port"
     if kind_name == "port" or "AutomationML" in keywords:

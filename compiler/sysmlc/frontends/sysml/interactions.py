@@ -1,11 +1,16 @@
 """Interactions: occurrences with lifelines and messages between them."""
 
+from contextlib import suppress
+from graphlib import CycleError
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import annotations, nodes
 from sysmlc.frontends.sysml.connections import list_payloads
 from sysmlc.frontends.sysml.features import lower_property
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.algorithms import sort_topologically
+from sysmlc.ir.query.interactions import covered_lifelines, interaction_fragments
 from sysmlc.language.tree import Node
 
 if TYPE_CHECKING:
@@ -99,6 +104,12 @@ def lower_message(lowering: "Lowering", node: Node, owner: Element) -> None:
             for reference in nodes.list_references(payload, "FeatureTyping"):
                 lowering.connect_reference(Edge.CALLS, message, reference)
     lowering.defer_until_edges(lambda: _connect_message(lowering, node, message))
+    messages = [member for member in lowering.graph.owned(owner) if member.kind is Kind.MESSAGE]
+    if messages == [message]:
+        # Deferred twice: after the connection of all messages and orderings.
+        lowering.defer_until_edges(
+            lambda: lowering.defer_until_edges(lambda: _order_occurrences(lowering.graph, owner))
+        )
     annotations.lower_only_annotations(lowering, node, message, "a message", payloads)
 
 
@@ -135,6 +146,48 @@ def _ensure_occurrence(lowering: "Lowering", owner: Element, event: Element | No
     return occurrence
 
 
+def _order_occurrences(graph: Graph, container: Element) -> None:
+    """Put the fragments of an interaction in an order that its messages and successions allow.
+
+    The text states the events of each lifeline together, so that document order is an order for
+    each lifeline only. If the messages contradict it, they take precedence, because events without
+    a succession are not ordered (SysML 2.0, 7.9.5). Contradictory messages change nothing.
+    """
+    fragments = interaction_fragments(graph, container)
+    keys = {fragment.id: f"{index:06}" for index, fragment in enumerate(fragments)}
+    stated = [
+        (keys[source.id], keys[target.id])
+        for member in graph.owned(container)
+        for source, target in _list_ordered_pairs(graph, member)
+        if source.id in keys and target.id in keys
+    ]
+    if all(source < target for source, target in stated):
+        return
+    on_lifelines: dict[str, list[str]] = {}
+    for fragment in fragments:
+        for lifeline in covered_lifelines(graph, fragment):
+            on_lifelines.setdefault(lifeline.id, []).append(keys[fragment.id])
+    implied = [pair for events in on_lifelines.values() for pair in pairwise(events)]
+    for pairs in (stated + implied, stated):
+        with suppress(CycleError):
+            for key in list(sort_topologically(keys.values(), pairs)):
+                fragment = fragments[int(key)]
+                graph.move(fragment, None)
+                graph.move(fragment, container)
+            return
+
+
+def _list_ordered_pairs(graph: Graph, member: Element) -> list[tuple[Element, Element]]:
+    """Return the occurrence that a message or an ordering puts first, and the other one."""
+    edges = {
+        Kind.MESSAGE: (Edge.SEND_EVENT, Edge.RECEIVE_EVENT),
+        Kind.GENERAL_ORDERING: (Edge.FLOW_SOURCE, Edge.FLOW_TARGET),
+    }.get(member.kind)
+    ends = [] if edges is None else [graph.target(member, edge) for edge in edges]
+    present = [end for end in ends if end is not None]
+    return [(present[0], present[1])] if len(present) == 2 else []
+
+
 # -- events ------------------------------------------------------------------------------------
 
 
@@ -164,7 +217,7 @@ def lower_event_order(lowering: "Lowering", node: Node, owner: Element) -> None:
     """Lower a succession between events to a general ordering."""
     ends = nodes.ends_of(node)
     if len(ends) < 2:
-        lowering.mark_approximated(node, "an order of events without ends", "nothing")
+        lowering.mark_approximated(node, "an order of messages without ends", "nothing")
         return
     ordering = lowering.add_element(node, Kind.GENERAL_ORDERING, node.name or "", owner)
     lowering.defer_until_edges(lambda: _connect_ordering(lowering, ordering, ends))

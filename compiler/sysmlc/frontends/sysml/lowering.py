@@ -12,13 +12,12 @@ from typing import TYPE_CHECKING
 from sysmlc.diagnostics import Place, Sink, Subject
 from sysmlc.frontends.sysml import libraries, nodes
 from sysmlc.frontends.sysml.coverage import Verdicts
-from sysmlc.frontends.sysml.positions import DocumentPositions
 from sysmlc.frontends.sysml.qualified_names import QualifiedNames
 from sysmlc.frontends.sysml.rules import NOT_IN_GRAPH
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, list_items
 from sysmlc.ir import Reference as Pending
 from sysmlc.ir.query.activities import is_joined
-from sysmlc.language.tree import Document, Node, Reference, Relation
+from sysmlc.language.tree import Document, DocumentPositions, Node, Reference, Relation
 
 if TYPE_CHECKING:
     from sysmlc.language.names import Model
@@ -197,9 +196,9 @@ class Lowering(Verdicts):
         self._origins[element.id] = node
         return element
 
-    def is_derived_from(self, element: Element, node: Node) -> bool:
-        """Whether an element was added for a node."""
-        return self._origins.get(element.id) is node
+    def origin_of(self, element: Element) -> Node | None:
+        """Return the node for which an element was added."""
+        return self._origins.get(element.id)
 
     def add_implied_child(self, owner: Element, kind: Kind, name: str) -> Element:
         """Add an element without a node, at the location of its owner."""
@@ -297,10 +296,18 @@ class Lowering(Verdicts):
         self.sink.report(
             NOT_IN_GRAPH,
             self.graph.subject(source),
-            edge=str(edge.value),
+            cause=f"unread {self._name_unread(target)}",
             name=nodes.qualified_name_of(target),
-            type=nodes.spell_metaclass(target.kind),
+            type=nodes.add_article(nodes.spell_metaclass(target.kind)),
         )
+
+    def _name_unread(self, target: Node) -> str:
+        """Return the name of the outermost owner of a node that is not in the graph either."""
+        outermost, owner = target, target.owner
+        # The root of a document has no owner, and no element either.
+        while owner is not None and owner.owner is not None and self.element_of(owner) is None:
+            outermost, owner = owner, owner.owner
+        return nodes.qualified_name_of(outermost)
 
     # -- starts and ends of behaviours ---------------------------------------------------------
 

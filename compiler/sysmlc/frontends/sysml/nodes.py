@@ -1,8 +1,10 @@
 """Queries on nodes of the syntax tree that several handlers need."""
 
+import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from sysmlc.frontends.sysml.libraries import OUR_LIBRARY
 from sysmlc.language.text.lexer import join_tokens
 from sysmlc.language.tree import Node, Reference
 
@@ -25,6 +27,7 @@ _ARGUMENT_MEMBERSHIPS = frozenset(
 )
 _HEAD_MEMBERSHIPS = frozenset({"FeatureValue", "EndFeatureMembership"})
 _MULTIPLICITIES = frozenset({"MultiplicityRange", "Multiplicity"})
+_QUOTED_OR_PARENTHESIS = re.compile(r"\"(?:[^\"\\]|\\.)*\"|'(?:[^'\\]|\\.)*'|[()]")
 _TYPINGS = frozenset({"FeatureTyping", "ConjugatedPortTyping"})
 _TYPE_SOURCES = frozenset({"Redefinition", "Subsetting", "ReferenceSubsetting"})
 
@@ -171,6 +174,25 @@ def is_annotation(node: Node) -> bool:
     return node.kind in ANNOTATIONS
 
 
+def shipped_metadata_name(node: Node) -> str:
+    """Return the name of the definition in our library that types metadata, else ''."""
+    reference = find_reference(node, "FeatureTyping")
+    definition = None if reference is None else reference.target
+    owner = None if definition is None else definition.owner
+    if definition is None or owner is None or owner.name != OUR_LIBRARY:
+        return ""
+    return definition.name or definition.short_name or ""
+
+
+def shipped_metadata_of(node: Node) -> dict[str, Node]:
+    """Return the metadata of a node that our library defines, by the names of the definitions."""
+    return {
+        name: member
+        for member in node.members
+        if member.kind == "MetadataUsage" and (name := shipped_metadata_name(member))
+    }
+
+
 def is_message(node: Node) -> bool:
     """Whether a flow is a message, which has events instead of ends."""
     is_flow_without_ends = node.kind == "FlowUsage" and not ends_of(node)
@@ -253,11 +275,47 @@ def root_member_of(node: Node) -> Node:
     return node
 
 
+_METACLASS_WORDS = {
+    "SuccessionAsUsage": "succession",
+    "BindingConnectorAsUsage": "binding",
+    "FlowUsage": "flow or message",
+}
+"""Names of metaclasses in the words of the notation, where they differ."""
+
+
 def spell_metaclass(metaclass: str) -> str:
     """Return a metaclass in words: ``FlowDefinition`` is ``flow definition``."""
+    if metaclass in _METACLASS_WORDS:
+        return _METACLASS_WORDS[metaclass]
     return "".join(f" {c.lower()}" if c.isupper() else c for c in metaclass).strip()
 
 
+def add_article(noun: str) -> str:
+    """Return a noun, such as a metaclass in words, with its indefinite article."""
+    return f"an {noun}" if noun[0] in "aeiou" and not noun.startswith("us") else f"a {noun}"
+
+
 def quote_source(node: Node, text: str) -> str:
-    """Return the source text of a node in one line, without notes."""
-    return join_tokens(text, node.start, node.end) if 0 <= node.start < node.end else ""
+    """Return the source text of a node in one line, without notes.
+
+    The position of an operator expression starts and ends with its operands, inside their
+    parentheses; the text contains the parentheses.
+    """
+    if not 0 <= node.start < node.end:
+        return ""
+    quoted = join_tokens(text, node.start, node.end)
+    opening, closing = _count_open_parentheses(quoted)
+    return "(" * opening + quoted + ")" * closing
+
+
+def _count_open_parentheses(text: str) -> tuple[int, int]:
+    """Return how many parentheses are missing before the text and after it."""
+    before = after = 0
+    for token in _QUOTED_OR_PARENTHESIS.findall(text):
+        if token == "(":
+            after += 1
+        elif token == ")" and after:
+            after -= 1
+        elif token == ")":
+            before += 1
+    return before, after

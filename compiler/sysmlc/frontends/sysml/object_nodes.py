@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml import annotations, nodes, quantities, values
+from sysmlc.frontends.sysml import nodes, quantities, values
 from sysmlc.frontends.sysml.definitions import read_kind, visibility_attributes
 from sysmlc.frontends.sysml.features import connect_types, describe_feature, lower_property
 from sysmlc.ir import AttrValue, Edge, Element, Kind
@@ -190,7 +190,7 @@ def _ensure_parameter_node(lowering: "Lowering", parameter: Element) -> Element:
 
 def lower_object_flow(lowering: "Lowering", node: Node, owner: Element) -> None:
     """Lower a flow among steps; a succession flow also becomes a control flow."""
-    if "Through" in annotations.shipped_metadata_of(node):
+    if "Through" in nodes.shipped_metadata_of(node):
         lowering.skipped.update(id(member) for member in node.members)
         return
     flow = _add_object_flow(lowering, node, owner)

@@ -10,6 +10,7 @@ from sysmlc.frontends.sysml.libraries import FILES, LOWERED
 from sysmlc.frontends.sysml.rules import NO_LIBRARY, adapt_shared_rules
 from sysmlc.frontends.sysml.unit import lower_unit
 from sysmlc.ir import Graph
+from sysmlc.ir.pending import TextFile
 from sysmlc.language import interchange
 from sysmlc.language.checks import check
 from sysmlc.language.library import SHIPPED, Library, find_library, load_core, requested_path
@@ -56,6 +57,8 @@ def read(
         if document.root.members[0].name in LOWERED and _is_mentioned(document, models)
     ]
     adapt_shared_rules(lowered, sink)
+    files = [TextFile(document.path) for document in (*user_documents, *lowered)]
+    graph.store(TextFile, [*graph.derived(TextFile), *files])
     lower_unit([*user_documents, *lowered], model, graph, sink, coverage)
     _mark_external(graph, lowered)
 

@@ -91,7 +91,7 @@ def _is_refinement_keyword(node: Node) -> bool:
 
 def _list_keywords(node: Node) -> list[str]:
     """Return the names of metadata definitions of our library and of ``#`` keywords of a node."""
-    keywords = list(annotations.shipped_metadata_of(node))
+    keywords = list(nodes.shipped_metadata_of(node))
     for metadata in nodes.iter_by_metaclass(node, "MetadataUsage"):
         reference = nodes.find_reference(metadata, "FeatureTyping")
         if reference is None or not _is_keyword(metadata):

@@ -55,7 +55,7 @@ def lower_constraint(lowering: "Lowering", node: Node, owner: Element | None) ->
 
 
 def _constraint_subkind(node: Node) -> str:
-    for keyword in annotations.shipped_metadata_of(node):
+    for keyword in nodes.shipped_metadata_of(node):
         if keyword in _CONDITION_SUBKINDS:
             return _CONDITION_SUBKINDS[keyword]
     name = annotations.metadata_value(node, "Kind", "name")

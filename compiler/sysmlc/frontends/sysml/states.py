@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml import annotations, expressions, nodes, values
+from sysmlc.frontends.sysml import expressions, nodes, values
 from sysmlc.frontends.sysml.activities import lower_body
 from sysmlc.frontends.sysml.definitions import (
     connect_generals,
@@ -145,7 +145,7 @@ def _is_empty(subaction: Node) -> bool:
 
 def lower_state(lowering: "Lowering", node: Node, region: Element) -> Element:
     """Lower a state with its behaviours and substates; a keyword may make it a pseudostate."""
-    for keyword in annotations.shipped_metadata_of(node):
+    for keyword in nodes.shipped_metadata_of(node):
         if keyword in _PSEUDOSTATES:
             return _lower_pseudostate(lowering, node, region, _PSEUDOSTATES[keyword])
     attributes = visibility_attributes(node)

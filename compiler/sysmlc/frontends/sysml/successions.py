@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 End = Node | Reference | None
 """An end of a succession: a step beside it in the text, the name of a step, or none."""
 
-_SUCCESSIONS = frozenset({"SuccessionAsUsage", "Succession"})
+SUCCESSIONS = frozenset({"SuccessionAsUsage", "Succession"})
 _STEP_NAMES = """
     ActionUsage PerformActionUsage SendActionUsage AcceptActionUsage AssignmentActionUsage
     IfActionUsage WhileLoopActionUsage ForLoopActionUsage TerminateActionUsage DecisionNode
@@ -53,7 +53,7 @@ def lower_steps(
     """
     body = _Body(owner, entry_and_exit)
     for node in members:
-        if node.kind in _SUCCESSIONS:
+        if node.kind in SUCCESSIONS:
             _lower_succession(lowering, node, body)
         elif node.kind == "TransitionUsage":
             _lower_guarded_succession(lowering, node, body)
@@ -92,7 +92,7 @@ def reference_of_end(end: Node) -> Reference | None:
 def _lower_guarded_succession(lowering: "Lowering", node: Node, body: _Body) -> None:
     """Lower a guarded succession. A succession without a guard gets the guard ``else``."""
     source = nodes.find_reference(node, "Membership") or body.previous
-    succession = next(nodes.iter_by_metaclass(node, *_SUCCESSIONS), None)
+    succession = next(nodes.iter_by_metaclass(node, *SUCCESSIONS), None)
     ends = [] if succession is None else nodes.ends_of(succession)
     target = reference_of_end(ends[-1]) if ends else None
     if target is not None:
@@ -105,6 +105,26 @@ def guard_of(transition: Node) -> Node | None:
 
 
 # -- control flows -----------------------------------------------------------------------------
+
+
+def defer_implied_start(lowering: "Lowering", node: Node, owner: Element, entry: Element) -> None:
+    """Add a flow from the start of the behaviour if no other node of it leads to *entry*.
+
+    Flows of the structure itself, such as that back to the entry of a loop, do not count. A loop
+    could not start otherwise, and an accept action would wait again after each event (UML 2.5.1,
+    16.10.3), while one of SysML v2 occurs once.
+    """
+
+    def connect_start() -> None:
+        flows = lowering.graph.sources(entry, Edge.FLOW_TARGET)
+        if all(lowering.origin_of(flow) is node for flow in flows):
+            start = lowering.ensure_control_node(owner, "start")
+            flow = lowering.add_derived(node, Kind.CONTROL_FLOW, "", owner)
+            lowering.graph.connect(Edge.FLOW_SOURCE, flow, start)
+            lowering.graph.connect(Edge.FLOW_TARGET, flow, entry)
+
+    # Deferred twice: blocks around this node add their flows in the first round.
+    lowering.defer_until_edges(lambda: lowering.defer_until_edges(connect_start))
 
 
 def _add_flow(
@@ -121,7 +141,7 @@ def _add_flow(
         return
     _add_mentioned_end(lowering, body, source, node)
     _add_mentioned_end(lowering, body, target, node)
-    is_object_flow = "ObjectFlow" in annotations.shipped_metadata_of(node)
+    is_object_flow = "ObjectFlow" in nodes.shipped_metadata_of(node)
     kind = Kind.OBJECT_FLOW if is_object_flow else Kind.CONTROL_FLOW
     flow = lowering.add_element(node, kind, node.name or "", body.owner)
     if isinstance(guard, str):

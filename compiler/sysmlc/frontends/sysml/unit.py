@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.sysml import nodes
 from sysmlc.frontends.sysml.coverage import count_verdicts
+from sysmlc.frontends.sysml.declarations import store_declarations
 from sysmlc.frontends.sysml.handlers import HANDLERS
 from sysmlc.frontends.sysml.lowering import Lowering
 from sysmlc.frontends.sysml.object_nodes import ensure_pin
-from sysmlc.frontends.sysml.positions import DocumentPositions
 from sysmlc.frontends.sysml.unread_members import report_losses
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.query.activities import pin_subkind
 from sysmlc.language.library import SHIPPED
-from sysmlc.language.tree import Document, Node
+from sysmlc.language.tree import Document, DocumentPositions, Node
 from sysmlc.support.interpreter import allow_recursion
 
 if TYPE_CHECKING:
@@ -55,6 +55,7 @@ def lower_unit(
         lowering.defer_until_edges(lambda: _add_pins_of_chains(lowering, nodes_by_kind))
         lowering.finish()
     lowering.mark_flow_finals()
+    store_declarations(lowering, depth)
     _set_pin_subkinds(graph)
     report_losses(lowering)
     _relate_errors(lowering)

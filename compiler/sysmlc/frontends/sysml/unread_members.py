@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.sysml import nodes
+from sysmlc.frontends.sysml.coverage import describe_loss
 from sysmlc.frontends.sysml.definitions import variation_attributes
 from sysmlc.frontends.sysml.rules import APPROXIMATED, UNSUPPORTED
 from sysmlc.ir import Kind
@@ -54,9 +55,8 @@ def report_losses(lowering: "Lowering") -> None:
     for construct, approximation, lost in lowering.iter_losses():
         count, subject = len(lost), lowering.subject_of(lost[0])
         if construct:
-            lowering.sink.report(
-                APPROXIMATED, subject, count=count, construct=construct, replacement=approximation
-            )
+            loss = describe_loss(construct, approximation)
+            lowering.sink.report(APPROXIMATED, subject, count=count, loss=loss)
         else:
             metaclass = nodes.spell_metaclass(approximation)
             lowering.sink.report(UNSUPPORTED, subject, type=metaclass, count=count)
@@ -73,7 +73,7 @@ def _mark_unread_members(lowering: "Lowering") -> None:
     for root in lowering.roots:
         for node in _iter_unread(lowering, root, accounted, closed):
             assert node.owner is not None
-            owner = _add_article(nodes.spell_metaclass(node.owner.kind))
+            owner = nodes.add_article(nodes.spell_metaclass(node.owner.kind))
             part = "the multiplicity" if node.kind == "MultiplicityRange" else "a member"
             lowering.mark_approximated(node, f"{part} of {owner}", "nothing")
 
@@ -95,7 +95,7 @@ def _iter_unread(
                     stack.append(member)
                 variation = _find_lost_variation(lowering, member)
                 if variation:
-                    construct = _add_article(variation)
+                    construct = nodes.add_article(variation)
                     lowering.mark_approximated(member, construct, "a plain usage")
 
 
@@ -113,10 +113,6 @@ def _find_lost_variation(lowering: "Lowering", node: Node) -> str:
     if lost == ["portion"]:
         return str(node.attributes["portionKind"])
     return lost[0] if lost else ""
-
-
-def _add_article(noun: str) -> str:
-    return f"an {noun}" if noun[0] in "aeiou" and not noun.startswith("us") else f"a {noun}"
 
 
 def _is_read(lowering: "Lowering", node: Node, owner: Node) -> bool:

@@ -61,12 +61,13 @@ def set_expression(
 def expression_text(expression: Node | None, lowering: "Lowering") -> str:
     """Return an expression as text of our grammar.
 
-    A feature whose name is no identifier stands for a condition in prose: its name is the text.
+    The back end ``sysml`` marks features that stand for a condition in words: the text is their
+    name.
     """
     if expression is None:
         return ""
     target = _referenced_feature(expression)
-    if target is not None and target.name and not target.name.isidentifier():
+    if target is not None and target.name and "InWords" in nodes.shipped_metadata_of(target):
         return target.name
     return _write(expression, lowering)
 

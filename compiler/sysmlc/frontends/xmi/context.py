@@ -277,6 +277,7 @@ def _report(context: Context, first: UncheckedReference, targets: list[str]) -> 
     context.sink.report(
         rule,
         Subject(name, first.holder, place),
+        cause=f"missing {targets[0]}" if others == 0 else "",
         feature=first.feature,
         element=name,
         target=targets[0],

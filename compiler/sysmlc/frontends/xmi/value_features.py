@@ -119,7 +119,8 @@ def _lower_slot_value(context: Context, row: int) -> None:
         return
     value = lower_value(context, row)
     if value.instance:
-        is_href = value.instance not in context.document.ids
+        # An id that is missing is no file.
+        is_href = value.instance not in context.document.ids and "#" in value.instance
         child = next(context.document.children(row, "instance"), row)
         reference = WrittenReference(value.instance, child, is_href)
         context.add_reference(Edge.REFERENCES, owner.id, reference, "instance")

@@ -5,8 +5,15 @@ from collections.abc import Callable, Collection, Container, Iterator
 from functools import partial
 from typing import NamedTuple
 
-from sysmlc.ir.compare.content import IMPLIED, IN_ORDER, is_external
-from sysmlc.ir.compare.facts import BETWEEN, Change, Fact, Ref, What
+from sysmlc.ir.compare.content import (
+    DECLARATION,
+    DECLARED_BY,
+    IMPLIED,
+    IN_ORDER,
+    is_external,
+    name_in_comparison,
+)
+from sysmlc.ir.compare.facts import BETWEEN, Change, Fact, Ref, What, iter_statements
 from sysmlc.ir.compare.pairs import (
     Pairs,
     Token,
@@ -15,6 +22,7 @@ from sysmlc.ir.compare.pairs import (
     pair_by_likeness,
     pair_by_move,
     pair_by_name,
+    tokenise,
 )
 from sysmlc.ir.compare.refinement import BothFingerprints, pair_by_choice, pair_by_surroundings
 from sysmlc.ir.compare.side import (
@@ -169,7 +177,7 @@ class _Difference(NamedTuple):
 def _compare_pair(
     pairs: Pairs, old: Element, new: Element, ignore: Collection[str]
 ) -> Iterator[Change]:
-    if old.name != new.name and not _is_renamed_with_part(pairs, old, new):
+    if _is_renamed(pairs, new) and not _is_renamed_with_part(pairs, old, new):
         yield _pair_change(pairs, old, new, What.RENAMED, "name", old.name, new.name)
     if old.kind is not new.kind:
         yield _pair_change(pairs, old, new, What.RETYPED, "kind", str(old.kind), str(new.kind))
@@ -183,7 +191,8 @@ def _compare_pair(
         if not difference.names & set(ignore) and not _is_implied_role(difference)
     ]
     telling = [difference for difference in differences if not difference.names & IMPLIED]
-    for _, what, label, before, after in telling or differences:
+    declared = [] if DECLARATION in ignore else _list_declared(pairs, old, new, differences)
+    for _, what, label, before, after in (*(telling or differences), *declared):
         if what is What.RETYPED and _is_retyped_with_part(pairs, new):
             continue
         yield _pair_change(pairs, old, new, what, label, before, after)
@@ -204,7 +213,7 @@ def _is_renamed_with_part(pairs: Pairs, old: Element, new: Element) -> bool:
 
 def _is_renamed(pairs: Pairs, new: Element) -> bool:
     old = pairs.old_of.get(new.id)
-    return old is not None and old.name != new.name
+    return old is not None and name_in_comparison(old) != name_in_comparison(new)
 
 
 def _is_retyped_with_part(pairs: Pairs, new: Element) -> bool:
@@ -248,13 +257,37 @@ def _list_differences(pairs: Pairs, old: Element, new: Element) -> list[_Differe
     before, after = pairs.old_facts(old), pairs.new_facts(new)
     if [tokens for tokens, _ in before] == [tokens for tokens, _ in after]:
         return []
-    removed = _subtract(before, after)
-    added = _subtract(after, before)
-    keys = dict.fromkeys(key for (key, _), _ in (*removed, *added))
-    differences = [_difference_of_key(pairs, key, removed, added) for key in keys]
+    differences = _subtract_both(pairs, before, after)
     # A guard is an attribute of some dialects and a constraint of others.
     texts = {(d.before, d.after) for d in differences if d.label != "constraint"}
     return [d for d in differences if d.label != "constraint" or (d.before, d.after) not in texts]
+
+
+def _subtract_both(
+    pairs: Pairs, before: list[TokenisedFact], after: list[TokenisedFact]
+) -> list[_Difference]:
+    """Return one difference for each key of the facts that only one side has."""
+    removed = _subtract(before, after)
+    added = _subtract(after, before)
+    keys = dict.fromkeys(key for (key, _), _ in (*removed, *added))
+    return [_difference_of_key(pairs, key, removed, added) for key in keys]
+
+
+def _list_declared(
+    pairs: Pairs, old: Element, new: Element, differences: list[_Difference]
+) -> list[_Difference]:
+    """Return differences of declarations in SysML v2 that other differences do not express.
+
+    There are none if only one model is in SysML v2.
+    """
+    before = tokenise(iter_statements(pairs.old, old), pairs.old_token)
+    after = tokenise(iter_statements(pairs.new, new), pairs.new_token)
+    if not before or not after:
+        return []
+    reported = {name for d in differences for name in (*d.names, d.label)}
+    reported.update(DECLARED_BY["keyword"] if old.kind is not new.kind else ())
+    declared = _subtract_both(pairs, before, after)
+    return [d for d in declared if reported.isdisjoint(DECLARED_BY.get(d.label, {d.label}))]
 
 
 def _subtract(facts: list[TokenisedFact], others: list[TokenisedFact]) -> list[TokenisedFact]:

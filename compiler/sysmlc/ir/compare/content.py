@@ -53,6 +53,30 @@ NOT_CONTENT = frozenset(
 IMPLIED = frozenset({"role", "subkind"})
 """Attributes that mostly follow from others: reported only if no other attribute differs."""
 
+DECLARATION = "declaration"
+"""Key of facts about declarations in SysML v2, which ``--ignore`` accepts as well."""
+
+_RELATIONS = frozenset(
+    {"from", "to", "between", *(edge.value for edge in Edge if edge is not Edge.OWNS)}
+)
+_TEXTS = frozenset({"body", "comment", "description", "locale", "text"})
+DECLARED_BY: dict[str, frozenset[str]] = {
+    "keyword": frozenset({"role", "subkind"}),
+    "specialization": _RELATIONS | {"conjugated"},
+    "body": _TEXTS,
+    "condition": frozenset({"body", "constraint", "guard"}),
+    "documentation": _TEXTS,
+    "end": _RELATIONS | {"ends"},
+    "filter": frozenset({"filters"}),
+    "import": frozenset({"exposed", "filters", "import"}),
+    "locale": _TEXTS,
+    "name": frozenset({"req_id"}),
+    "reference": frozenset({"aggregation"}),
+    "short name": frozenset({"req_id", "symbol"}),
+    "metadata": frozenset({"stereotype", "tag", "metadata"}),
+}
+"""Names of facts that express an aspect of declarations; other aspects are named like the facts."""
+
 WORDS = frozenset(
     {
         "aggregation",
@@ -74,6 +98,15 @@ WORDS = frozenset(
     }
 )
 """Attributes that never hold ids, whatever the ids of a model look like."""
+
+_FIRST_AND_LAST_NAMES = {
+    (Kind.CONTROL, "initial"): "start",
+    (Kind.PSEUDOSTATE, "initial"): "start",
+    (Kind.CONTROL, "final"): "done",
+    (Kind.CONTROL, "flow-final"): "done",
+    (Kind.FINAL_STATE, ""): "done",
+}
+"""Names in SysML v2 of the first and last nodes of a behaviour, which have mostly none in UML."""
 
 PASSED_OVER = frozenset({Edge.OWNS, Edge.FEATURE, Edge.END})
 """Edges that follow from ownership, from inheritance, or from the ends of a relation."""
@@ -118,6 +151,11 @@ MOVABLE = frozenset(
 """Kinds that are recognised below another owner by kind and name, without ids."""
 
 
+def name_in_comparison(element: Element) -> str:
+    """Return the name of *element*; a first or last node without one is called as in SysML v2."""
+    return element.name or _FIRST_AND_LAST_NAMES.get((element.kind, element.subkind), "")
+
+
 def is_external(element: Element) -> bool:
     """Whether *element* is an external stub or an element of a library."""
     return element.attrs.get("external") is True
@@ -150,4 +188,6 @@ def ignorable_words(graphs: Iterable[Graph]) -> frozenset[str]:
     """Return the words that ``--ignore`` accepts: attributes, edges and kinds of details."""
     attributes = {name for graph in graphs for element in graph for name in element.attrs}
     kinds = {edge.value for edge in Edge} | {kind.value for kind in DETAILS}
-    return frozenset(attributes | kinds | _FACT_KEYS | WORDS | IMPLIED | _NEVER_COMPARED)
+    return frozenset(
+        attributes | kinds | {DECLARATION} | _FACT_KEYS | WORDS | IMPLIED | _NEVER_COMPARED
+    )

@@ -1,12 +1,14 @@
 """Facts about elements, which a comparison compares one by one, and the reported changes."""
 
+import re
 from collections.abc import Callable, Iterator
 from enum import StrEnum
+from functools import partial
 from typing import NamedTuple
 
 from msgspec import Struct
 
-from sysmlc.ir.compare.content import ENDS, NOT_CONTENT, TYPES, WIRES, WORDS
+from sysmlc.ir.compare.content import DECLARATION, ENDS, NOT_CONTENT, TYPES, WIRES, WORDS
 from sysmlc.ir.compare.side import Side, declared_class, is_own_class, is_part_instance
 from sysmlc.ir.compare.titles import (
     format_detail,
@@ -15,10 +17,12 @@ from sysmlc.ir.compare.titles import (
     format_stereotype,
     format_value,
     path_of_end,
+    separate_words,
+    title,
 )
 from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.kinds import Edge, Kind
-from sysmlc.support.camel_case import separate_words
+from sysmlc.ir.query.names import spell_for_xml
 
 
 class What(StrEnum):
@@ -69,6 +73,8 @@ class Change(Struct, frozen=True):
 FROM_TO = ("from", "to")
 BETWEEN = ("between",)
 """Keys of the ends of a relation, with and without an order."""
+_NO_SPACE = re.compile(r" (;|::\*|\)|])| (\.) |(\() ")
+"""Words of declarations without blanks around them."""
 _LABELS = {Edge.TYPED_BY: "type", Edge.INSTANCE_OF: "type"}
 
 Value = object
@@ -119,7 +125,7 @@ def _resolve_ids(side: Side, name: str, value: AttrValue) -> Value:
         return tuple(_resolve_ids(side, name, item) for item in value)
     if name in WORDS or not isinstance(value, str):
         return value
-    return side.graph.get(value) or value
+    return side.find_by_id(value) or value
 
 
 def _edge_facts(side: Side, element: Element, edges: dict[Edge, list[Element]]) -> Iterator[Fact]:
@@ -144,6 +150,22 @@ def _classify(edge: Edge) -> What:
     if edge in TYPES:
         return What.RETYPED
     return What.REWIRED if edge in WIRES else What.CHANGED
+
+
+# -- declarations ------------------------------------------------------------------------------
+
+
+def iter_statements(side: Side, element: Element) -> Iterator[Fact]:
+    """Iterate over the parts of an element's declaration in SysML v2, as facts."""
+    for _, aspect, words in side.statements.get(element.id, ()):
+        value = tuple(side.graph.get(word) or word for word in words)
+        format = partial(_format_words, value)
+        yield Fact((DECLARATION, aspect), value, aspect, format=format, about=element)
+
+
+def _format_words(words: tuple[Element | str, ...], side: Side, _element: Element) -> str:
+    texts = [word if isinstance(word, str) else title(side, word) for word in words]
+    return _NO_SPACE.sub(r"\1\2\3", " ".join(text for text in texts if text))
 
 
 # -- details -----------------------------------------------------------------------------------
@@ -186,13 +208,17 @@ def _slot_facts(side: Side, slot: Element) -> Iterator[Fact]:
 
 
 def _application_facts(side: Side, application: Element) -> Iterator[Fact]:
-    """Iterate over the stereotype and its tags; tools differ in the case of the first letter."""
-    name = str(application.attrs.get("stereotype", "")) or application.name
+    """Iterate over the stereotype and its tags.
+
+    Tools differ in the case of the first letter, and XML files without the profile have only the
+    names of XML tags, without blanks and other special characters.
+    """
+    name = spell_for_xml(str(application.attrs.get("stereotype", "")) or application.name)
     what = What.RETYPED
     yield Fact(("stereotype",), name, "stereotype", what, format_stereotype, application)
     for key, value in application.attrs.items():
         if key.startswith("tag."):
-            tag = key[4:5].lower() + key[5:]
+            tag = spell_for_xml(key[4:5].lower() + key[5:])
             yield Fact(("tag", name, tag), _resolve_ids(side, key, value), f"«{name}» {tag}")
 
 
@@ -215,9 +241,22 @@ def _content(side: Side, detail: Element) -> Value:
 
 def _own_content(side: Side, detail: Element) -> tuple[Value, ...]:
     edges = side.edges.get(detail.id, {})
-    targets = tuple((edge, *_abstract_owner(found, detail)) for edge, found in edges.items())
+    targets = tuple(
+        (edge, *_abstract_owner(found, detail))
+        for edge, found in edges.items()
+        if not _is_about_owner(detail, edge, found)
+    )
     size = len(side.graph.owned(detail))
     return (detail.kind, size, _sorted_attributes(side, detail), targets)
+
+
+def _is_about_owner(detail: Element, edge: Edge, targets: list[Element]) -> bool:
+    """Whether the edge only states that a comment is about its owner, as is every other detail.
+
+    SysML v1 and AutomationML have comments without an annotated element, SysML v2 has none.
+    """
+    is_comment = detail.kind is Kind.COMMENT and edge is Edge.REFERENCES
+    return is_comment and [target.id for target in targets] == [detail.owner]
 
 
 def _abstract_owner(targets: list[Element], detail: Element) -> list[Value]:

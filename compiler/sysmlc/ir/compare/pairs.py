@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from difflib import SequenceMatcher
 
-from sysmlc.ir.compare.content import MOVABLE, is_external
+from sysmlc.ir.compare.content import MOVABLE, is_external, name_in_comparison
 from sysmlc.ir.compare.facts import BETWEEN, FROM_TO, Fact, iter_facts
 from sysmlc.ir.compare.side import Side, alternate_id
 from sysmlc.ir.element import Element
@@ -79,18 +79,19 @@ class Pairs:
 
     def old_facts(self, element: Element) -> "list[TokenisedFact]":
         """Return the facts about an element of the old model, with the tokens of key and value."""
-        return _tokenise(iter_facts(self.old, element), self.old_token)
+        return tokenise(iter_facts(self.old, element), self.old_token)
 
     def new_facts(self, element: Element) -> "list[TokenisedFact]":
         """Return the facts about an element of the new model, with the tokens of key and value."""
-        return _tokenise(iter_facts(self.new, element), self.new_token)
+        return tokenise(iter_facts(self.new, element), self.new_token)
 
 
 TokenisedFact = tuple[tuple[Token, Token], Fact]
 """Tokens of key and value, and the fact."""
 
 
-def _tokenise(facts: Iterator[Fact], to_token: Callable[[Element], Token]) -> list[TokenisedFact]:
+def tokenise(facts: Iterator[Fact], to_token: Callable[[Element], Token]) -> list[TokenisedFact]:
+    """Return facts with the tokens of their keys and values."""
     return [(fact_token(fact, to_token), fact) for fact in facts]
 
 
@@ -202,10 +203,11 @@ def _by_unique_name(elements: list[Element], *, with_kind: bool) -> dict[tuple[s
     index: dict[tuple[str, str], Element] = {}
     ambiguous: set[tuple[str, str]] = set()
     for element in elements:
-        key = (element.kind if with_kind else "", element.name)
-        if element.name and key in index:
+        name = name_in_comparison(element)
+        key = (element.kind if with_kind else "", name)
+        if name and key in index:
             ambiguous.add(key)
-        elif element.name:
+        elif name:
             index[key] = element
     return {key: element for key, element in index.items() if key not in ambiguous}
 
@@ -301,11 +303,12 @@ def _iter_candidates(
 
 
 def _score(old: Element, new: Element, old_portrait: _Portrait, new_portrait: _Portrait) -> float:
-    if old.kind is not new.kind or bool(old.name) != bool(new.name):
+    has_name = bool(name_in_comparison(old))
+    if old.kind is not new.kind or has_name != bool(name_in_comparison(new)):
         return 0.0
-    if old.name and _types(old_portrait) != _types(new_portrait):
+    if has_name and _types(old_portrait) != _types(new_portrait):
         return 0.0
-    if old.name and not old_portrait and not new_portrait:
+    if has_name and not old_portrait and not new_portrait:
         return _name_likeness(old, new)
     return _likeness(old_portrait, new_portrait)
 
@@ -325,7 +328,8 @@ def _likeness(left: _Portrait, right: _Portrait) -> float:
 
 
 def _name_likeness(old: Element, new: Element) -> float:
-    return SequenceMatcher(None, old.name, new.name, autojunk=False).ratio()
+    names = name_in_comparison(old), name_in_comparison(new)
+    return SequenceMatcher(None, *names, autojunk=False).ratio()
 
 
 def _portray(pairs: Pairs, element: Element, *, is_old: bool) -> _Portrait:
@@ -333,7 +337,9 @@ def _portray(pairs: Pairs, element: Element, *, is_old: bool) -> _Portrait:
     to_token = pairs.old_token if is_old else pairs.new_token
     facts = pairs.old_facts(element) if is_old else pairs.new_facts(element)
     portrait: _Portrait = Counter(part for tokens, _ in facts for part in _split_ends(tokens))
-    portrait.update(("owns", child.kind, child.name) for child in side.children(element))
+    portrait.update(
+        ("owns", child.kind, name_in_comparison(child)) for child in side.children(element)
+    )
     incoming = side.incoming.get(element.id, ())
     portrait.update((str(edge), to_token(source)) for edge, source in incoming)
     return portrait

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 from typing import NamedTuple
 
+from sysmlc.ir.compare.content import name_in_comparison
 from sysmlc.ir.compare.facts import iter_facts
 from sysmlc.ir.compare.pairs import Pairs, Token, fact_token
 from sysmlc.ir.compare.side import Side
@@ -176,7 +177,9 @@ class _Fingerprints:
 
             tokens = [fact_token(fact, to_token) for fact in iter_facts(self.side, element)]
             facts = tuple(sorted([self._numbering[token] for token in tokens]))
-            self._of_element[element.id] = self._numbering[element.kind, element.name, facts]
+            self._of_element[element.id] = self._numbering[
+                element.kind, name_in_comparison(element), facts
+            ]
         return self._of_element[element.id]
 
     def of_reference(self, element: Element) -> int:
@@ -189,7 +192,7 @@ class _Fingerprints:
             return ("of", owner and self._reference_token(owner), element.kind, element.name)
         token = self._to_token(element)
         is_paired = isinstance(token, tuple) and token[0] in ("new", "outside")
-        return token if is_paired else ("?", element.kind, element.name)
+        return token if is_paired else ("?", element.kind, name_in_comparison(element))
 
     def invalidate_new_pairs(self) -> None:
         """Remove the fingerprints that depend on elements paired since the last call."""

@@ -18,6 +18,8 @@ from sysmlc.ir.compare.content import (
 from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
+from sysmlc.ir.pending import Declarations, Statement
+from sysmlc.ir.query.names import CAEX_ID
 
 _COMPARED = tuple(edge for edge in Edge if edge not in PASSED_OVER)
 
@@ -109,6 +111,28 @@ class Side:
                         target = self.graph.get(id)
                         if target is not None and target is not element:
                             yield element, label, target
+
+    @cached_property
+    def _by_caex_id(self) -> dict[str, Element]:
+        """Elements by their ids in AutomationML, if the graph has other ids for them."""
+        ids = ((element, element.attrs.get(CAEX_ID)) for element in self.graph)
+        return {id: element for element, id in ids if isinstance(id, str)}
+
+    def find_by_id(self, id: str) -> Element | None:
+        """Return the element with this id in the graph or in AutomationML, or None."""
+        return self.graph.get(id) or self._by_caex_id.get(id)
+
+    @cached_property
+    def statements(self) -> dict[str, list[Statement]]:
+        """Parts of declarations by element; those of a detail belong to its owner."""
+        index: dict[str, list[Statement]] = {}
+        for declarations in self.graph.derived(Declarations):
+            for id, statements in declarations.statements.items():
+                element = self.graph.get(id)
+                subject = None if element is None else self.find_visible(element)
+                if subject is not None:
+                    index.setdefault(subject.id, []).extend(statements)
+        return index
 
     def find_visible(self, element: Element) -> Element | None:
         """Return *element*, or its nearest owner that is visible, or None."""

@@ -1,11 +1,13 @@
 """Titles of elements and texts of values in a comparison, also for elements without a name."""
 
+import re
+
 from sysmlc.ir.compare.content import ENDS, NOT_CONTENT
 from sysmlc.ir.compare.side import Side
 from sysmlc.ir.element import Element
 from sysmlc.ir.kinds import Edge, Kind
-from sysmlc.support.camel_case import separate_words
 
+_WORD_BOUNDARY = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
 _TEXTS = ("guard", "body", "value", "when", "condition")
 _LONGEST_TITLE = 60
 _NOTHING = "(nothing)"
@@ -179,3 +181,8 @@ def _join_lines(text: str) -> str:
 def _shorten(text: str) -> str:
     line = " ".join(text.split())
     return line if len(line) <= _LONGEST_TITLE else line[: _LONGEST_TITLE - 3] + "..."
+
+
+def separate_words(name: str) -> str:
+    """Return a name in lower case with blanks (``final state``); an acronym is unchanged."""
+    return name if name.isupper() else _WORD_BOUNDARY.sub(" ", name).lower()

@@ -105,6 +105,13 @@ def _is_number(text: str) -> bool:
     return text.isascii() and text.isdecimal()
 
 
+def spell_for_xml(name: str) -> str:
+    """Return a name as modelling tools spell it in XML tags: ``_`` for all but word characters."""
+    return _NO_WORD_CHARACTER.sub("_", name)
+
+
+_NO_WORD_CHARACTER = re.compile(r"\W")
+
 # -- ids of AutomationML ---------------------------------------------------------------------------
 
 CAEX_ID = "caex_id"

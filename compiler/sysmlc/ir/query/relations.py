@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable, Iterator
 from sysmlc.ir.element import Element, list_items
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
+from sysmlc.ir.pending import TextFile
 from sysmlc.ir.query.classifiers import flow_properties, type_of
 
 _OPPOSITE = {"in": "out", "out": "in"}
@@ -103,7 +104,20 @@ def flow_directions(graph: Graph, port: Element) -> list[tuple[Element, str]]:
     directions = [(item, str(item.attrs.get("direction", "inout"))) for item in properties]
     if not port.attrs.get("conjugated"):
         return directions
-    return [(item, opposite(direction) or direction) for item, direction in directions]
+    return [
+        (item, direction if _is_stated_at_port(graph, item) else opposite(direction) or direction)
+        for item, direction in directions
+    ]
+
+
+def _is_stated_at_port(graph: Graph, flow_property: Element) -> bool:
+    """Whether a usage of SysML v2 declares the flow property itself.
+
+    The conjugation ``port p : ~Pipe { out water; }`` reverses only what the port inherits.
+    """
+    owner = graph.owner(flow_property)
+    is_own = owner is not None and owner.attrs.get("property_specific")
+    return bool(is_own) and TextFile(flow_property.source) in graph.derived(TextFile)
 
 
 def opposite(direction: str | None) -> str | None:

@@ -1,0 +1,395 @@
+"""Reviewed reasons for differences between a model and the graph of its SysML v2 text.
+
+Each reason is a sentence that is true of all its differences, a predicate for them, and the loss
+that the back end must have reported near the element (docs/write-sysml-v2.md), unless the text
+states the same in other words.
+"""
+
+import re
+from collections.abc import Callable
+
+from text_differences import BEHAVIOURS, Difference, Reason
+
+from sysmlc.backends.sysml.profiles import is_standard
+from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.compare import What
+from sysmlc.logic.expressions.expression import ExpressionError, print_expression
+from sysmlc.logic.expressions.parsing import parse_expression
+
+# -- texts -----------------------------------------------------------------------------------------
+
+
+def _strip(text: object) -> str:
+    unified = str(text).replace("\r\n", "\n").replace("\r", "\n").replace("*/", "* /")
+    lines = unified.strip().split("\n")
+    return "\n".join(line.strip() for line in lines)
+
+
+def _list_texts(graph: Graph, element: Element | None) -> list[str]:
+    """Return the texts of an element and of its comments without white space around lines."""
+    if element is None:
+        return []
+    comments = [child for child in graph.owned(element) if child.kind is Kind.COMMENT]
+    comments += [c for c in graph.sources(element, Edge.REFERENCES) if c.kind is Kind.COMMENT]
+    texts = {child.id: child.attrs.get("body", "") for child in comments}
+    own = [element.attrs.get(key, "") for key in ("body", "bodies", "text")]
+    return sorted(_strip(text) for text in (*texts.values(), *own))
+
+
+def _has_equal_texts(difference: Difference) -> bool:
+    is_text = difference.is_about("comment", "body", "bodies", "text")
+    trip = difference.trip
+    return is_text and _list_texts(trip.old, difference.old) == _list_texts(
+        trip.new, difference.new
+    )
+
+
+def _is_empty_text(difference: Difference) -> bool:
+    change = difference.change
+    return difference.is_about("text") and (change.before, change.after) in (("''", ""), ("", "''"))
+
+
+# -- stereotypes -----------------------------------------------------------------------------------
+
+
+def _list_stereotypes(graph: Graph, element: Element | None) -> list[Element]:
+    sources = [] if element is None else graph.sources(element, Edge.SUBJECT)
+    return [source for source in sources if source.kind is Kind.APPLICATION]
+
+
+def _is_standard_stereotype(difference: Difference) -> bool:
+    """Whether only stereotypes of SysML are missing, and role or kind are the same."""
+    old, new = difference.old, difference.new
+    if not difference.is_about("stereotype") or old is None or new is None:
+        return False
+    names = [a for a in _list_stereotypes(difference.trip.old, old) if not is_standard(a)]
+    others = _list_stereotypes(difference.trip.new, new)
+    is_same_role = old.role == new.role or old.kind is Kind.ENUMERATION
+    return len(names) == len(others) and old.kind is new.kind and is_same_role
+
+
+def _is_standard_tag(difference: Difference) -> bool:
+    """Whether the tag belongs to a stereotype of SysML that the text expresses by a keyword."""
+    match = re.match(r"«(.+)» ", difference.change.aspect)
+    applications = _list_stereotypes(difference.trip.old, difference.old)
+    names = {str(a.attrs.get("stereotype") or a.name) for a in applications if is_standard(a)}
+    return bool(match) and match[1] in names and not difference.change.after
+
+
+# -- expressions -----------------------------------------------------------------------------------
+
+
+def _is_same_expression(difference: Difference) -> bool:
+    """Whether an expression is only spelled in another language, or the name of the language goes.
+
+    The guard of a transition of UML is also a constraint that the transition owns.
+    """
+    old, new = difference.old, difference.new
+    if (
+        old is None
+        or new is None
+        or not difference.is_about("guard", "guard language", "constraint")
+    ):
+        return False
+    texts = [str(element.attrs.get("guard", "")) for element in (old, new)]
+    try:
+        before, after = (print_expression(parse_expression(text)) for text in texts)
+    except ExpressionError:
+        return False
+    return before == after
+
+
+def _is_body_in_sysml(difference: Difference) -> bool:
+    return difference.is_about("language") and difference.change.before == "KerML"
+
+
+def _is_unit(difference: Difference) -> bool:
+    old = difference.old
+    is_unit = old is not None and old.role in ("unit", "quantity kind")
+    return is_unit and difference.is_about("type", "value of symbol")
+
+
+# -- templates -------------------------------------------------------------------------------------
+
+
+def _is_template_parameter(difference: Difference) -> bool:
+    old, graph = difference.old, difference.trip.old
+    owner = None if old is None else graph.owner(old)
+    return any(e is not None and e.kind is Kind.TEMPLATE_PARAMETER for e in (old, owner))
+
+
+def _has_type_of_template(difference: Difference) -> bool:
+    """Whether the element refers to the type that a template parameter owns."""
+    old, graph = difference.old, difference.trip.old
+    if old is None or not difference.is_about("type", "calls"):
+        return False
+    targets = graph.targets(old, Edge.TYPED_BY) + graph.targets(old, Edge.CALLS)
+    owners = [graph.owner(target) for target in targets]
+    return any(owner is not None and owner.kind is Kind.TEMPLATE_PARAMETER for owner in owners)
+
+
+# -- activities ------------------------------------------------------------------------------------
+
+
+def _is_flow_past_control_nodes(difference: Difference) -> bool:
+    """Whether an object flow leads to or from a control node in the model, or past one in the text.
+
+    Bindings join each source with each target behind the node. The comparison pairs them with the
+    flows of the model that are most similar.
+    """
+    if difference.kind is not Kind.OBJECT_FLOW:
+        return False
+    return not difference.change.aspect or difference.is_about("ends")
+
+
+def _is_parameter_node(difference: Difference) -> bool:
+    return difference.kind is Kind.ACTIVITY_PARAMETER
+
+
+def _is_allocation_by_partition(difference: Difference) -> bool:
+    is_partition = difference.kind is Kind.PARTITION and difference.is_about("stereotype")
+    return is_partition or (difference.kind is Kind.ACTION and difference.is_about("allocated-to"))
+
+
+def _is_second_parameter_node(difference: Difference) -> bool:
+    """Whether the parameter is inout, so that it has two nodes in the model."""
+    old, graph = difference.old, difference.trip.old
+    if old is None or old.kind is not Kind.ACTIVITY_PARAMETER:
+        return False
+    parameter = graph.target(old, Edge.REFERENCES)
+    nodes = [] if parameter is None else graph.sources(parameter, Edge.REFERENCES)
+    return sum(node.kind is Kind.ACTIVITY_PARAMETER for node in nodes) > 1
+
+
+# -- moved and omitted elements --------------------------------------------------------------------
+
+
+def _is_removed(*kinds: Kind) -> Callable[[Difference], bool]:
+    return lambda d: d.change.what is What.REMOVED and d.kind in kinds
+
+
+def _is_added_or_removed(*kinds: Kind) -> Callable[[Difference], bool]:
+    return lambda d: d.change.what in (What.ADDED, What.REMOVED) and d.kind in kinds
+
+
+def _is_of(kind: Kind, *aspects: str) -> Callable[[Difference], bool]:
+    return lambda d: d.kind is kind and d.is_about(*aspects)
+
+
+def _is_attribute(*aspects: str) -> Callable[[Difference], bool]:
+    return lambda d: d.is_about(*aspects) and not d.change.after
+
+
+def _is_import_from_outside(difference: Difference) -> bool:
+    """Whether all imports of elements of the model are in the text."""
+    old, new = difference.old, difference.new
+    if not difference.is_about("import") or old is None or new is None:
+        return False
+    trip = difference.trip
+    imports = [child for child in trip.old.owned(old) if child.kind is Kind.IMPORT]
+    targets = [t for child in imports for t in trip.old.targets(child, Edge.REFERENCES)]
+    inside = [target for target in targets if not target.attrs.get("external")]
+    return len(inside) <= sum(child.kind is Kind.IMPORT for child in trip.new.owned(new))
+
+
+def _is_untyped_feature(difference: Difference) -> bool:
+    """Whether a stereotype of SysML is missing from a feature without a type."""
+    old, graph = difference.old, difference.trip.old
+    is_feature = old is not None and old.kind in (Kind.PROPERTY, Kind.PORT)
+    if old is None or not is_feature or not difference.is_about("stereotype"):
+        return False
+    return not graph.targets(old, Edge.TYPED_BY)
+
+
+def _is_directed_feature(difference: Difference) -> bool:
+    """Whether a flow property of a block is read as a directed feature, with its direction."""
+    old, new = difference.old, difference.new
+    if old is None or new is None or not difference.is_about("stereotype"):
+        return False
+    is_flow_property = old.role == "flow property" and old.kind is Kind.PROPERTY
+    return is_flow_property and old.attrs.get("direction") == new.attrs.get("direction")
+
+
+def _has_usage_as_type(difference: Difference) -> bool:
+    """Whether the type is a behaviour of a class, which the text writes as a usage."""
+    old, graph = difference.old, difference.trip.old
+    if old is None or not difference.is_about("type"):
+        return False
+    types = graph.targets(old, Edge.TYPED_BY)
+    owners = [graph.owner(type_) for type_ in types if type_.kind in BEHAVIOURS]
+    return any(owner is not None and owner.kind is Kind.CLASS for owner in owners)
+
+
+def _is_represented(difference: Difference) -> bool:
+    """Whether an interaction owns the element for a lifeline that represents it."""
+    old, graph = difference.old, difference.trip.old
+    lifelines = [] if old is None else graph.sources(old, Edge.REPRESENTS)
+    return any(lifeline.kind is Kind.LIFELINE for lifeline in lifelines)
+
+
+REASONS: list[Reason] = [
+    Reason(
+        "SysML v2 removes white space around the lines of a comment (KerML 1.0, 8.2.3.3.2)",
+        _has_equal_texts,
+        r"SM734 (white space|'\*/' in a text)",
+    ),
+    Reason("an empty text is not written", _is_empty_text),
+    Reason(
+        "a keyword of SysML v2 expresses the stereotype of SysML; the role is the same",
+        _is_standard_stereotype,
+        "SM734 an applied stereotype of SysML",
+    ),
+    Reason(
+        "SysML v2 has no keyword for a value, constraint or flow port without a type",
+        _is_untyped_feature,
+        "SM734 an applied stereotype of SysML",
+    ),
+    Reason(
+        "a flow property of a block is a directed feature of SysML v2",
+        _is_directed_feature,
+        "SM734 an applied stereotype of SysML",
+    ),
+    Reason("a type that is a usage of SysML v2 is subsetted", _has_usage_as_type),
+    Reason(
+        "a keyword, an attribute or a relation expresses the tag of a stereotype of SysML",
+        _is_standard_tag,
+        "SM734 an applied stereotype of SysML",
+    ),
+    Reason(
+        "a guard that SysML v2 spells differently is the same expression",
+        _is_same_expression,
+    ),
+    Reason("a body in the language of SysML v2 consists of actions", _is_body_in_sysml),
+    Reason(
+        "a unit is a SimpleUnit of the standard library; its short name is its symbol",
+        _is_unit,
+    ),
+    Reason(
+        "SysML v2 has no templates: the type of a template parameter stands in its place",
+        _is_template_parameter,
+        "SM730 TemplateParameter",
+    ),
+    Reason(
+        "SysML v2 has no templates: features have the type that stands for a template parameter",
+        _has_type_of_template,
+    ),
+    Reason(
+        "SysML v2 has no templates: their bindings are omitted",
+        _is_attribute("template binding"),
+        "SM730 TemplateBinding",
+    ),
+    Reason(
+        "control nodes of SysML v2 have no objects: bindings lead past them",
+        _is_flow_past_control_nodes,
+        "SM734 an object flow between a store and a control node",
+        is_in_behaviour=True,
+    ),
+    Reason(
+        "a parameter of SysML v2 is one feature: its node has the type of the parameter",
+        lambda d: _is_parameter_node(d) and d.is_about("type"),
+        "SM734 a parameter node without a type",
+    ),
+    Reason(
+        "a parameter of SysML v2 is one feature: an inout parameter has one node, not two",
+        _is_second_parameter_node,
+    ),
+    Reason(
+        "SysML v2 has no partitions: metadata names them without stereotypes and allocations",
+        _is_allocation_by_partition,
+        "SM730 Application",
+        is_in_behaviour=True,
+    ),
+    Reason(
+        "a decision of SysML v2 does not name the flow of its input",
+        _is_attribute("decision input flow"),
+        "SM732 decision_input_flow",
+    ),
+    Reason(
+        "elements outside the model, of which only the id is known, are no ends of connectors",
+        _is_removed(Kind.CONNECTOR),
+        "SM736 end",
+    ),
+    Reason(
+        "a default value that is an element outside the model has no name",
+        _is_attribute("default instance"),
+        "SM732 default_instance",
+    ),
+    Reason(
+        "an item flow stands in the namespace of the connector that realises it",
+        _is_added_or_removed(Kind.ITEM_FLOW),
+        "SM734 the owner of an item flow",
+    ),
+    Reason(
+        "the text imports no element outside the model that nothing else uses",
+        _is_import_from_outside,
+        "SM73[46] (an import of primitive types|the import of the library|references Import)",
+    ),
+    Reason(
+        "a satisfaction or allocation stands in the definition that has its ends",
+        _is_added_or_removed(Kind.DEPENDENCY),
+        "SM734 the owner of a dependency",
+    ),
+    Reason(
+        "a dependency with an end that has no name in the text is omitted",
+        lambda d: _is_removed(Kind.DEPENDENCY)(d) or d.is_about("depends", "satisfies", "traces"),
+        "SM736 (client|supplier)",
+    ),
+    Reason(
+        "a lifeline of SysML v2 is a part of the interaction itself",
+        lambda d: _is_represented(d) or _is_of(Kind.LIFELINE, "represents", "type", "kind")(d),
+        "SM734 what a lifeline represents",
+    ),
+    Reason(
+        "SysML v2 has no collaborations: their uses are omitted",
+        _is_removed(Kind.COLLABORATION_USE),
+        "SM730 CollaborationUse",
+    ),
+    Reason(
+        "a time without a unit is in seconds",
+        lambda d: d.kind in (Kind.ACTION, Kind.TRANSITION) and d.is_about("trigger"),
+        "SM734 a time without a unit",
+    ),
+    Reason(
+        "a binding that has no name for one of its ends is omitted",
+        _is_attribute("binds"),
+        "SM736 end",
+    ),
+    Reason(
+        "a step waits for all flows except those with false guards: a merge stands before it",
+        lambda d: d.kind in (Kind.CONTROL, Kind.CONTROL_FLOW),
+        "SM734 a step that waits for several flows",
+        is_in_behaviour=True,
+    ),
+    Reason(
+        "a text that is not an expression becomes an attribute of that name",
+        lambda d: d.kind is Kind.PROPERTY and d.change.what is What.ADDED,
+        "SM735",
+        is_in_behaviour=True,
+    ),
+    Reason(
+        "a property of an enumeration stands beside it: enumerations own only their values",
+        _is_added_or_removed(Kind.PROPERTY, Kind.INSTANCE, Kind.CONSTRAINT),
+        "SM734 the owner of .* in an enumeration",
+    ),
+    Reason(
+        "SysML v2 has no exception handlers",
+        _is_attribute("handlers"),
+        "SM732 handlers",
+    ),
+    Reason(
+        "a reference to an element without a name in the text is omitted",
+        _is_attribute("references", "calls", "subsets", "represents", "covers", "type"),
+        "SM73[16] (references|calls|subsets|represents|covers|typed-by)",
+    ),
+    Reason(
+        "an object flow that does not pass a control node has no guard",
+        _is_attribute("guard", "guard literal"),
+        "SM732 guard",
+    ),
+    Reason(
+        "messages of SysML v2 have no events of their own",
+        lambda d: d.kind in (Kind.OCCURRENCE, Kind.MESSAGE, Kind.LIFELINE),
+        "SM734 (the|an) events? of a message",
+        is_in_behaviour=True,
+    ),
+]

@@ -1,0 +1,1 @@
+"""Random models in the textual notation of SysML v2 that are valid by construction."""
