@@ -1,18 +1,15 @@
 """The oracle of derived contracts: models of the corpus with the answers to temporal properties.
 
-A property speaks of actions and states in the words of the model. ``translate`` writes it with the
-variables of the component's contract; the README beside the models explains the atoms.
+A property speaks of actions, states and parts in the words of the model; the README beside the
+models explains the atoms.
 """
 
 import json
 import os
-import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
 from msgspec import Struct
-
-_ATOM = re.compile(r"(?P<kind>running|finished)\((?P<path>[\w.]+)\)|(?P<region>\w+)\.state\b")
 
 
 class Property(Struct, frozen=True):
@@ -21,7 +18,15 @@ class Property(Struct, frozen=True):
     name: str
     ltl: str
     holds: bool
+    vacuous: bool
     needs_derived: bool
+
+    @property
+    def verdict(self) -> str:
+        """The expected verdict."""
+        if not self.holds:
+            return "broken"
+        return "holds-if-actions-end" if self.needs_derived else "holds"
 
 
 class OracleModel(Struct, frozen=True):
@@ -29,6 +34,8 @@ class OracleModel(Struct, frozen=True):
 
     path: Path
     component: str
+    unreachable: list[str]
+    write_conflicts: list[str]
     properties: tuple[Property, ...]
 
     @property
@@ -45,12 +52,13 @@ def list_models() -> list[OracleModel]:
 
 def _read_model(path: Path) -> OracleModel:
     expectation = json.loads(path.read_text("utf-8"))
-    properties = (
-        Property(entry["name"], entry["ltl"], entry["holds"], entry["needs_derived"])
-        for entry in expectation["properties"]
-    )
+    names = Property.__struct_fields__
     return OracleModel(
-        path.parent / expectation["model"], expectation["component"], tuple(properties)
+        path.parent / expectation["model"],
+        expectation["component"],
+        expectation["unreachable"],
+        expectation["write_conflicts"],
+        tuple(Property(*(entry[name] for name in names)) for entry in expectation["properties"]),
     )
 
 
@@ -64,38 +72,3 @@ def require(model: OracleModel, formulas: Mapping[str, str]) -> str:
     )
     head, _, _ = model.text.rstrip().rpartition("}")
     return "\n".join((head.rstrip(), *lines, "}", ""))
-
-
-def translate(ltl: str, variables: Iterable[str]) -> str:
-    """Write a property with the variables of a contract; an atom without a variable stays."""
-    names = list(variables)
-    return _ATOM.sub(lambda match: _translate_atom(match, names), ltl)
-
-
-def _translate_atom(match: re.Match[str], names: list[str]) -> str:
-    region = match["region"]
-    if region:
-        is_region = f"{region}_state" in names
-        return f"{region}_state" if is_region else _name_machine(match[0], names)
-    action = match["path"].rpartition(".")[2]
-    started = [f"{prefix}_{action}" for prefix in ("run", "do") if f"{prefix}_{action}" in names]
-    if "." in match["path"] or not started:
-        return _translate_whole(match, names)
-    return started[0] if match["kind"] == "running" else f"({started[0]} & done_{action})"
-
-
-def _name_machine(atom: str, names: list[str]) -> str:
-    """Return ``state`` for the machine whose contract the component has, else the atom."""
-    return "state" if atom == "Heater.state" and "state" in names else atom
-
-
-def _translate_whole(match: re.Match[str], names: list[str]) -> str:
-    """Return the end of the activity itself: a token reaches its final node."""
-    performed = {"cycle", "pickPlace", "pack", "work", "job"}
-    if match["kind"] == "running" or match["path"] not in performed:
-        return match[0]
-    return f"({' | '.join(_list_final_tokens(names))})"
-
-
-def _list_final_tokens(names: list[str]) -> Iterator[str]:
-    return (name for name in names if name.startswith("at_") and name.endswith("_to_done"))

@@ -1,5 +1,9 @@
 """``sysmlc contracts check``: one line for each contract, diagnostics, exit codes."""
 
+import json
+
+import pytest
+
 from sysmlc.synthesis import composition_check, contract_checks, rules
 
 
@@ -69,3 +73,81 @@ def test_errors_of_the_model_are_reported_when_it_has_no_contracts(workspace, al
     result = workspace.sysmlc("contracts", "check", "cell.sysml")
     assert result.exit_code == 2
     assert "SM205 unresolved-name" in result.stderr
+
+
+# -- behaviours of whole components ----------------------------------------------------------------
+
+
+def check_rule_example(rule, text, workspace):
+    """Return whether the command reports the rule about an example of its page."""
+    workspace.write("plant.sysml", text)
+    result = workspace.sysmlc("contracts", "check", "plant.sysml")
+    return f"warning[{rule.code} {rule.name}]" in result.stderr
+
+
+@pytest.mark.parametrize(
+    "rule", [rules.VACUOUS, rules.CONFLICT, rules.UNREACHABLE], ids=["SM557", "SM558", "SM559"]
+)
+def test_findings_about_the_behaviour_of_a_component(rule, workspace, all_passes):
+    page = rule.read_page()
+    assert check_rule_example(rule, page.wrong, workspace)
+    assert not check_rule_example(rule, page.right, workspace)
+
+
+def test_a_state_that_the_author_requires_to_be_unreachable_is_not_reported(workspace, all_passes):
+    text = rules.UNREACHABLE.read_page().wrong
+    required = text.replace("/* state=Idle */", "/* G !(state=Service) */")
+    assert not check_rule_example(rules.UNREACHABLE, required, workspace)
+
+
+ROBOT = """
+    part def Robot {
+        attribute gripped : ScalarValues::Boolean := false;
+        action pick {
+            first start then close;
+            action close assign gripped := true;
+            then ITS_END;
+        }
+        exhibit state S {
+            entry; then Idle;
+            state Idle;
+            transition first Idle accept Go then Busy;
+            state Busy { PERFORMS pick; }
+            transition first Busy then Idle;
+        }
+    }
+"""
+CALLER = """
+    part def Cell {
+        part robot : Robot;
+        perform action job { first start; then perform robot.pick; then done; }
+    }
+"""
+GRIPS_IN_BUSY = "G (!gripped & X gripped -> state=Busy)"
+"""It holds where only state Busy performs the activity."""
+
+
+@pytest.mark.parametrize(
+    ("performs", "end", "further", "verdict"),
+    [
+        ("do", "done", "", "holds"),
+        # Another component starts it, too.
+        ("do", "done", CALLER, "broken"),
+        # It calls itself, so that there is no finite number of copies.
+        ("do", "perform pick", "", "not-decided"),
+        # An entry performs it within the step, which is not described.
+        ("entry", "done", "", "not-decided"),
+    ],
+)
+def test_no_performance_of_an_activity_is_forgotten(
+    performs, end, further, verdict, workspace, all_passes
+):
+    robot = ROBOT.replace("PERFORMS", performs).replace("ITS_END", end)
+    requirement = f"""requirement def R {{
+        subject robot : Robot; require constraint {{ language "ltl" /* {GRIPS_IN_BUSY} */ }}
+    }}"""
+    text = f"package Plant {{ item def Go; {robot} {further} {requirement} }}"
+    workspace.write("plant.sysml", text)
+    result = workspace.sysmlc("contracts", "check", "plant.sysml", "--format", "json")
+    (entry,) = json.loads(result.stdout)["requirements"]
+    assert entry["verdict"] == verdict

@@ -166,3 +166,91 @@ def test_json_lists_every_finding(tmp_path, monkeypatch):
     result = CliRunner().invoke(sysmlc, ["check", "--no-cache", "tank.sysml", "--format", "json"])
     codes = [diagnostic["code"] for diagnostic in json.loads(result.stdout)["diagnostics"]]
     assert sorted(codes) == ["SM197", "SM300", "SM410", "SM410", "SM481"]
+
+
+# -- findings about one fact -------------------------------------------------------------------
+
+UNKNOWN = """\
+package P {
+    part a : Tankk;
+    part b : Tankk;
+    part c : Tankk;
+    part d : Tankk;
+    part e : Tankk;
+    part f : Pumpp;
+}
+"""
+
+
+def test_a_missing_name_is_one_finding_with_its_places(check):
+    exit_code, lines = check(model=UNKNOWN)
+    assert exit_code == 1
+    assert [line for line in lines if line.startswith("error") or "note" in line] == [
+        "error[SM205 unresolved-name]: unknown name 'Tankk' (5 places)",
+        "  note: also b (tank.sysml:3:14)",
+        "  note: also c (tank.sysml:4:14)",
+        "  note: also d (tank.sysml:5:14)",
+        "  note: also e (tank.sysml:6:14)",
+        "error[SM205 unresolved-name]: unknown name 'Pumpp'",
+    ]
+    assert lines[-1] == "2 errors in 1 file"
+
+
+def test_many_places_are_listed_with_verbose_and_in_json(check, tmp_path):
+    model = UNKNOWN.replace("part f : Pumpp", "part f : Tankk")
+    _, lines = check(model=model)
+    assert [line for line in lines if "note" in line][-2:] == [
+        "  note: also d (tank.sysml:5:14)",
+        "  note: 2 more notes; --verbose shows them",
+    ]
+    _, lines = check("--verbose", model=model)
+    assert sum("note: also" in line for line in lines) == 5
+    result = CliRunner().invoke(
+        sysmlc, ["check", "--no-cache", str(tmp_path / "tank.sysml"), "--format", "json"]
+    )
+    (finding,) = json.loads(result.stdout)["diagnostics"]
+    assert finding["message"] == "unknown name 'Tankk' (6 places)"
+    assert len(finding["notes"]) == 5
+
+
+def test_equal_warnings_are_one_finding_and_equal_errors_are_not(check):
+    imports = "package Q { import P::*; import P::*; }"
+    assert list_heads(check(model=MODEL + imports)[1])[0] == "warning[SM197"
+    assert "(3 places)" in check(model=MODEL + imports)[1][0]
+    _, lines = check(model="package P { part a b; part c b; }")
+    heads = [line for line in lines if line.startswith("error")]
+    assert len(heads) == 2
+    assert len(set(heads)) == 1
+
+
+def test_a_range_that_is_missing_is_one_finding_of_all_rules_about_it(check):
+    text = """\
+package P {
+    private import ScalarValues::*;
+    part def Belt {
+        attribute count : Integer;
+        perform action step {
+            first start;
+            then action add { assign count := count + 1; }
+            then decide; if count > 3 then done; else add;
+        }
+    }
+}
+"""
+    _, lines = check("--min-severity", "info", model=text)
+    assert list_heads(lines) == ["info[SM410"]
+    assert (
+        "  note: also: the contract of 'step' treats 'count' as an input although action 'add' "
+        "assigns it: it has no range (tank.sysml:4:19)"
+    ) in lines
+
+
+def test_findings_are_accepted_one_by_one_before_they_are_merged(check, tmp_path):
+    (tmp_path / "sysmlc.toml").write_text(
+        '[[suppress]]\nrule = "SM205"\nelement = "a"\nreason = "in work"\n'
+    )
+    _, lines = check(model=UNKNOWN)
+    assert lines[:2] == [
+        "error[SM205 unresolved-name]: unknown name 'Tankk' (4 places)",
+        "  --> tank.sysml:3:14 (b)",
+    ]

@@ -79,7 +79,7 @@ def test_a_damaged_file_is_reported_once(folder):
 def test_the_first_200_violations_are_reported_and_the_rest_is_counted(folder):
     folder.write("plant.aml", PLANT.format("<InstanceHierarchy/>" * 250))
     result = folder.sysmlc("check", "plant.aml", "--schema", "schemas", "--format", "concise")
-    assert result.stderr.count("SM186") == 200
+    assert "'InstanceHierarchy' has no attribute 'Name' (200 places)" in result.stderr
     assert "'plant.aml' does not conform to caex.xsd in 50 more places" in result.stderr
 
 

@@ -176,6 +176,7 @@ _BASES = {
     "ValueType": "DataType",
     "DirectedFeature": "Feature",
     **dict.fromkeys(("Continuous", "Discrete", "Probability", "Rate"), "ActivityEdge"),
+    **dict.fromkeys(("NoBuffer", "Overwrite"), "ObjectNode"),
 }
 """Stereotypes whose base property names a more general metaclass."""
 

@@ -170,10 +170,11 @@ def test_bounds_are_computed_from_constant_features():
         part b[less];
         part c[open];
         part d[two > 1];
+        part e[two + 1];
     """) == [
         "the multiplicity of 'b' has a bound that is -1",
         "the multiplicity of 'd' has a bound that is true",
-        "the multiplicity of 'd' has an expression as a bound",
+        "the multiplicity of 'e' has an expression as a bound",
     ]
 
 

@@ -1,5 +1,6 @@
 """The files of a reader who follows the documentation, under the names that the pages use."""
 
+import json
 import re
 import shutil
 from collections.abc import Callable
@@ -69,9 +70,18 @@ def supply_files(page: str, folder: Path, sysmlc: Callable[..., object]) -> None
     shutil.copyfile(
         folder / "compiled/contracts/Plant.Gate.contract.json", folder / "gate.contract.json"
     )
+    _supply_recorded_run(folder)
     _supply_old_and_new(folder)
     if page == "sysmlc build --help":
         (folder / "sysmlc.toml").write_text(CONFIGURATION)
+
+
+def _supply_recorded_run(folder: Path) -> None:
+    """Write a run of the gate in which one event is recorded and nothing happens."""
+    contract = json.loads((folder / "gate.contract.json").read_text("utf-8"))
+    name, variable = next(iter(contract["variables"].items()))
+    first_value = "false" if variable["type"] == "bool" else str(variable["type"][0])
+    (folder / "monday.csv").write_text(f"{name}\n{first_value}\n")
 
 
 def _supply_code_blocks(folder: Path) -> None:

@@ -102,3 +102,11 @@ def test_a_call_of_an_activity_that_catches_its_exceptions_ends_normally():
     graphs, sink = derive_token_graphs(CALLER.format(handlers='handlers=[[["h"], [], []]]'))
     assert name_inputs(graphs[0]) == ["done_c"]
     assert "SM475" not in list_codes(sink)
+
+
+def test_the_advice_on_a_node_after_a_raise_action_names_that_action():
+    text = "initial i\nraise r\naction w\ni -> r\nr -> w"
+    advice = [d.help for d in derive_token_graphs(sketch(text))[1] if d.rule.code == "SM452"]
+    assert advice == ["action 'r' always raises an exception: lead the flow from another node"]
+    _, sink = derive_token_graphs(sketch(text.replace("raise", "action")))
+    assert "SM452" not in list_codes(sink)

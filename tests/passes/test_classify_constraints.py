@@ -48,6 +48,9 @@ def test_a_binding_binds_the_parameters_of_one_usage_only():
     text = LAW.format(kind="Property") + ('  Property crane.law2 "law2"\n    -> typed-by law\n')
     lines = [line for line in list_diagnostics(run_until(text, "classify")[1]) if "law2" in line]
     assert lines == ["SM218 info: parameters of constraint 'Crane::law2' are not bound: 'f', 'm'"]
+    text = text.replace('"law2"', '"law2" default="law"')
+    lines = [line for line in list_diagnostics(run_until(text, "classify")[1]) if "law2" in line]
+    assert lines == []
 
 
 def test_units_of_the_same_name_are_the_same_unit():

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 from lxml import etree
-from pass_runs import list_codes, print_after_second_run, run_until
+from pass_runs import list_codes, list_diagnostics, print_after_second_run, run_until
 
 from sysmlc.ir.text import print_text
 from sysmlc.passes.classify import tags, vocabulary
@@ -246,6 +246,17 @@ def test_the_cases_cover_the_table():
 @pytest.mark.parametrize(("name", "codes"), [("Blok", ["SM211"]), ("Block", []), ("Sensor", [])])
 def test_a_misspelt_stereotype_of_sysml_is_reported(name, codes):
     assert list_codes(run_until(apply_stereotype('Class x "X"', name), "classify")[1]) == codes
+
+
+def test_a_missing_profile_is_one_finding_however_many_stereotypes_are_applied():
+    line = '  Application {0} stereotype="{1}" namespace="{2}"\n    -> subject x\n'
+    applied = [("a", "Gate", "u:plant"), ("b", "Robot", "u:plant"), ("c", "Arm", "u:robots")]
+    text = 'Class x "X"\n' + "".join(line.format(*names) for names in applied)
+    assert list_diagnostics(run_until(text, "classify")[1]) == [
+        "SM211 info: no profile of the compile unit defines the stereotypes Gate, Robot (u:plant) "
+        "(applied: 2)",
+        "SM211 info: no profile of the compile unit defines stereotype Arm (u:robots) (applied: 1)",
+    ]
 
 
 def test_the_pass_is_idempotent():

@@ -229,15 +229,46 @@ def test_two_flows_that_reach_the_merge_before_the_end_at_once_are_two_tokens():
     assert list_codes(sink) == ["SM454"]
 
 
-def test_an_activity_that_binds_a_template_is_not_asked_to_be_drawn():
-    text = 'Activity a "a"\n'
-    (diagnostic,) = derive_token_graphs(text)[1]
-    assert (diagnostic.rule.code, diagnostic.help) == ("SM469", "draw it, or give it a body")
-    (diagnostic,) = derive_token_graphs(text + "  TemplateBinding b\n")[1]
-    assert (diagnostic.rule.code, diagnostic.help) == (
-        "SM469",
-        "no contract is derived from the nodes of the template that it binds",
-    )
+@pytest.mark.parametrize(
+    ("nodes", "code", "beginning"),
+    [
+        (
+            "accept go\n  on-pallet t\naction x\ngo -> x",
+            "SM454",
+            "accept action 'go' accepts",
+        ),
+        (
+            "initial i\nfork k\naction x\naction y\nmerge m\naction z\n"
+            "i -> k\nk -> x\nk -> y\nx -> m\ny -> m\nm -> z",
+            "SM454",
+            "bring parallel branches together",
+        ),
+        ("initial i\nmerge m\naction x\naction y\ni -> m\nm -> x\nm -> y", "SM457", "add a fork"),
+        (
+            "initial i\ndecision d\naction x\naction y\ni -> d\nd -> x\nd -> y",
+            "SM457",
+            "make the guards exclude",
+        ),
+    ],
+)
+def test_the_advice_on_tokens_fits_their_cause(nodes, code, beginning):
+    _, sink = derive_token_graphs(sketch(nodes))
+    (advice,) = [diagnostic.help for diagnostic in sink if diagnostic.rule.code == code]
+    assert advice.startswith(beginning)
+
+
+@pytest.mark.parametrize(
+    ("content", "fault"),
+    [
+        ("", "'a' has no nodes"),
+        ('  DataStore s "s"\n', "'a' has no actions"),
+        ("  TemplateBinding b\n", "'a' binds a template, whose nodes it does not copy"),
+    ],
+)
+def test_an_activity_without_actions_gets_no_contract(content, fault):
+    (diagnostic,) = derive_token_graphs(f'Activity a "a"\n{content}')[1]
+    assert diagnostic.rule.code == "SM469"
+    assert diagnostic.message == f"activity {fault}; it gets no contract"
 
 
 # -- unfinished activities ----------------------------------------------------------------------

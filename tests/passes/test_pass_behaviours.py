@@ -12,7 +12,7 @@ from sysmlc.ir.query import component_name
         ([("in", "argument"), ("out", "result")], []),
         ([("in", "argument"), ("out", "result"), ("in", "target")], []),
         ([("in", "target"), ("out", "result")], ["SM401"]),
-        ([], ["SM401", "SM401"]),
+        ([], ["SM401"]),
     ],
 )
 def test_pins_of_a_call_that_do_not_match_the_parameters_are_reported(pins, codes):

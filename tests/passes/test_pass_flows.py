@@ -55,6 +55,12 @@ def test_an_item_flow_from_a_part_to_an_input_of_its_block_is_reported(ends, cod
     assert list_codes(run_until(text, "flows")[1]) == codes
 
 
+def test_a_flow_against_a_port_and_its_connector_are_one_finding():
+    text = LINE + print_connector("c", "a.in", "b.in")
+    assert list_codes(run_until(text, "flows")[1]) == ["SM315"]
+    assert list_codes(run_until(text + print_item_flow("in", "in"), "flows")[1]) == ["SM310"]
+
+
 def test_an_item_flow_is_realised_by_a_connector_unless_there_are_two_candidates():
     text = LINE + print_connector("c", "a.out", "b.in") + print_connector("d", "b.out", "a.in")
     graph, _ = run_until(text + print_item_flow("out", "in"), "flows")

@@ -2,9 +2,11 @@
 
 import sys
 
+import pytest
 from pass_runs import list_codes, list_diagnostics, run_until
 
 from sysmlc.diagnostics import Sink
+from sysmlc.diagnostics.renderers import make_report
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.passes import pipeline
 
@@ -56,7 +58,21 @@ Class d "D"
     )
     assert list_features(graph, "b") == ["y", "z"]
     assert list_features(graph, "d") == ["y", "x"]
-    assert list_codes(sink) == ["SM202"]
+    (diagnostic,) = sink
+    assert (diagnostic.rule.code, diagnostic.help) == (
+        "SM202",
+        "let 'D' specialise 'B', or remove the relation",
+    )
+    assert diagnostic.message == "'D::y' redefines 'B::y', but 'D' does not inherit from 'B'"
+
+
+def test_two_classifiers_of_one_name_are_told_apart():
+    text = 'Class {0} "Gate"\n  Property {0}.x "x"\n'
+    _, sink = run_until(text.format("a") + text.format("b") + "    -> subsets a.x\n", "inherit")
+    assert list_diagnostics(sink) == [
+        "SM202 warning: 'Gate::x' subsets 'Gate::x', but 'Gate' does not inherit from the other "
+        "'Gate'"
+    ]
 
 
 def test_a_redefining_feature_may_have_a_type_from_outside_the_unit():
@@ -76,6 +92,41 @@ Class b "B"
         "inherit",
     )
     assert list_codes(sink) == []
+
+
+TWO_REDEFINITIONS = """\
+Class wide "Wide"
+Class narrow "Narrow"
+Class a "A"
+  Property a.x "x"
+    -> typed-by wide
+  Property a.y "y"
+    -> typed-by wide
+Class b "B"
+  -> specializes a
+  Property b.x "x"
+    -> typed-by narrow
+    -> redefines a.x
+  Property b.y "y"
+    -> typed-by narrow
+    -> redefines a.y
+"""
+
+
+@pytest.mark.parametrize(
+    ("generalization", "code"), [("  -> specializes a\n", "SM203"), ("", "SM202")]
+)
+def test_a_missing_generalization_is_one_fact_of_the_features_that_need_it(generalization, code):
+    text = TWO_REDEFINITIONS.replace("  -> specializes a\n", generalization)
+    _, sink = run_until(text, "inherit")
+    assert list_codes(sink) == [code, code]
+    (finding,) = make_report(sink, ()).findings
+    assert finding.diagnostic.notes == ("also B::y",)
+
+
+def test_two_missing_generalizations_are_two_facts():
+    _, sink = run_until(TWO_REDEFINITIONS.replace("typed-by wide", "typed-by a", 1), "inherit")
+    assert len(make_report(sink, ()).findings) == 2
 
 
 def test_ends_of_an_association_are_not_its_features():

@@ -111,6 +111,32 @@ def test_ports_without_a_direction_are_reported_once_for_each_block():
     ]
 
 
+@pytest.mark.parametrize(
+    ("type_", "is_reported"),
+    [
+        ('Class t "T"\n', True),
+        ('Class t "T"\n  -> specializes g\nClass g external=true href="lib.uml#g"\n', False),
+        ('Class t external=true href="lib.uml#t"\n', False),
+        ('Class t "T"\n  Port inner "inner" direction="in"\n    -> typed-by i\nClass i\n', False),
+        ('DataType t "Real" subkind="primitive" external=true href="PrimitiveTypes#Real"\n', True),
+    ],
+)
+def test_a_port_whose_type_is_in_a_missing_file_is_not_called_undirected(type_, is_reported):
+    sink = run_until('Class b "B"\n  Port p "p"\n    -> typed-by t\n' + type_, "ports")[1]
+    assert ("SM300" in [diagnostic.rule.code for diagnostic in sink]) is is_reported
+
+
+@pytest.mark.parametrize("relation", ["redefines", "subsets"])
+def test_an_undirected_port_is_reported_where_it_is_declared_first(relation):
+    general = 'Class g "G"\n  Port p "p"\n    -> typed-by t\nClass t\n'
+    special = (
+        f'Class s "S"\n  -> specializes g\n  Port q "q"\n    -> typed-by t\n    -> {relation} p\n'
+    )
+    assert list_diagnostics(run_until(general + special, "ports")[1]) == [
+        "SM300 info: ports of 'G' without a direction (1): 'p'"
+    ]
+
+
 # -- flow ports of SysML 1.1 -------------------------------------------------------------------
 
 

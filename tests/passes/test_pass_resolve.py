@@ -108,12 +108,29 @@ def test_an_absent_library_is_one_warning_that_lists_its_elements():
     )
     graph, sink = run_until(text, "resolve")
     assert list_diagnostics(sink) == [
-        "SM152 warning: 'lib.uml' is not part of the compile unit; its elements (2) are known "
-        "by name only"
+        "SM152 warning: 'lib.uml' is not part of the compile unit; the model refers to 2 "
+        "of its elements"
     ]
     assert next(iter(sink)).notes == ("Class 'A', used by p, r", "Class 'b', used by q")
     stubs = {element.name for element in graph if element.attrs.get("external")}
     assert stubs == {"A", "b"}
+
+
+@pytest.mark.parametrize(
+    ("target", "advice"),
+    [
+        ("../n/b.uml#x", "give the file 'b.uml' as a further input"),
+        (
+            "pathmap://PLANT/b.uml#_7oikoBKMEd-W7uZ4pU2b1w",
+            "give the file 'b.uml' as a further input; the modelling tool installs it with its "
+            "plug-ins",
+        ),
+    ],
+)
+def test_the_advice_on_an_absent_library_names_a_file_and_not_its_address(target, advice):
+    _, sink = run_until(print_reference(target), "resolve")
+    (diagnostic,) = sink
+    assert (diagnostic.rule.code, diagnostic.help) == ("SM152", advice)
 
 
 @pytest.mark.parametrize(

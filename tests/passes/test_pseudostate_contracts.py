@@ -258,3 +258,51 @@ def test_a_timeout_that_an_inner_transition_can_hide_is_reported(outer, codes):
     parts = (state("a"), composite_state(), arrow("i", "a"), arrow("a", "b", "start"), outer)
     _, reported = derive_gate_contract(machine_of(region("r", *parts)))
     assert [code for code in reported if code == "SM434"] == codes
+
+
+# -- entry and exit points (UML 2.5.1, 14.2.3.7) ---------------------------------------------------
+
+
+def derive_with_exit(*second):
+    """Derive a machine whose state B has two regions, the first of which leads to an exit point.
+
+    The region with E has the transitions of *second* besides its first one.
+    """
+    left = region("s", state("d"), arrow("si", "d"), arrow("d", "out"))
+    right = region("t", state("e"), state("w"), arrow("ti", "e"), *second)
+    both = state("b", left, right, choice("out", "exit-point"))
+    transitions = (arrow("i", "a"), arrow("a", "b", "start"), arrow("out", "a"))
+    return derive_gate_contract(machine_of(region("r", state("a"), both, *transitions)))
+
+
+def test_an_exit_point_joins_transitions_from_several_regions():
+    contract, codes = derive_with_exit(arrow("e", "w", "stop"), arrow("w", "out"))
+    assert codes == []
+    assert print_safety(contract)[1] == (
+        "B_state=D & B_state_2=W_ -> B_state'=inactive & B_state_2'=inactive & state'=A"
+    )
+
+
+def test_an_exit_point_of_one_region_leaves_the_others_at_once():
+    contract, codes = derive_with_exit(arrow("e", "w"))
+    assert (contract, codes) == (None, ["SM427"])
+
+
+def test_points_that_no_transition_uses_need_no_transition():
+    points = (choice("in", "entry-point"), choice("out", "exit-point"))
+    inside = region("s", state("d"), arrow("si", "d"))
+    composite = state("b", inside, *points)
+    transitions = (arrow("i", "a"), arrow("a", "b", "start"), FROM_B_TO_A)
+    contract, codes = derive_gate_contract(
+        machine_of(region("r", state("a"), composite, *transitions))
+    )
+    assert (contract is not None, codes) == (True, [])
+    used = (*transitions, arrow("a", "in", "stop"))
+    contract, codes = derive_gate_contract(machine_of(region("r", state("a"), composite, *used)))
+    assert (contract, codes) == (None, ["SM420"])
+
+
+def test_a_choice_that_leads_nowhere_is_an_error():
+    transitions = (arrow("i", "a"), arrow("a", "x", "start"))
+    text = machine_of(region("r", state("a"), choice(), *transitions))
+    assert derive_gate_contract(text) == (None, ["SM425"])

@@ -13,6 +13,11 @@ def list_faults(text):
     return [diagnostic.message for diagnostic in sink if diagnostic.rule.code == "SM421"]
 
 
+def list_codes(text):
+    """Return the codes of the findings about the machine."""
+    return [diagnostic.rule.code for diagnostic in derive_contracts(text)[2]]
+
+
 def region_without_initial(id, *parts):
     """Return a region without initial pseudostate."""
     initial = "i" if id == "r" else f"{id}i"
@@ -42,6 +47,17 @@ def test_an_initial_pseudostate_that_leads_nowhere_does_not_start_the_machine():
         "region '<Region>' of 'Behaviour' has an initial pseudostate without outgoing transition, "
         "but the machine starts there"
     ]
+
+
+def test_a_second_initial_pseudostate_of_a_region_that_cannot_start_is_not_reported_again():
+    second = 'Pseudostate again subkind="initial"\n'
+    text = machine_of(region("r", state("a"), second))
+    assert list_faults(text) == [
+        "region '<Region>' of 'Behaviour' has 2 initial pseudostates, the first without outgoing "
+        "transition, but the machine starts there"
+    ]
+    assert list_codes(text) == ["SM421"]
+    assert list_codes(machine_of(region("r", state("a"), arrow("i", "a"), second))) == ["SM420"]
 
 
 def test_uml_allows_one_transition_from_an_initial_pseudostate():
@@ -123,3 +139,43 @@ def test_a_shallow_history_enters_the_states_that_it_restores_by_default():
     assert fault.startswith("region '<Region>' of 'D' has no initial pseudostate, but a shallow")
     deep = machine_of(region("r", state("a"), outer, arrow("i", "a"))).replace("shallow", "deep")
     assert list_faults(deep) == []
+
+
+# -- machines that extend another one (UML 2.5.1, 14.3.3.1) ----------------------------------------
+
+EXTENSION = """\
+Class g "General"
+  StateMachine gm "Life"
+    Region gr
+      Pseudostate gi subkind="initial"
+      State ga "A"
+      Transition g0
+        -> flow-source gi
+        -> flow-target ga
+Class s "Special"
+  -> specializes g
+  StateMachine sm "Life"
+    -> redefines gm
+    Region sr
+      -> redefines gr
+      State sb "B"
+      Transition s0
+        -> flow-source ga
+        -> flow-target sb
+"""
+
+
+def test_a_region_inherits_the_initial_pseudostate_of_the_region_that_it_extends():
+    _, contracts, sink = derive_contracts(EXTENSION)
+    assert [diagnostic.message for diagnostic in sink] == [
+        "the redefinition or extension by 'Life' of state machine 'Life' is not derived; the "
+        "component gets no contract"
+    ]
+    assert [contract.component for contract in contracts] == ["General.Life"]
+
+
+def test_a_region_that_an_extending_machine_adds_has_no_initial_pseudostate_to_inherit():
+    text = EXTENSION.replace("      -> redefines gr\n", "").replace("source ga", "source sb")
+    assert list_faults(text) == [
+        "region '<Region>' of 'Life' has no initial pseudostate, but the machine starts there"
+    ]

@@ -118,7 +118,7 @@ def test_a_requirement_with_assumptions_only_gives_no_contract():
 def test_a_constraint_in_another_language_is_reported():
     sink = derive(build_tank('language="Modelica" body="der(level) > 0"'))[1]
     assert list_messages(sink, "SM523") == [
-        "'never full' of requirement 'Safe' is in no contract: it is written in Modelica"
+        "constraint 'never full' of requirement 'Safe' is in no contract: it is written in Modelica"
     ]
 
 
@@ -126,8 +126,8 @@ def test_a_requirement_about_several_subjects_is_reported_once():
     special = '  Class d "Silo" role="block"\n    -> specializes c\n'
     sink = derive(build_tank('body="lid"', elements=special))[1]
     assert list_messages(sink, "SM523") == [
-        "'never full' of requirement 'Safe' is in no contract: 'lid' is not a feature of 'Tank' "
-        "with finitely many values; the same holds for 1 more subject"
+        "constraint 'never full' of requirement 'Safe' is in no contract: 'lid' is not a feature "
+        "of 'Tank' itself, or has no finite type; the same holds for 1 more subject"
     ]
 
 

@@ -208,12 +208,23 @@ def test_a_condition_that_several_services_inherit_is_one_finding():
     ]
 
 
+def test_operations_of_a_stereotype_are_no_services():
+    text = 'KIND s "S"\n  Operation o "o"\n    Constraint c subkind="body" body="x"\n'
+    assert list_informal(text.replace("KIND", "Stereotype")) == []
+    assert list_informal(text.replace("KIND", "Class")) == [
+        "the body condition 'x' of 'o' is in no contract: 'x' is not a parameter or feature with "
+        "finitely many values"
+    ]
+
+
 @pytest.mark.parametrize(
     ("body", "reason"),
     [
         ("level->size() > 0", "operations on collections ('->') are not supported"),
         ("let low : Integer = 2 in level > low", "unexpected 'low'"),
         ("level >", "the text ends too early"),
+        ("grade(level) > 2", "calls such as 'grade(level)' are not evaluated"),
+        ("level > 2.5", "2.5 is not an Integer"),
     ],
 )
 def test_the_reason_names_the_token_that_is_not_read(body, reason):

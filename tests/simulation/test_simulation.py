@@ -235,7 +235,7 @@ def test_a_fault_of_a_scenario_is_reported_at_its_line(text, code, message, line
 
 
 @pytest.mark.parametrize(
-    "rule", [rule for code, rule in catalogue().items() if "SM550" <= code <= "SM559"], ids=str
+    "rule", [rule for code, rule in catalogue().items() if "SM550" <= code <= "SM556"], ids=str
 )
 def test_each_rule_about_scenarios_has_a_wrong_and_a_right_example(rule):
     model = GATE.replace('Class gate "Gate"', 'Class gate "Gate"\n  -> classifier-behavior pass')

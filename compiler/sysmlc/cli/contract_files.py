@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from sysmlc.config import Config
     from sysmlc.diagnostics import Sink, Subject
     from sysmlc.diagnostics.renderers import Finding
+    from sysmlc.logic.components.derivation import ComponentBehaviour
     from sysmlc.logic.contract import Composite, Contract
-    from sysmlc.logic.requirements.checked_behaviours import CheckedBehaviour
     from sysmlc.logic.requirements.statements import StatedRequirement
     from sysmlc.sources import Source
     from sysmlc.synthesis.decision import Place
@@ -38,7 +38,7 @@ class ContractFile(Struct, frozen=True):
     root: Path
     is_whole: bool = True
     """Whether every contract of the file could be read."""
-    behaviours: "Mapping[str, CheckedBehaviour]" = {}
+    behaviours: "Mapping[str, ComponentBehaviour]" = {}
     """The behaviours of a model by component."""
     requirements: "tuple[StatedRequirement, ...]" = ()
     """The requirements of a model."""
@@ -79,9 +79,9 @@ def read_contracts(
 def _read_model(file: Path, config: "Config", settings: "Settings") -> ContractFile:
     from sysmlc.cli import reports, session
     from sysmlc.diagnostics import Sink
+    from sysmlc.logic.components.derivation import ComponentBehaviour
     from sysmlc.logic.composition.derivation import compose_blocks
     from sysmlc.logic.contract import Contract
-    from sysmlc.logic.requirements.checked_behaviours import list_checked_behaviours
     from sysmlc.logic.requirements.statements import list_stated_requirements
 
     compilation = session.compile_unit((file,), config, settings)
@@ -98,7 +98,7 @@ def _read_model(file: Path, config: "Config", settings: "Settings") -> ContractF
         session.fail(f"'{file}' has no behaviour and no requirement that gives a contract")
     sink = Sink(config.rules)
     composites = compose_blocks(compilation.graph, contracts, sink)
-    behaviours = list_checked_behaviours(compilation.graph, contracts)
+    behaviours = compilation.graph.derived(ComponentBehaviour)
     reasons = {
         diagnostic.subject.id: diagnostic.message
         for diagnostic in compilation.diagnostics
@@ -180,17 +180,16 @@ def show_results(
     read: ContractFile,
     settings: "Settings",
     lines: "Iterable[str]",
-    verdicts: "list[dict[str, object]] | None" = None,
+    details: "Mapping[str, object] | None" = None,
 ) -> None:
     """Print the findings about a file and its contracts, then a line for each contract.
 
-    The format JSON contains the *verdicts* about requirements as the list ``requirements``.
+    The format JSON contains the *details*, such as the verdicts about requirements.
     """
     from sysmlc.cli import reports
     from sysmlc.diagnostics.renderers import make_report
 
     findings = reports.localize(read.root, make_report(read.sink, read.sources).findings)
-    details = {} if verdicts is None else {"requirements": verdicts}
-    reports.print_findings([*read.findings, *findings], settings, details)
+    reports.print_findings([*read.findings, *findings], settings, dict(details or {}))
     for line in lines:
         terminal.echo(line, err=not reports.allows_sentences(settings))

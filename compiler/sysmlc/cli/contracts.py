@@ -8,6 +8,7 @@ import click
 from msgspec.structs import replace
 
 from sysmlc.cli import options
+from sysmlc.cli.recorded_runs import accept_command
 
 if TYPE_CHECKING:
     from sysmlc.cli.contract_files import ContractFile
@@ -21,7 +22,10 @@ if TYPE_CHECKING:
 
 @click.group("contracts", short_help="Check contracts, by themselves and against one another.")
 def command() -> None:
-    """Check the contracts of a model."""
+    """Check the contracts of a model, and runs of its components."""
+
+
+command.add_command(accept_command)
 
 
 @command.command(
@@ -135,10 +139,13 @@ def _check(
             *(line for result in alone for line in _format_result(result, settings.verbose)),
             *(result.text() for result in together),
         ),
-        list_verdicts(
-            [item for item in contract_file.requirements if component in ("", item.component)],
-            alone,
-        ),
+        {
+            "requirements": list_verdicts(
+                [item for item in contract_file.requirements if component in ("", item.component)],
+                alone,
+            ),
+            "behaviours": list_behaviours(alone),
+        },
     )
     is_undecided = any(
         result.verdict.is_realizable is None and not result.is_checked_by_behaviour
@@ -221,6 +228,19 @@ def list_verdicts(
     ]
 
 
+def list_behaviours(results: "Iterable[CheckedContract]") -> list[dict[str, object]]:
+    """Return an entry for each behaviour that was checked against requirements."""
+    return [
+        {
+            "component": result.verdict.component,
+            "unreachable": list(result.findings.unreachable),
+            "write_conflicts": list(result.findings.conflicts),
+        }
+        for result in results
+        if result.findings is not None
+    ]
+
+
 def _list_entries(
     requirement: "StatedRequirement", verdicts: "Sequence[RequirementVerdict]"
 ) -> Iterator[dict[str, object]]:
@@ -233,8 +253,10 @@ def _list_entries(
             "component": requirement.component,
             "formula": print_temporal(verdict.conjunct),
             "verdict": str(verdict.answer),
+            "vacuous": bool(verdict.vacuity),
+            "needs": [ending.text for ending in verdict.needed],
             "witness": trace and {"steps": [*map(dict, trace.steps)], "loop": trace.loop},
-            "reason": verdict.reason or None,
+            "reason": verdict.reason or verdict.vacuity or None,
         }
     if not verdicts:
         yield {
@@ -242,6 +264,8 @@ def _list_entries(
             "component": requirement.component or None,
             "formula": requirement.text,
             "verdict": "not-decided",
+            "vacuous": False,
+            "needs": [],
             "witness": None,
             "reason": requirement.reason or _NO_BEHAVIOUR.format(component=requirement.component),
         }

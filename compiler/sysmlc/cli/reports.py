@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 _DEFAULT_LIMIT = 1_000
 """The largest number of findings that are printed for people by default."""
+_MAX_NOTES = 4
+"""Notes of a finding that are printed for people, unless ``--verbose`` asks for all."""
 _FORMS_ON_STDOUT = frozenset({"json", "sarif", "github"})
 
 
@@ -99,10 +101,7 @@ def print_findings(
     report = shorten(shown, _find_limit(settings))
     report = replace(report, folded=tuple(folded))
     if settings.form not in XPATH_FORMATS and not settings.verbose:
-        without_xpath = tuple(
-            replace(finding, xpath="") if finding.xpath else finding for finding in report.findings
-        )
-        report = replace(report, findings=without_xpath)
+        report = replace(report, findings=tuple(map(_shorten_finding, report.findings)))
     if settings.form == "json":
         text = render_json(report, details)
     else:
@@ -113,6 +112,16 @@ def print_findings(
         click.echo(
             f"{len(report.hidden)} more are not shown; --max-diagnostics 0 shows all", err=True
         )
+
+
+def _shorten_finding(finding: "Finding") -> "Finding":
+    """Return the finding without its XPath and with the first of many notes."""
+    notes = finding.diagnostic.notes
+    if len(notes) > _MAX_NOTES:
+        rest = len(notes) - _MAX_NOTES + 1
+        short_notes = (*notes[: _MAX_NOTES - 1], f"{rest} more notes; --verbose shows them")
+        finding = replace(finding, diagnostic=replace(finding.diagnostic, notes=short_notes))
+    return replace(finding, xpath="") if finding.xpath else finding
 
 
 def is_reported(diagnostic: "Diagnostic", settings: "Settings") -> bool:

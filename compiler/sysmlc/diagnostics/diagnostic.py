@@ -35,7 +35,11 @@ class Subject(Struct, frozen=True):
 
 
 class Diagnostic(Struct, frozen=True):
-    """A fault of the model, or information about it, as a sink collects it."""
+    """A fault of the model, or information about it, as a sink collects it.
+
+    ``cause`` identifies the fact that several diagnostics of a file are about, such as a name that
+    is missing; reports show them as one finding. It is empty for a fact of its own.
+    """
 
     rule: Rule
     severity: Severity
@@ -43,6 +47,7 @@ class Diagnostic(Struct, frozen=True):
     subject: Subject
     notes: tuple[str, ...] = ()
     help: str = ""
+    cause: str = ""
 
     @property
     def is_error(self) -> bool:

@@ -63,9 +63,13 @@ class Sink:
         *,
         notes: tuple[str, ...] = (),
         help: str = "",
+        cause: str = "",
         **facts: object,
     ) -> None:
-        """Report *rule* about *subject*; *facts* fill the phrase and the help of the rule."""
+        """Report *rule* about *subject*; *facts* fill the phrase and the help of the rule.
+
+        Reports show diagnostics of one file with the same *cause* as one finding with a count.
+        """
         severity = self._find_severity(rule, subject)
         if severity is None:
             return
@@ -79,7 +83,7 @@ class Sink:
             message = wording.phrase.format(**facts)
         advice = (help or wording.help).format(**facts)
         short_notes = tuple(_shorten(note, _MAX_TEXT) for note in notes)
-        diagnostic = Diagnostic(rule, severity, message, subject, short_notes, advice)
+        diagnostic = Diagnostic(rule, severity, message, subject, short_notes, advice, cause)
         self._diagnostics.setdefault(_make_key(diagnostic), diagnostic)
 
     def subset(self, diagnostics: Iterable[Diagnostic]) -> "Sink":

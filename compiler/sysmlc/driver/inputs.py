@@ -15,7 +15,7 @@ from sysmlc.driver.ownership import is_output_folder
 from sysmlc.frontends.base import Frontend
 from sysmlc.sources import Roots, Source
 from sysmlc.support.escapes import escape_undecodable
-from sysmlc.support.suggestions import did_you_mean
+from sysmlc.support.suggestions import find_similar
 
 _SUFFIXES = """
     .uml .xmi .xml .mdxml .mdzip .aml .amlx .caex .ir .sysml .kerml .sysmlx .kermlx .kpar
@@ -180,10 +180,12 @@ def _report_missing(path: Path, absolute: Path, root: Path, sink: Sink) -> None:
     name = path.as_posix()
     folder = absolute.parent
     names = [p.name for p in sorted(folder.iterdir())] if folder.is_dir() else []
-    visible_names = [name for name in names if not name.startswith(".")]
-    advice = did_you_mean(absolute.name, visible_names[:40])
+    similar = find_similar(absolute.name, [name for name in names if not name.startswith(".")])
+    advice = f"did you mean '{similar}'?" if similar else ""
+    if not folder.is_dir():
+        advice = f"there is no folder '{path.parent.as_posix()}' either; check the spelling"
     subject = faults.about_file(name_of(absolute, root))
-    sink.report(faults.MISSING_FILE, subject, help="{advice}", path=name, advice=advice)
+    sink.report(faults.MISSING_FILE, subject, help=advice and "{advice}", path=name, advice=advice)
 
 
 # -- files that no front end recognises --------------------------------------------------------

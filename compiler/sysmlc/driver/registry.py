@@ -40,6 +40,7 @@ _BACKENDS = {
     "ecore": "sysmlc.backends.ecore:BACKEND",
     "ir": "sysmlc.backends.graph:TEXT",
     "reqtable": "sysmlc.backends.reqtable:BACKEND",
+    "monitor": "sysmlc.backends.monitor:BACKEND",
     "uml": "sysmlc.backends.uml:BACKEND",
     "sysml": "sysmlc.backends.sysml:BACKEND",
     "aml": "sysmlc.backends.aml:BACKEND",

@@ -5,6 +5,8 @@ that only states how an owner owns one element is folded into two strings of tha
 ``membership`` and ``role``. A reference to another element by name is a ``Relation``.
 """
 
+import re
+from bisect import bisect_left, bisect_right
 from codecs import BOM_UTF8
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
 
 AttributeValue = str | bool | int | float
 """Values that an attribute of a metaclass may have."""
+_WIDE_CHARACTER = re.compile(r"[^\x00-\x7f]")
 
 
 class Reference:
@@ -200,3 +203,39 @@ def byte_order_mark_length(source: "Source | None") -> int:
     """Return the number of bytes of the byte order mark, which a decoded text does not contain."""
     is_marked = source is not None and source.data.startswith(BOM_UTF8)
     return len(BOM_UTF8) if is_marked else 0
+
+
+class DocumentPositions:
+    """A document of the unit, with the byte offsets of its characters.
+
+    ``byte_offset`` encodes the text before one character, which is right for a single
+    diagnostic. The lowering asks for each element, so this class indexes the characters that take
+    several bytes once.
+    """
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+        self.path = document.path
+        surplus = byte_order_mark_length(document.source) if document.text else 0
+        self._wide_characters: list[int] = []
+        self._surplus_bytes = [surplus]
+        """Bytes beyond one for each character, before the first and after each wide character."""
+        for match in _WIDE_CHARACTER.finditer(document.text):
+            # A lone surrogate, which UTF-8 cannot encode, counts as the one byte of '?'.
+            surplus += len(match[0].encode("utf-8", "replace")) - 1
+            self._wide_characters.append(match.start())
+            self._surplus_bytes.append(surplus)
+
+    def ordinal_of(self, node: Node) -> int:
+        """Return the byte at which the name of a node starts, or its ordinal in an XMI file."""
+        return self.byte_of(node.name_start if node.name_start >= 0 else node.start)
+
+    def byte_of(self, offset: int) -> int:
+        """Return the byte of a character of the document; -1 stays -1."""
+        if offset < 0:
+            return offset
+        return offset + self._surplus_bytes[bisect_left(self._wide_characters, offset)]
+
+    def character_at(self, byte: int) -> int:
+        """Return the character of the document that contains a byte; -1 before the first."""
+        return bisect_right(range(byte + 1), byte, key=self.byte_of) - 1

@@ -1,5 +1,6 @@
 """Pass ``behaviours``: methods of operations, calls and their arguments, behaviours of states."""
 
+from collections import Counter
 from typing import ClassVar
 
 from msgspec import Struct
@@ -26,8 +27,7 @@ CALL_ARGUMENTS = rule(
     "SM401",
     "call-arguments",
     Severity.WARNING,
-    "action '{action}' has {pins} {direction} pins, '{called}' has {parameters} {direction} "
-    "parameters",
+    "action '{action}' has {pins} pins, '{called}' has {parameters} parameters",
     help="let the modelling tool synchronise the pins of the action",
 )
 NO_BEHAVIOR = rule(
@@ -182,19 +182,22 @@ def _check_call(graph: Graph, sink: Sink, action: Element) -> None:
 def _check_pins(graph: Graph, sink: Sink, action: Element, called: Element) -> None:
     pins = [pin for pin in graph.owned(action) if pin.kind is Kind.PIN]
     pins = [pin for pin in pins if pin.subkind not in _NO_ARGUMENT]
+    pin_counts = Counter(str(pin.attrs.get("direction", "in")) for pin in pins)
     ins, outs = _count_parameters(graph, called)
-    for direction, wanted in (("in", ins), ("out", outs)):
-        count = sum(1 for pin in pins if pin.attrs.get("direction", "in") == direction)
-        if count != wanted:
-            sink.report(
-                CALL_ARGUMENTS,
-                graph.subject(action),
-                action=graph.qualified_name(action),
-                pins=count,
-                direction=direction,
-                called=graph.qualified_name(called),
-                parameters=wanted,
-            )
+    differing = [
+        (direction, pin_counts[direction], wanted)
+        for direction, wanted in (("in", ins), ("out", outs))
+        if pin_counts[direction] != wanted
+    ]
+    if differing:
+        sink.report(
+            CALL_ARGUMENTS,
+            graph.subject(action),
+            action=graph.qualified_name(action),
+            pins=" and ".join(f"{count} {direction}" for direction, count, _ in differing),
+            called=graph.qualified_name(called),
+            parameters=" and ".join(f"{wanted} {direction}" for direction, _, wanted in differing),
+        )
 
 
 def _count_parameters(graph: Graph, called: Element) -> tuple[int, int]:

@@ -19,6 +19,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.activities import derivation as activity_contract
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.classification import classify
+from sysmlc.logic.components.derivation import ComponentBehaviour
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner, mark_derived
 from sysmlc.logic.expressions.context import context_of
 from sysmlc.logic.feature_writes import WriterIndex
@@ -66,7 +67,13 @@ class Contracts(Struct, frozen=True):
         derived = list(map(mark_derived, drawn))
         derived = _number_components(graph, derived, sink)
         derived = _add_formulas(graph, derived, assumed_range, sink)
-        required = list(requirements.derive(graph, derived, assumed_range, sink))
+        options = MachineOptions(self.tick_seconds, assumed_range)
+        checked = list(requirements.derive(graph, derived, options, sink))
+        required = [subject.contract for subject in checked]
+        graph.store(
+            ComponentBehaviour,
+            (subject.behaviour for subject in checked if subject.behaviour is not None),
+        )
         _report_general(graph, required, sink)
         derived = [*derived, *required]
         components = [contract.component for contract in derived]
@@ -127,10 +134,8 @@ def _number_components(graph: Graph, contracts: list[Contract], sink: Sink) -> l
     for contract in contracts:
         name = contract.component
         counts[name] += 1
-        if totals[name] > 1:
-            _report_same_name(
-                graph, contract, [other for other in contracts if other.component == name], sink
-            )
+        if totals[name] > 1 and counts[name] == 1:
+            _report_same_name(graph, [c for c in contracts if c.component == name], sink)
         number = counts[name]
         numbered.append(
             contract if number == 1 else replace(contract, component=f"{name}#{number}")
@@ -138,10 +143,10 @@ def _number_components(graph: Graph, contracts: list[Contract], sink: Sink) -> l
     return numbered
 
 
-def _report_same_name(graph: Graph, contract: Contract, same: list[Contract], sink: Sink) -> None:
-    """Report that other components have the same name; the notes name their files."""
-    behaviour, name = graph[contract.origin], contract.component
-    files = dict.fromkeys(graph[other.origin].source for other in same)
+def _report_same_name(graph: Graph, same: list[Contract], sink: Sink) -> None:
+    """Report the first of the components of one name; the notes name the files of the others."""
+    behaviour, name = graph[same[0].origin], same[0].component
+    files = dict.fromkeys(graph[contract.origin].source for contract in same)
     files.pop(behaviour.source, None)
     sink.report(
         SAME_COMPONENT,
@@ -317,7 +322,8 @@ def _find_scope(graph: Graph, contract: Contract, assumed_range: tuple[int, int]
     origin = graph[contract.origin]
     if origin.kind not in _ACTIONS:
         return None
-    return scope_of(context_of(graph, definition_of(graph, origin), assumed_range), contract)
+    context = context_of(graph, definition_of(graph, origin), assumed_range)
+    return scope_of(context, contract.variables)
 
 
 def _extend(contract: Contract, conjuncts: list[Conjunct]) -> Contract:

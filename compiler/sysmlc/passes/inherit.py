@@ -28,8 +28,8 @@ NOT_INHERITED = rule(
     "SM202",
     "redefines-stranger",
     Severity.WARNING,
-    "'{element}' {relation} '{other}', which it does not inherit",
-    help="add the generalization that is missing, or remove the relation",
+    "'{element}' {relation} '{other}', but '{owner}' does not inherit from {other_owner}",
+    help="let '{owner}' specialise {other_owner}, or remove the relation",
 )
 TYPE_NOT_NARROWER = rule(
     "SM203",
@@ -86,6 +86,8 @@ class _Hierarchy:
         self._component: dict[str, int] = {}
         self.cycles: list[list[Element]] = []
         self._features: dict[str, dict[Element, None]] = {}
+        documents = graph.of_kind(Kind.DOCUMENT)
+        self.caex_files = {document.source for document in documents if document.subkind == "caex"}
         # Components are in topological order, so that generals are complete before specifics.
         for number, ids in enumerate(strongly_connected_components(_index_generals(graph))):
             self._component.update(dict.fromkeys(ids, number))
@@ -201,16 +203,25 @@ def _check_relation(
     if other.attrs.get("external"):
         return
     if not _can_relate(graph, edge, feature, other, hierarchy):
+        owner, other_owner = _name_owner(graph, feature), _name_owner(graph, other)
         sink.report(
             NOT_INHERITED,
             graph.subject(feature),
+            cause=_describe_missing_generalization(graph.owner(feature), graph.owner(other)),
             element=graph.qualified_name(feature),
             relation=_RELATIONS[edge],
             other=graph.qualified_name(other),
+            owner=owner,
+            other_owner=f"the other '{owner}'" if owner == other_owner else f"'{other_owner}'",
         )
         return
     _check_types(graph, sink, edge, feature, other)
-    _check_multiplicities(graph, sink, edge, feature, other)
+    _check_multiplicities(graph, sink, edge, feature, other, hierarchy)
+
+
+def _name_owner(graph: Graph, feature: Element) -> str:
+    owner = graph.owner(feature)
+    return "the model" if owner is None else owner.name or graph.qualified_name(owner)
 
 
 def _check_types(graph: Graph, sink: Sink, edge: Edge, feature: Element, other: Element) -> None:
@@ -222,6 +233,7 @@ def _check_types(graph: Graph, sink: Sink, edge: Edge, feature: Element, other: 
     sink.report(
         TYPE_NOT_NARROWER,
         graph.subject(feature),
+        cause=_describe_missing_generalization(type_, general),
         element=graph.qualified_name(feature),
         relation=_RELATIONS[edge],
         other=graph.qualified_name(other),
@@ -230,12 +242,20 @@ def _check_types(graph: Graph, sink: Sink, edge: Edge, feature: Element, other: 
     )
 
 
+def _describe_missing_generalization(specific: Element | None, general: Element | None) -> str:
+    """Return the cause of findings that a generalization between two classifiers removes."""
+    ids = (element.id for element in (specific, general) if element is not None)
+    return f"no generalization {' '.join(ids)}"
+
+
 def _check_multiplicities(
-    graph: Graph, sink: Sink, edge: Edge, feature: Element, other: Element
+    graph: Graph, sink: Sink, edge: Edge, feature: Element, other: Element, hierarchy: _Hierarchy
 ) -> None:
     type_ = graph.target(feature, Edge.TYPED_BY)
     if not _allows_more(feature, other) or (type_ is not None and type_.subkind == "attribute"):
         return
+    if "multiplicity" not in other.attrs and other.source in hierarchy.caex_files:
+        return  # An interface of AutomationML without Cardinality may occur any number of times.
     sink.report(
         MULTIPLICITY_WIDER,
         graph.subject(feature),
@@ -253,9 +273,11 @@ def _can_relate(
     owner, other_owner = graph.owner(feature), graph.owner(other)
     if owner is None or other_owner is None:
         return False
-    if hierarchy.is_general_of(other_owner, owner) or _is_feature_of_role(
-        graph, owner, other_owner, hierarchy
+    if hierarchy.is_general_of(other_owner, owner) or other_owner in graph.targets(
+        owner, Edge.REDEFINES
     ):
+        return True
+    if _is_feature_of_role(graph, owner, other_owner, hierarchy):
         return True
     # Association ends relate through the classifiers at the other side, which is not checked.
     if Kind.ASSOCIATION in (owner.kind, other_owner.kind) or owner.kind not in CLASSIFIERS:
@@ -266,12 +288,30 @@ def _can_relate(
 def _is_feature_of_role(
     graph: Graph, owner: Element, role_class: Element, hierarchy: _Hierarchy
 ) -> bool:
-    """Whether *owner* has the role class, whose attributes an element of AutomationML may map."""
+    """Whether a mapping object of AutomationML may map a feature of *owner* to *role_class*.
+
+    The mapping may belong to the class that has the feature, to a class or an instance that
+    inherits it, or to an attribute inside of one of these.
+    """
+    owner, role_class = (_find_holder(graph, element) for element in (owner, role_class))
     if role_class.subkind != "role-class":
         return False
-    family = (owner, *generals(graph, owner))
-    roles = [role for classifier in family for role in graph.targets(classifier, Edge.REALIZES)]
+    clients = [owner]
+    for client in clients:
+        edges = (Edge.SPECIALIZES, Edge.TYPED_BY, Edge.INSTANCE_OF)
+        users = [user for edge in edges for user in graph.sources(client, edge)]
+        clients += (user for user in users if user not in clients)
+    clients += generals(graph, owner)
+    roles = [role for client in clients for role in graph.targets(client, Edge.REALIZES)]
     return any(role is role_class or hierarchy.is_general_of(role_class, role) for role in roles)
+
+
+def _find_holder(graph: Graph, element: Element) -> Element:
+    """Return the class around the nested attributes that *element* is the type of."""
+    holder: Element | None = element
+    while holder is not None and holder.subkind == "attribute":
+        holder = graph.owner(holder)
+    return holder or element
 
 
 def _is_narrower(graph: Graph, narrow: Element, wide: Element) -> bool:

@@ -17,9 +17,11 @@ from sysmlc.ir.query import (
     connectors_of,
     direction_of,
     ends,
+    flow_directions,
     flow_properties,
     flow_source,
     flow_target,
+    generals,
     has_stereotype,
     is_boundary,
     opposite,
@@ -129,6 +131,7 @@ def _give_type(graph: Graph, port: Element) -> None:
 def _find_direction(graph: Graph, port: Element) -> str | None:
     return (
         _own_direction(graph, port)
+        or _combine(direction for _, direction in flow_directions(graph, port))
         or _conjugate(port, _direction_by_type(graph, port))
         or _direction_by_item_flows(graph, port)
     )
@@ -296,7 +299,8 @@ def _check_multiplicity(graph: Graph, sink: Sink, feature: Element) -> None:
 def _report_undirected(graph: Graph, sink: Sink, ports: list[Element]) -> None:
     blocks: dict[str, list[Element]] = {}
     for port in ports:
-        if port.owner is not None and _lacks_direction(port) and not _is_reported(graph, port):
+        is_exempt = _is_reported(graph, port) or _has_explaining_type(graph, port)
+        if port.owner is not None and _lacks_direction(port) and not is_exempt:
             blocks.setdefault(port.owner, []).append(port)
     for id, undirected in blocks.items():
         names = [f"'{member.name or member.id}'" for member in undirected]
@@ -315,10 +319,31 @@ def _lacks_direction(port: Element) -> bool:
 
 
 def _is_reported(graph: Graph, port: Element) -> bool:
-    """Whether the port redefines a port of the unit that lacks a direction itself."""
+    """Whether the port redefines or subsets a port of the unit that lacks a direction itself."""
+    general_ports = (*redefined_features(graph, port), *graph.targets(port, Edge.SUBSETS))
     return any(
-        former.kind is Kind.PORT and _lacks_direction(former) and not former.attrs.get("external")
-        for former in redefined_features(graph, port)
+        former.kind is Kind.PORT
+        and former is not port
+        and _lacks_direction(former)
+        and not former.attrs.get("external")
+        for former in general_ports
+    )
+
+
+def _has_explaining_type(graph: Graph, port: Element) -> bool:
+    """Whether the type of the port explains why the port has no direction.
+
+    Everything flows through the ports of the type, or the type or a general of it is in a file that
+    is not read. The missing file is reported, and its flow properties may state a direction.
+    """
+    type_ = type_of(graph, port)
+    if type_ is None:
+        return False
+    return any(f.kind is Kind.PORT for f in graph.targets(type_, Edge.FEATURE)) or any(
+        classifier.attrs.get("external")
+        and not classifier.attrs.get("library")
+        and classifier.subkind != "primitive"
+        for classifier in (type_, *generals(graph, type_))
     )
 
 

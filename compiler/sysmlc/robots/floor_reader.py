@@ -136,7 +136,7 @@ class _FloorReader:
     def fail(self, rule: Rule, element: Element, **facts: str | int) -> None:
         """Report an error of an element; the floor then yields no study."""
         self.is_good = False
-        self.sink.report(rule, self.graph.subject(element), notes=(), help="", **facts)
+        self.sink.report(rule, self.graph.subject(element), notes=(), help="", cause="", **facts)
 
     def _parts_of_kind(self, block: Element | None, kind: str) -> list[Element]:
         if block is None:

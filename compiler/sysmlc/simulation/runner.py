@@ -8,10 +8,17 @@ from sysmlc.logic.contract import Owner, Variable
 from sysmlc.logic.domains import contains, describe
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.machines.interpreter import Valuation
-from sysmlc.simulation import rules
 from sysmlc.simulation.players import Player, find_players, find_resting_value
 from sysmlc.simulation.report import Difference, Report, Result, show_value
-from sysmlc.simulation.scenario import Entry, Scenario, read_scenarios
+from sysmlc.simulation.scenario import (
+    COMPONENT,
+    NOT_INPUT,
+    VALUE,
+    VARIABLE,
+    Entry,
+    Scenario,
+    read_scenarios,
+)
 from sysmlc.sources import Source
 from sysmlc.support.suggestions import did_you_mean
 
@@ -60,7 +67,7 @@ def _find_player(
         return players_by_name[matches[0]]
     names = ", ".join(sorted(matches or players_by_name)) or "none"
     sink.report(
-        rules.COMPONENT, scenario.subject(scenario.location), name=scenario.component, known=names
+        COMPONENT, scenario.subject(scenario.location), name=scenario.component, known=names
     )
     return None
 
@@ -91,7 +98,7 @@ def _is_valid_entry(
     variable = variables.get(name)
     if variable is None:
         sink.report(
-            rules.VARIABLE,
+            VARIABLE,
             scenario.subject(entry.location),
             component=component,
             name=name,
@@ -99,13 +106,9 @@ def _is_valid_entry(
         )
     elif not contains(variable.domain, entry.value):
         shown, domain = show_value(entry.value), describe(variable.domain)
-        sink.report(
-            rules.VALUE, scenario.subject(entry.location), value=shown, name=name, domain=domain
-        )
+        sink.report(VALUE, scenario.subject(entry.location), value=shown, name=name, domain=domain)
     elif is_input and variable.owner is Owner.SYSTEM:
-        sink.report(
-            rules.NOT_INPUT, scenario.subject(entry.location), name=name, component=component
-        )
+        sink.report(NOT_INPUT, scenario.subject(entry.location), name=name, component=component)
     else:
         return True
     return False

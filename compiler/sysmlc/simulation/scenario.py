@@ -7,15 +7,67 @@ from typing import TYPE_CHECKING
 
 from msgspec import Struct
 
-from sysmlc.diagnostics import Place, Sink, Subject
+from sysmlc.diagnostics import Place, Severity, Sink, Subject, rule
 from sysmlc.logic.formula import Literal
-from sysmlc.simulation import rules
 from sysmlc.sources import Source
 from sysmlc.support import resources
 
 if TYPE_CHECKING:
     from jsonschema.exceptions import ValidationError
     from ruamel.yaml.error import MarkedYAMLError
+
+SYNTAX = rule(
+    "SM550",
+    "scenario-not-yaml",
+    Severity.ERROR,
+    "the scenario is not YAML: {problem}",
+    help="check the indentation, and put texts with special characters in quotes",
+)
+SHAPE = rule(
+    "SM551",
+    "scenario-not-valid",
+    Severity.ERROR,
+    "{where} of the scenario: {problem}",
+    help="a scenario has a component, steps with inputs and expect, and perhaps a trace",
+)
+COMPONENT = rule(
+    "SM552",
+    "unknown-component",
+    Severity.ERROR,
+    "there is no component '{name}' that can be simulated; known are: {known}",
+    help=(
+        "use one of the known names, or read the diagnostics of the model: they explain "
+        "why an activity or a state machine cannot be simulated"
+    ),
+)
+VARIABLE = rule(
+    "SM553",
+    "unknown-variable",
+    Severity.ERROR,
+    "'{component}' has no variable '{name}'; {advice}",
+    help="the contract of the component lists its variables",
+)
+VALUE = rule(
+    "SM554",
+    "value-outside-domain",
+    Severity.ERROR,
+    "{value} is not a value of '{name}', which takes {domain}",
+    help="use a value of the domain",
+)
+NOT_INPUT = rule(
+    "SM555",
+    "output-as-input",
+    Severity.ERROR,
+    "'{name}' is decided by '{component}' and can't be an input",
+    help="write it under expect",
+)
+LONG_TRACE = rule(
+    "SM556",
+    "trace-longer-than-steps",
+    Severity.ERROR,
+    "the expected trace has {lines} entries, but there are only {steps} steps",
+    help="add steps (a step may be empty: {{}}), or use repeat",
+)
 
 Values = Mapping[str, Literal]
 
@@ -101,13 +153,13 @@ def _load_yaml(source: Source, sink: Sink) -> "Mapping[str, object] | None":
     if not isinstance(document, Mapping):
         subject = _subject_at(source, Location(1, 1))
         problem = "it has no component and no steps"
-        sink.report(rules.SHAPE, subject, where="the top", problem=problem)
+        sink.report(SHAPE, subject, where="the top", problem=problem)
         return None
     return document
 
 
 def _report_syntax(source: Source, sink: Sink, location: Location, problem: str) -> None:
-    sink.report(rules.SYNTAX, _subject_at(source, location), problem=problem)
+    sink.report(SYNTAX, _subject_at(source, location), problem=problem)
 
 
 def _location_of(error: "MarkedYAMLError") -> Location:
@@ -136,9 +188,7 @@ def _is_valid(document: Mapping[str, object], source: Source, sink: Sink) -> boo
         return True
     where = "/".join(map(str, error.absolute_path)) or "the top"
     location = _locate_path(document, list(error.absolute_path))
-    sink.report(
-        rules.SHAPE, _subject_at(source, location), where=where, problem=_shorten_message(error)
-    )
+    sink.report(SHAPE, _subject_at(source, location), where=where, problem=_shorten_message(error))
     return False
 
 
@@ -180,7 +230,7 @@ def _read_scenario(
     location = _locate_item(part, "component") or Location()
     if len(trace) > len(steps):
         subject = _subject_at(source, _locate_item(part, "trace") or location)
-        sink.report(rules.LONG_TRACE, subject, lines=len(trace), steps=len(steps))
+        sink.report(LONG_TRACE, subject, lines=len(trace), steps=len(steps))
         return None
     for index, item in enumerate(trace):
         step = steps[index]

@@ -8,6 +8,11 @@ _MAX_LISTED = 12
 _CACHE_SIZE = 64
 
 
+def find_similar(word: str, known: Iterable[str]) -> str:
+    """Return the known name that is most similar to *word*, or an empty text if none is."""
+    return _find_similar(word, tuple(sorted(set(known))))
+
+
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """Return the advice at the end of a message about the unknown *word*.
 

@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 
 from msgspec import Struct
+from msgspec.structs import replace
 
 from sysmlc.diagnostics.diagnostic import Diagnostic, Place, format_position
 from sysmlc.diagnostics.locations import Location, locate
@@ -74,7 +75,7 @@ def make_report(
     sources: Iterable[Source],
     shown_name: Callable[[str], str] = str,
 ) -> Report:
-    """Return the diagnostics with lines, columns, excerpts and XPaths.
+    """Return the diagnostics with lines, columns, excerpts and XPaths, one for each fact.
 
     *shown_name* converts the name of a file in the compile unit to the name that users see, which
     is usually relative to the working folder.
@@ -82,7 +83,66 @@ def make_report(
     diagnostics = list(diagnostics)
     places = [d.subject.place for d in diagnostics if d.subject.place]
     locations = locate(sources, places, with_xpath=True)
-    return Report(tuple(_make_finding(d, locations, shown_name) for d in diagnostics))
+    findings = (_make_finding(d, locations, shown_name) for d in diagnostics)
+    return Report(tuple(_merge_facts(findings)))
+
+
+# -- findings about one fact -------------------------------------------------------------------
+
+
+def _merge_facts(findings: Iterable[Finding]) -> list[Finding]:
+    """Return the first finding about each fact in a file, with a note for each further one.
+
+    Findings of one severity with the same cause are about one fact. So are warnings and infos of
+    one rule with the same message; errors are not, because each of them has to be corrected.
+    """
+    return _merge(_merge(findings, _key_by_cause), _key_by_message)
+
+
+def _key_by_cause(finding: Finding) -> tuple[str, ...]:
+    diagnostic = finding.diagnostic
+    return (finding.file, diagnostic.severity, diagnostic.cause) if diagnostic.cause else ()
+
+
+def _key_by_message(finding: Finding) -> tuple[str, ...]:
+    diagnostic = finding.diagnostic
+    is_error = diagnostic.is_error
+    return () if is_error else (finding.file, diagnostic.rule.code, diagnostic.message)
+
+
+def _merge(
+    findings: Iterable[Finding], key_of: Callable[[Finding], tuple[str, ...]]
+) -> list[Finding]:
+    """Return the findings, one for each key; those with an empty key are not merged."""
+    groups: dict[object, list[Finding]] = {}
+    for number, finding in enumerate(findings):
+        groups.setdefault(key_of(finding) or number, []).append(finding)
+    return [_add_places(first, others) for first, *others in groups.values()]
+
+
+def _add_places(finding: Finding, others: list[Finding]) -> Finding:
+    """Return a finding with the number of places of the fact, and notes about the others."""
+    if not others:
+        return finding
+    diagnostic = finding.diagnostic
+    places = {(each.where, each.diagnostic.subject.name) for each in (finding, *others)}
+    message = diagnostic.message + (f" ({len(places)} places)" if len(places) > 1 else "")
+    notes = [*diagnostic.notes]
+    for other in others:
+        notes += [_describe_other(finding, other), *other.diagnostic.notes]
+    merged = replace(diagnostic, message=message, notes=tuple(dict.fromkeys(notes)))
+    return replace(finding, diagnostic=merged)
+
+
+def _describe_other(finding: Finding, other: Finding) -> str:
+    """Return the place of another finding about the fact, with what differs in it."""
+    diagnostic, name = other.diagnostic, other.diagnostic.subject.name
+    where = f" ({other.where})" if other.where else ""
+    if name != finding.diagnostic.subject.name:
+        return f"also {name}{where}"
+    if diagnostic.message != finding.diagnostic.message:
+        return f"also: {diagnostic.message}{where}"
+    return f"also{where}"
 
 
 def _make_finding(

@@ -215,8 +215,9 @@ def check_bound(model: Model, node: Node) -> Iterator[Finding]:
 
 def check_notation(model: Model, node: Node) -> Iterator[Finding]:
     """Report a bound that the textual notation does not allow; interchange files may have any."""
+    reported = {finding.start for finding in check_bound(model, node)}
     for bound in node.members:
-        if bound.kind in _INSTANTIATIONS:
+        if bound.kind in _INSTANTIATIONS and bound.start not in reported:
             document = model.document(node)
             # Interchange files have no notation that could be violated.
             if document is not None and document.text:

@@ -74,7 +74,13 @@ def check_references(model: Model, document: Document, node: Node, sink: Sink) -
             broken.append((memberships.VARIATION_OF_VARIATION, facts_of_node))
         for broken_rule, facts in broken:
             place = make_subject(document, node, relation.reference.start)
-            sink.report(broken_rule, place, notes=(), help="", **facts)
+            sink.report(broken_rule, place, notes=(), help="", cause="", **facts)
+
+
+def refers_to_other_kind(node: Node) -> bool:
+    """Whether ``check_references`` reports that a usage refers to one of another kind."""
+    stated = iter_stated(node, frozenset({"ReferenceSubsetting"}))
+    return any(True for stated_pair in stated for _ in _find_other_kind(node, *stated_pair))
 
 
 def _find_other_kind(node: Node, relation: Relation, target: Node) -> Iterator[_Broken]:

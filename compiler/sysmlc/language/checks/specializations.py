@@ -6,6 +6,7 @@ from typing import NamedTuple
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.language.checks.findings import DECLARED_TYPES, Finding, iter_stated, name_of
 from sysmlc.language.checks.memberships import VARIATION_OF_VARIATION
+from sysmlc.language.checks.references import refers_to_other_kind
 from sysmlc.language.metaclasses import ALL_GENERALS, FEATURES, describe_kind, kinds_of
 from sysmlc.language.names import Model
 from sysmlc.language.tree import Document, Node, Relation, make_subject
@@ -282,7 +283,7 @@ TYPED_KINDS = frozenset(_REQUIREMENT_BY_KIND)
 def check_types(model: Model, document: Document, node: Node, sink: Sink) -> None:
     """Report a usage whose types do not meet the requirement of its kind."""
     requirement = _REQUIREMENT_BY_KIND.get(node.kind)
-    if requirement is None or not _is_resolved(node):
+    if requirement is None or not _is_resolved(node) or refers_to_other_kind(node):
         return
     types = _list_types(model, node)
     if all(type_.kind in requirement.kinds for type_ in types) and not (

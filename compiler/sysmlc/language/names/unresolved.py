@@ -285,6 +285,7 @@ def report_unresolved(
         sink.report(
             TOO_CIRCULAR,
             make_subject(document, node, _find_link_offset(document, reference, index)),
+            cause=f"circular name {name}",
             name=name,
         )
         return
@@ -292,6 +293,7 @@ def report_unresolved(
     sink.report(
         UNRESOLVED,
         make_subject(document, node, _find_link_offset(document, reference, index)),
+        cause=f"unknown name {name}{inside}",
         name=name,
         inside=inside,
         advice=_make_advice(

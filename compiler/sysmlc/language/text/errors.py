@@ -57,7 +57,7 @@ class Errors:
         place = Place(self._path, offset=byte_offset(self._tokens.text, self._source, offset))
         facts.setdefault("advice", "")
         notes = () if self._remaining else (_LAST_NOTE,)
-        self._sink.report(rule, Subject(place=place), help="", notes=notes, **facts)
+        self._sink.report(rule, Subject(place=place), help="", notes=notes, cause="", **facts)
 
     def report_depth(self, start: int) -> None:
         """Report that the text is nested too deep, and suppress the errors that follow from it."""

@@ -6,6 +6,7 @@ messages.
 
 import gc
 import re
+from bisect import bisect_left
 from collections.abc import Iterator
 from functools import cache
 
@@ -174,6 +175,7 @@ _STEPS = {
     "ForkNode",
     "Membership",
 }
+_MEMBER_BORDERS = (";", "{", "}")
 _IMPORTS = ("MembershipImport", "NamespaceImport")
 
 
@@ -187,6 +189,8 @@ def check_syntax(tokens: Tokens, errors: Errors) -> None:
             _check_import(node, errors)
         elif node.kind == "EnumerationDefinition":
             _check_enumeration(node, errors)
+        elif node.kind == "Definition":
+            _check_bare_definition(tokens, node, errors)
         elif node.owner is not None:
             _check_owner(node, node.owner, errors)
 
@@ -194,6 +198,18 @@ def check_syntax(tokens: Tokens, errors: Errors) -> None:
 def _check_import(node: Node, errors: Errors) -> None:
     if not node.visibility:
         errors.report(rules.VISIBILITY, node.start)
+
+
+def _check_bare_definition(tokens: Tokens, node: Node, errors: Errors) -> None:
+    """Report ``def`` without a kind; metadata before it, such as ``#tank``, gives the kind."""
+    if any(member.attributes.get("isPrefix") for member in node.members):
+        return
+    index = bisect_left(tokens.starts, node.start)
+    # Any other token before the member is an error already: a misspelt kind.
+    if index == 0 or tokens[index - 1] in _MEMBER_BORDERS or tokens[index - 1].startswith("/*"):
+        problem = "'def' goes with a keyword for the kind of the definition"
+        advice = "write the kind before it, such as 'part def'"
+        errors.report(rules.COMBINATION, node.start, problem=problem, advice=advice)
 
 
 def _check_enumeration(node: Node, errors: Errors) -> None:

@@ -95,10 +95,7 @@ class Activities(Struct, frozen=True):
         self._check_depth(graph, activity, sink)
         drawing = activity_drawing.read_drawing(graph, activity, sink)
         if not drawing.nodes:
-            is_bound = any(part.kind is Kind.TEMPLATE_BINDING for part in graph.owned(activity))
-            advice = "no contract is derived from the nodes of the template that it binds"
-            subject, name = graph.subject(activity), activity.name
-            sink.report(rules.EMPTY, subject, help=advice if is_bound else "", activity=name)
+            _report_empty(graph, activity, _describe_binding(graph, activity), sink)
             raise activity_drawing.CannotPlayError
         _check_order(graph, drawing, sink)
         # The order matters: the stores need the nodes, and the checks of guards need the stores.
@@ -134,12 +131,32 @@ def _check_order(graph: Graph, drawing: activity_drawing.Drawing, sink: Sink) ->
     By the letter of UML 2.5.1, 15.2.3, all its actions would start at once.
     """
     steps = drawing.list_steps()
+    if not steps and not drawing.flows:
+        _report_empty(graph, drawing.activity, "has no actions", sink)
+        raise activity_drawing.CannotPlayError
     is_single = len(steps) == 1 and steps[0].kind is not Kind.CONTROL
     if not steps or is_single or drawing.flows or drawing.handlers:
         return
     activity = drawing.activity
     sink.report(rules.UNORDERED, graph.subject(activity), activity=activity.name)
     raise activity_drawing.CannotPlayError
+
+
+def _describe_binding(graph: Graph, activity: Element) -> str:
+    """Return what an activity without nodes is: empty, or a template with actual parameters."""
+    for part in graph.owned(activity):
+        if part.kind is Kind.TEMPLATE_BINDING:
+            template = graph.target(part, Edge.BINDS)
+            name = "a template" if template is None else f"template '{template.name}'"
+            return f"binds {name}, whose nodes it does not copy"
+    return "has no nodes"
+
+
+def _report_empty(graph: Graph, activity: Element, fault: str, sink: Sink) -> None:
+    name = activity.name or graph.qualified_name(activity)
+    # Bound templates are one fact of a file, because tools such as those for Alf generate many.
+    cause = "bound templates" if "binds" in fault else ""
+    sink.report(rules.EMPTY, graph.subject(activity), cause=cause, activity=name, fault=fault)
 
 
 def _analyse_behaviours(graph: Graph) -> _OtherBehaviours:

@@ -12,6 +12,7 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, query
 from sysmlc.logic.activities.saturation import Possibility, find_saturating_writes
 from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.expressions.context import describe_missing_range
 from sysmlc.logic.expressions.elaboration import ElaborationError, Fault
 from sysmlc.logic.expressions.expression import Expression
 from sysmlc.logic.expressions.features import Feature
@@ -194,14 +195,17 @@ class Refusal(Struct, frozen=True):
     advice: str
 
 
-NO_FINITE_DOMAIN = Refusal("it has not finitely many values", "give it a type that has")
-NO_RANGE = Refusal("it has no range", "give it a range (constraint 0 <= {name} <= 9)")
+NO_FINITE_DOMAIN = Refusal(
+    "it has no finite type", "type it by a Boolean, an enumeration or an Integer"
+)
+NO_RANGE = Refusal("it has no range", "constrain it ({name} >= 0 and {name} <= 9)")
 GIVEN_OR_CONSTANT = Refusal(
     "others decide it too", "assign to a feature that is neither given nor constant"
 )
 OTHER_OBJECT = Refusal("it belongs to another object", "let the object itself do it (an operation)")
 UNKNOWN_VALUE = Refusal(
-    "its new value is unknown", "write the value as an expression over known properties"
+    "the contract does not follow the assigned value",
+    "assign an expression over properties in an opaque action",
 )
 
 
@@ -218,6 +222,12 @@ class UntrackedFeature(Struct, frozen=True):
     writers: tuple[str, ...]
 
 
+def _describe_cause(untracked: UntrackedFeature) -> str:
+    """Return the cause of the findings that the contracts of several activities have."""
+    id = untracked.feature.id
+    return describe_missing_range(id) if untracked.refusal is NO_RANGE else f"untracked {id}"
+
+
 def report_untracked(
     graph: Graph, activity: Element, untracked: Iterable[UntrackedFeature], sink: Sink
 ) -> None:
@@ -226,6 +236,7 @@ def report_untracked(
         sink.report(
             UNTRACKED,
             graph.subject(feature.feature),
+            cause=_describe_cause(feature),
             activity=activity.name,
             name=feature.feature.name,
             writers=" and ".join(feature.writers),

@@ -96,7 +96,9 @@ class _Checker:
         if overlap and (is_judged or not any(_is_replaced(edge) for edge in overlap)):
             names = " and ".join(self._describe_branch(edge) for edge in overlap)
             subject = self.graph.subject(self.graph[node.origin])
-            self.sink.report(rules.OVERLAP, subject, node=node.label, branches=names)
+            is_decision = self.graph[node.origin].subkind == "decision"
+            advice = "" if is_decision else rules.FORK_ADVICE
+            self.sink.report(rules.OVERLAP, subject, help=advice, node=node.label, branches=names)
         return replace(node, exclusive=not overlap, exhaustive=is_exhaustive)
 
     def _list_open_branches(self, guarded: list[TokenEdge]) -> list[list[TokenEdge]] | None:
@@ -141,9 +143,17 @@ class _Checker:
         for node in sorted(unreachable, key=lambda n: self._has_unreachable_source(n, reachable)):
             if node.id not in covered:
                 subject = self.graph.subject(self.graph[node.origin])
-                self.sink.report(rules.UNREACHABLE, subject, node=node.label)
+                advice = self._advise_on_unreachable(node)
+                self.sink.report(rules.UNREACHABLE, subject, help=advice, node=node.label)
                 covered |= find_reachable([node.id], self._find_successors)
         return reachable
+
+    def _advise_on_unreachable(self, node: TokenNode) -> str:
+        for edge in self.tokens.incoming(node):
+            origin = self.graph[self.tokens.node(edge.source).origin]
+            if origin.subkind == "raise":
+                return rules.RAISE_ADVICE.format(action=origin.name or "without name")
+        return ""
 
     def _is_start(self, edge: TokenEdge) -> bool:
         return edge.marked and edge.region == ACTIVITY_REGION
@@ -191,13 +201,30 @@ class _Checker:
     def _require_safe(self, result: activity_search.SafetyResult, limit: int) -> None:
         if result.unsafe:
             label, origin = self._locate(result.unsafe)
-            self.sink.report(rules.UNSAFE, self.graph.subject(self.graph[origin]), flow=label)
+            subject = self.graph.subject(self.graph[origin])
+            self.sink.report(rules.UNSAFE, subject, help=self._advise_on(result.unsafe), flow=label)
             raise CannotPlayError
         if not result.is_complete:
             subject = self.graph.subject(self.activity)
             name = self.activity.name
             self.sink.report(rules.TOO_LARGE, subject, activity=name, limit=limit)
             raise CannotPlayError
+
+    def _advise_on(self, unsafe: str) -> str:
+        """Return how to avoid a second token, or "" for the advice of the rule.
+
+        An accept action without incoming flows accepts again and again, so that a second token may
+        follow the first on all flows after it.
+        """
+        sources = {unsafe, *(edge.source for edge in self.tokens.edges if edge.id == unsafe)}
+        for edge in self.tokens.edges:
+            is_listening = edge.source == edge.target and edge.origin == edge.source
+            reachable: set[str] = find_reachable([edge.source], self._find_successors)
+            if is_listening and sources & reachable:
+                return rules.LISTENING_ADVICE.format(action=self.tokens.node(edge.source).label)
+        origin = self.graph.get(self._locate(unsafe)[1])
+        is_store = origin is not None and origin.kind in (Kind.OBJECT_NODE, Kind.DATA_STORE)
+        return rules.BUFFER_ADVICE if is_store else ""
 
     def _locate(self, id: str) -> tuple[str, str]:
         """Return the label and the origin of an edge or node."""

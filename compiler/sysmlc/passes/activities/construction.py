@@ -242,7 +242,7 @@ def _find_called_name(draft: Draft, node: Element) -> str:
 def _check_pins(draft: Draft, node: Element) -> None:
     connected = {flow.target_pin.id for flow in draft.incoming[node.id] if flow.target_pin}
     # The exception fills the input pin of a handler body, without a drawn flow.
-    if node.id in draft.chained:
+    if node.id in draft.chained or _redefines_inherited_step(draft, node):
         return
     for pin in draft.graph.owned(node):
         is_input = pin.kind is Kind.PIN and pin.attrs.get("direction") == "in"
@@ -253,6 +253,15 @@ def _check_pins(draft: Draft, node: Element) -> None:
             subject = draft.graph.subject(pin)
             label = draft.drawing.labels[node.id]
             draft.sink.report(rules.OPEN_PIN, subject, pin=pin.name or pin.subkind, node=label)
+
+
+def _redefines_inherited_step(draft: Draft, node: Element) -> bool:
+    """Whether an action of SysML v2 redefines or subsets a feature, which gives it its arguments.
+
+    An example is the function that evaluates the alternatives of a trade study.
+    """
+    called = draft.graph.targets(node, Edge.CALLS)
+    return draft.follows_v2 and any(element.kind not in query.BEHAVIORS for element in called)
 
 
 def _check_shape(draft: Draft, node: Element) -> None:

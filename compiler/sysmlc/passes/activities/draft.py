@@ -5,6 +5,7 @@ from itertools import pairwise
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, Kind, query
 from sysmlc.ir.element import derived_id
+from sysmlc.ir.pending import TextFile
 from sysmlc.logic.activities.token_graph import Guard, NodeKind, TokenEdge, TokenNode
 from sysmlc.logic.identifiers import identifier
 from sysmlc.passes.activities.drawing import Drawing, Flow, flow_label
@@ -14,6 +15,8 @@ from sysmlc.passes.activities.inputs import DecisionInput, Inputs
 
 class Draft:
     """The nodes and edges added so far, and tables that the modules of this package share.
+
+    ``follows_v2`` states whether the activity follows the rules of SysML v2 instead of UML.
 
     The tables have ids as keys:
 
@@ -34,6 +37,7 @@ class Draft:
         self, graph: Graph, drawing: Drawing, inputs: Inputs, raising: Raising, sink: Sink
     ) -> None:
         self.graph = graph
+        self.follows_v2 = TextFile(drawing.activity.source) in graph.derived(TextFile)
         self.raising = raising
         self.drawing = drawing
         self.inputs = inputs

@@ -135,7 +135,9 @@ def _find_exit(draft: Draft, flow: Flow) -> tuple[str, bool, str | None]:
     marked = kind is NodeKind.INITIAL
     flows_from_pin = [g for g in draft.outgoing[node.id] if g.source_pin is flow.source_pin]
     holds = kind in (NodeKind.INITIAL, NodeKind.MERGE) and node.kind is not Kind.DATA_STORE
-    if (holds or flow.source_pin is not None) and len(flows_from_pin) > 1:
+    has_choice = (holds or flow.source_pin is not None) and len(flows_from_pin) > 1
+    # In SysML v2 only 'decide' chooses: all other successions and flows of a node are taken.
+    if has_choice and not draft.follows_v2:
         region = draft.drawing.region[node.id]
         source = draft.exit_of(node)
         choice = _ensure_exit_choice(draft, flow, flow.source_pin or node, source, region, marked)

@@ -18,6 +18,7 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.expressions.context import context_of, report_range
 from sysmlc.logic.expressions.elaboration import (
+    FINITE_ADVICE,
     ElaborationError,
     Fault,
     GuardedValue,
@@ -39,12 +40,14 @@ _CLASSIFIERS = (Kind.CLASS, Kind.COMPONENT, Kind.DATA_TYPE, Kind.INTERFACE, Kind
 class UnreadableError(ValueError):
     """The text is not a condition over known properties; the message gives the reason.
 
-    ``unknown`` is the first unknown name, or "" if the text has another fault.
+    ``unknown`` is the first unknown name, or "" if the text has another fault. ``advice`` says how
+    to correct the text; without it the advice of the rule applies.
     """
 
-    def __init__(self, message: str, unknown: str = "") -> None:
+    def __init__(self, message: str, unknown: str = "", advice: str = "") -> None:
         super().__init__(message)
         self.unknown = unknown
+        self.advice = advice
 
 
 class Scope:
@@ -123,8 +126,11 @@ class Scope:
         except ExpressionError as error:
             raise UnreadableError(str(error)) from None
         except ElaborationError as error:
-            unknown = error.name if error.fault is Fault.UNKNOWN else ""
-            raise UnreadableError(str(error), unknown) from None
+            if error.fault is Fault.UNKNOWN:
+                message = f"'{error.name}' is not a property of the activity or its owner"
+                raise UnreadableError(message, error.name) from None
+            advice = FINITE_ADVICE if error.fault is Fault.UNSUPPORTED else ""
+            raise UnreadableError(str(error), advice=advice) from None
         return formula, [
             v for v in map(self._make_input, _variable_names(formula)) if v is not None
         ]
@@ -218,22 +224,30 @@ class Inputs:
                 formula, variables = self._scope.read(text)
             except UnreadableError as error:
                 if not error.unknown or not self._scope.is_condition(text, error.unknown):
-                    return self._declare_unreadable(text, origin, what, str(error))
-                replacement = self._declare_unreadable(error.unknown, origin, what, str(error))
+                    return self._declare_unreadable(text, origin, what, error)
+                replacement = self._declare_unreadable(error.unknown, origin, what, error)
                 self._scope.declare(error.unknown, replacement)
                 continue
             for variable in variables:
                 self.variables.setdefault(variable.name, variable)
             return formula
 
-    def _declare_unreadable(self, text: str, origin: Element, what: str, reason: str) -> Formula:
+    def _declare_unreadable(
+        self, text: str, origin: Element, what: str, error: "UnreadableError"
+    ) -> Formula:
         name = self._by_text.get(text)
         if name is None:
             name = self._declare(identifier(text, "condition"), BooleanDomain(), origin)
             self._by_text[text] = name
         subject = self.graph.subject(origin)
         self._sink.report(
-            rules.UNREADABLE, subject, what=what, text=text, reason=reason, variable=name
+            rules.UNREADABLE,
+            subject,
+            help=error.advice,
+            what=what,
+            text=text,
+            reason=str(error),
+            variable=name,
         )
         return f.var(name)
 

@@ -6,7 +6,7 @@ NO_START = rule(
     "SM450",
     "activity-without-start",
     Severity.WARNING,
-    "activity '{activity}' can't start: it has no initial node, no input parameter and no action "
+    "activity '{activity}' cannot start: it has no initial node, no input parameter and no action "
     "without incoming flows",
     help="add an initial node with a flow to the first action",
 )
@@ -22,8 +22,10 @@ UNREACHABLE = rule(
     "unreachable-activity-node",
     Severity.WARNING,
     "no token ever reaches {node}",
-    help="connect it, or delete it",
+    help="let a flow or an exception lead to it, or delete it",
 )
+RAISE_ADVICE = "action '{action}' always raises an exception: lead the flow from another node"
+"""Advice on UNREACHABLE for the nodes after a raise action."""
 NEVER_FIRES = rule(
     "SM453",
     "node-waits-forever",
@@ -38,6 +40,13 @@ UNSAFE = rule(
     "{flow} may get a second token while it still holds one; the activity gets no contract",
     help="bring parallel branches together in a join node",
 )
+LISTENING_ADVICE = (
+    "{action} accepts again and again, because no flow leads to it: lead a flow from an initial "
+    "node to it, and a flow back from the last action if it accepts again"
+)
+"""Advice on UNSAFE for the flows after an accept action without incoming flows."""
+BUFFER_ADVICE = "let the values arrive one after the other; a contract has one Boolean for the node"
+"""Advice on UNSAFE for object nodes."""
 TOO_LARGE = rule(
     "SM455",
     "activity-too-large-to-check",
@@ -55,7 +64,7 @@ MISSING_BRANCH = rule(
     Severity.WARNING,
     "{node} has no branch for the case that none of its guards holds ({guards}); the token "
     "waits there",
-    help="give one of the branches the guard else",
+    help="add a branch with the guard else, or guards for the other cases",
 )
 OVERLAP = rule(
     "SM457",
@@ -64,12 +73,13 @@ OVERLAP = rule(
     "several branches of {node} may be open at the same time: {branches}",
     help="make the guards exclude each other, or give one of the branches the guard else",
 )
+FORK_ADVICE = "add a fork if all flows are meant to be taken, or a decision with guards"
+"""Advice on OVERLAP for several flows that leave an initial node, a merge or a pin."""
 UNREADABLE = rule(
     "SM458",
     "guard-in-plain-words",
     Severity.WARNING,
-    "{what} '{text}' is not an expression over known properties ({reason}); it becomes the input "
-    "{variable}",
+    "{what} '{text}' has no formula: {reason}; it becomes the input '{variable}'",
     help="write it as an expression over properties of the block, for example 'angle > 90'",
 )
 WEIGHT = rule(
@@ -126,8 +136,8 @@ EMPTY = rule(
     "SM469",
     "activity-without-nodes",
     Severity.INFO,
-    "activity '{activity}' has no nodes",
-    help="draw it, or give it a body",
+    "activity '{activity}' {fault}; it gets no contract",
+    help="draw actions in it if it needs a contract",
 )
 SHARED_EVENT = rule(
     "SM470",
@@ -176,8 +186,8 @@ OTHER_VALUES = rule(
     "SM476",
     "decision-drops-other-values",
     Severity.INFO,
-    "{node} has branches for the values {guards} only; a token with another value ends there",
-    help="give one of the branches the guard else if the others matter",
+    "{node} has no branch for values other than {guards}; a token with another value ends there",
+    help="add a branch with the guard else if the other values matter",
 )
 PARALLEL_EXPANSION = rule(
     "SM477",

@@ -172,7 +172,21 @@ class _StoreTracker:
             *(variable for variable in new_inputs if variable is not None),
         )
         inputs = tuple(variable for variable in inputs if variable.name not in stored)
-        return replace(self.tokens, inputs=inputs, stores=stores)
+        shared = tuple(self._make_store(name) for name in self.writes if self._is_only_shared(name))
+        names = {variable.name for variable in inputs} | stored
+        read = sorted(self._read_by_values(store.variable.name for store in shared) - names)
+        shared_inputs = (self.scope.declare_input(name) for name in read)
+        return replace(
+            self.tokens,
+            inputs=inputs,
+            stores=stores,
+            shared=shared,
+            shared_inputs=tuple(variable for variable in shared_inputs if variable is not None),
+        )
+
+    def _is_only_shared(self, name: str) -> bool:
+        """Whether the variable is not tracked for no other reason than its other writers."""
+        return self._find_own_refusal(name) is None and self._find_refusal(name) is not None
 
     def _select_tracked(self) -> set[str]:
         """Return the variables to track: visible ones, and those that guards or values read."""
@@ -224,6 +238,14 @@ class _StoreTracker:
 
     def _find_refusal(self, name: str) -> Refusal | None:
         """Return the reason why the contract cannot track the variable, or None."""
+        refusal = self._find_own_refusal(name)
+        if refusal is not None or self._is_local(self.features[name]):
+            return refusal
+        writer = self._find_other_writer(self.features[name])
+        return None if writer is None else refuse_shared(find_label(self.graph, writer))
+
+    def _find_own_refusal(self, name: str) -> Refusal | None:
+        """Return a reason that does not depend on other behaviours, or None."""
         feature = self.features[name]
         if feature.domain is None:
             return NO_FINITE_DOMAIN
@@ -233,10 +255,7 @@ class _StoreTracker:
             return GIVEN_OR_CONSTANT
         if self.scope.belongs_to_another_object(name):
             return OTHER_OBJECT
-        if name in self.refusals:
-            return self.refusals[name]
-        writer = None if self._is_local(feature) else self._find_other_writer(feature)
-        return None if writer is None else refuse_shared(find_label(self.graph, writer))
+        return self.refusals.get(name)
 
     def _make_store(self, name: str) -> Store:
         feature = self.features[name]

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from msgspec import Struct
 
-from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir.query import CLASSIFIERS, tag
 from sysmlc.passes.classify.constraints import add_bindings, check_constraints
@@ -40,7 +40,7 @@ UNKNOWN_STEREOTYPE = rule(
     "SM211",
     "unknown-stereotype",
     Severity.INFO,
-    "no profile of the compile unit defines stereotype {stereotype} (applied: {count})",
+    "no profile of the compile unit defines {stereotypes} (applied: {count})",
     help="give the file of the profile as a further input",
 )
 OPTIONAL_WITH_VALUE = rule(
@@ -51,6 +51,7 @@ OPTIONAL_WITH_VALUE = rule(
     help="give the parameter the multiplicity 0..1, or remove «optional»",
 )
 
+_MAX_LISTED = 8
 _Meanings = dict[str, tuple[str, ...]]
 
 
@@ -123,8 +124,19 @@ def _find_meanings(
         meanings[id] = meanings_of_sysml(similar) if similar else find_meanings(lineage)
         if similar or _has_unknown_stereotype(graph, application, lineage):
             doubtful.setdefault((_full_name(application), similar), []).append(application)
+    unknown: dict[str, list[Element]] = {}
     for (name, similar), applications in doubtful.items():
-        _report_stereotype(graph, sink, name, similar, applications)
+        if similar:
+            subject, count = _find_subject(graph, applications), len(applications)
+            sink.report(LOOK_ALIKE, subject, stereotype=name, known=similar, count=count)
+        else:
+            namespace = str(applications[0].attrs.get("namespace", ""))
+            unknown.setdefault(namespace, []).extend(applications)
+    # A missing profile is one fact, however many of its stereotypes the model applies.
+    for namespace, applications in unknown.items():
+        subject, count = _find_subject(graph, applications), len(applications)
+        stereotypes = _list_stereotypes(namespace, applications)
+        sink.report(UNKNOWN_STEREOTYPE, subject, stereotypes=stereotypes, count=count)
     return meanings
 
 
@@ -163,21 +175,17 @@ def _full_name(application: Element) -> str:
     return f"{application.attrs.get('stereotype', '')} ({namespace})"
 
 
-def _report_stereotype(
-    graph: Graph, sink: Sink, name: str, similar: str, applications: list[Element]
-) -> None:
-    bases = [
-        subject
-        for application in applications
-        for subject in graph.targets(application, Edge.SUBJECT)
-    ]
-    sink.report(
-        LOOK_ALIKE if similar else UNKNOWN_STEREOTYPE,
-        graph.subject(bases[0] if bases else applications[0]),
-        stereotype=name,
-        known=similar,
-        count=len(applications),
-    )
+def _list_stereotypes(namespace: str, applications: list[Element]) -> str:
+    names = list(dict.fromkeys(str(a.attrs.get("stereotype", "")) for a in applications))
+    more = f" and {len(names) - _MAX_LISTED} more" if len(names) > _MAX_LISTED else ""
+    noun = "stereotype" if len(names) == 1 else "the stereotypes"
+    return f"{noun} {', '.join(names[:_MAX_LISTED])}{more} ({namespace})"
+
+
+def _find_subject(graph: Graph, applications: list[Element]) -> Subject:
+    """Return the first element to which one of the stereotypes is applied."""
+    bases = (base for a in applications for base in graph.targets(a, Edge.SUBJECT))
+    return graph.subject(next(bases, applications[0]))
 
 
 # -- roles and levels --------------------------------------------------------------------------

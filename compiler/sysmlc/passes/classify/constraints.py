@@ -46,7 +46,8 @@ def _check_usage(graph: Graph, sink: Sink, usage: Element) -> None:
     unresolved = usage.attrs.get("unresolved")
     if type_ is None and not (isinstance(unresolved, tuple) and "typed-by" in unresolved):
         sink.report(NO_CONSTRAINT_BLOCK, graph.subject(usage), property=name)
-    if type_ is not None:
+    # In SysML v2 a value, such as another predicate, stands for the whole usage.
+    if type_ is not None and "default" not in usage.attrs:
         type_features = features(graph, type_)
         unbound = [
             feature

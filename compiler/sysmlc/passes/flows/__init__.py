@@ -29,7 +29,7 @@ FLOW_AGAINST_PORT = rule(
     "flow-against-port",
     Severity.WARNING,
     "item flow '{flow}' {way} port '{port}', whose direction is {direction}",
-    help="reverse the item flow, or conjugate the port",
+    help="reverse the item flow, conjugate the port, or choose another type for it",
 )
 FLOW_ITEM = rule(
     "SM311",
@@ -64,7 +64,7 @@ CONNECTOR_DIRECTIONS = rule(
     "connector-directions",
     Severity.WARNING,
     "connector '{connector}' joins {first} '{one}' with {second} '{other}'",
-    help="conjugate one of the ports, or connect another one",
+    help="conjugate one of the ports, choose another type for it, or connect another port",
 )
 CONNECTOR_TYPES = rule(
     "SM316",
@@ -188,7 +188,7 @@ def _runs_inside(graph: Graph, flow: Element, port: Element) -> bool:
 def _check_direction(
     graph: Graph, sink: Sink, flow: Element, port: Element, along: str, way: str
 ) -> None:
-    if port.attrs.get("direction") != opposite(along):
+    if not _runs_against(port, along):
         return
     sink.report(
         FLOW_AGAINST_PORT,
@@ -198,6 +198,10 @@ def _check_direction(
         port=graph.qualified_name(port),
         direction=port.attrs["direction"],
     )
+
+
+def _runs_against(port: Element, along: str) -> bool:
+    return bool(port.attrs.get("direction") == opposite(along))
 
 
 def _check_items(graph: Graph, sink: Sink, flow: Element, port: Element) -> None:
@@ -283,7 +287,13 @@ def _check_connector(graph: Graph, sink: Sink, connector: Element) -> None:
     if len(roles) != 2 or not all(role is not None and role.kind is Kind.PORT for role in roles):
         return
     ports = [role for role in roles if role is not None]
-    if not _has_matching_directions(graph, connector_ends):
+    # The finding about a flow that runs against a port (SM310) is about the same fact.
+    is_reported = any(
+        _runs_against(port, along)
+        for flow in graph.sources(connector, Edge.REALIZING)
+        for port, along, _ in _list_port_ends(graph, flow)
+    )
+    if not is_reported and not _has_matching_directions(graph, connector_ends):
         _report_directions(graph, sink, connector, connector_ends, ports)
     _check_types(graph, sink, connector, ports)
 

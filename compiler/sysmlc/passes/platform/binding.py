@@ -5,13 +5,47 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
 
-from sysmlc.diagnostics import Sink
+from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.passes.platform import rules
 from sysmlc.recipe.model import Machine, Model, Service
 from sysmlc.recipe.plant import Binding, Plant, PlantElement, is_in_plant
 from sysmlc.support.suggestions import did_you_mean
 
+NOT_IN_PLANT = rule(
+    "SM624",
+    "machine-not-in-plant",
+    Severity.WARNING,
+    "machine '{machine}' is bound to no element of the plant",
+    help="name the element: by amlId of «Machine», an allocation, or the overlay",
+)
+SEVERAL_ELEMENTS = rule(
+    "SM625",
+    "machine-is-several-elements",
+    Severity.ERROR,
+    "machine '{machine}' is bound to {number} elements of the plant: {elements}",
+    help="bind it to one of them, or model a machine for each",
+)
+NO_PLANT_ELEMENT = rule(
+    "SM626",
+    "allocated-to-no-plant-element",
+    Severity.WARNING,
+    "'{source}' is allocated to '{target}', which is no element of the plant",
+    help="allocate it to the element of the instance hierarchy",
+)
+UNKNOWN_ID = rule(
+    "SM628",
+    "plant-id-unknown",
+    Severity.ERROR,
+    "machine '{machine}' has the amlId '{id}', which no element of the plant has",
+    help="take the ID of an InternalElement of the plant",
+)
+SHARED = rule(
+    "SM629",
+    "machines-share-element",
+    Severity.WARNING,
+    "the machines {machines} are one element of the plant: '{element}'",
+    help="merge these machines, or allocate them to different elements",
+)
 _OVERLAY = ".overlay.yaml"
 
 
@@ -253,7 +287,7 @@ def _report_misplaced(
     context: Context, name: str, element: Element, target: Element, statement_source: Element
 ) -> None:
     context.sink.report(
-        rules.NO_PLANT_ELEMENT,
+        NO_PLANT_ELEMENT,
         context.graph.subject(statement_source if statement_source.source else element),
         source=name,
         target=context.graph.qualified_name(target),
@@ -264,7 +298,7 @@ def _report_several(context: Context, machine: Machine, elements: list[PlantElem
     names = [f"'{_name_of(context, element)}'" for element in elements[:_MAX_LISTED]]
     more = f" and {len(elements) - _MAX_LISTED} more" if len(elements) > _MAX_LISTED else ""
     context.sink.report(
-        rules.SEVERAL_ELEMENTS,
+        SEVERAL_ELEMENTS,
         context.graph.subject(context.graph[machine.element]),
         machine=machine.id,
         number=len(elements),
@@ -277,16 +311,14 @@ def _report_missing(context: Context, machine: Machine) -> None:
     suggestion = context.suggest_similar(element.name)
     advice = suggestion or "name the element: by amlId of «Machine», an allocation, or the overlay"
     subject = context.graph.subject(element)
-    context.sink.report(
-        rules.NOT_IN_PLANT, subject, help="{advice}", machine=machine.id, advice=advice
-    )
+    context.sink.report(NOT_IN_PLANT, subject, help="{advice}", machine=machine.id, advice=advice)
 
 
 def _report_unknown_id(context: Context, machine: Machine) -> None:
     element = context.graph[machine.element]
     suggestion = context.suggest_similar(machine.aml_id) or context.suggest_similar(element.name)
     context.sink.report(
-        rules.UNKNOWN_ID,
+        UNKNOWN_ID,
         context.graph.subject(element),
         help="{advice}",
         machine=machine.id,
@@ -303,7 +335,7 @@ def _report_shared(context: Context, bindings: list[Binding]) -> None:
         if len(machines) > 1:
             first = context.graph[context.machines[machines[0]].element]
             context.sink.report(
-                rules.SHARED,
+                SHARED,
                 context.graph.subject(first),
                 machines=", ".join(f"'{machine}'" for machine in machines),
                 element=_name_of(context, context.bound_elements[plant]),

@@ -3,12 +3,34 @@
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
+from sysmlc.diagnostics import Severity, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.passes.platform import rules
 from sysmlc.passes.platform.binding import Context, list_allocations, report_misplaced_services
 from sysmlc.recipe.model import Service
 from sysmlc.recipe.plant import Binding, Offer, PlantElement
 from sysmlc.support.suggestions import did_you_mean
+
+NOBODY_OFFERS = rule(
+    "SM623",
+    "service-nobody-offers",
+    Severity.WARNING,
+    "no element of the plant offers the service '{service}'",
+    help="add the operation to the block of its machine, in the overlay of the plant",
+)
+PARAMETERS_DIFFER = rule(
+    "SM627",
+    "parameters-of-service-differ",
+    Severity.WARNING,
+    "operation '{operation}' of '{element}' does not offer the service '{service}': {difference}",
+    help="make the parameters equal, or allocate the service to the operation that is meant",
+)
+OPERATION_ASTRAY = rule(
+    "SM630",
+    "operation-of-another-element",
+    Severity.WARNING,
+    "service '{service}' is allocated to operation '{operation}', which {elements} does not have",
+    help="allocate the service to an operation of its machine, or add that machine to the service",
+)
 
 
 class _Site(NamedTuple):
@@ -151,7 +173,7 @@ def _report_mismatches(
         if operation.id not in reported and (not offers or site.machine):
             reported.add(operation.id)
             context.sink.report(
-                rules.PARAMETERS_DIFFER,
+                PARAMETERS_DIFFER,
                 subject,
                 service=service.id,
                 operation=operation.name,
@@ -160,7 +182,7 @@ def _report_mismatches(
             )
     if not offers and not mismatches and sites and _needs_offer(service):
         context.sink.report(
-            rules.NOBODY_OFFERS,
+            NOBODY_OFFERS,
             subject,
             help="{advice}",
             service=service.id,
@@ -203,7 +225,7 @@ def _report_foreign_operations(
         is_chosen = candidate.how in ("allocation", "overlay")
         if is_chosen and sites and candidate.operation.id not in offering_ids:
             context.sink.report(
-                rules.OPERATION_ASTRAY,
+                OPERATION_ASTRAY,
                 context.graph.subject(context.graph[candidate.by]),
                 service=service.id,
                 operation=context.graph.qualified_name(candidate.operation),

@@ -39,8 +39,8 @@ MISSING_LIBRARY = rule(
     "SM152",
     "missing-library",
     Severity.WARNING,
-    "'{library}' is not part of the compile unit; its elements ({count}) are known by name only",
-    help="give the file '{library}' as a further input",
+    "'{library}' is not part of the compile unit; the model refers to {count} of its elements",
+    help="give the file '{file}' as a further input{origin}",
 )
 UNKNOWN_IN_LIBRARY = rule(
     "SM153",
@@ -94,6 +94,7 @@ def _report_broken(graph: Graph, sink: Sink, use: Use) -> None:
     sink.report(
         BROKEN_REFERENCE if use.edge else BROKEN_ID,
         subject,
+        cause=f"missing {use.target}",
         relation=use.relation,
         element=subject.name,
         target=use.target,
@@ -108,6 +109,8 @@ def _subject(graph: Graph, use: Use) -> Subject:
 
 
 _MAX_LISTED = 10
+_INSTALLED = ("pathmap:", "platform:/plugin")
+"""Beginnings of the addresses of files that belong to plug-ins of Eclipse."""
 
 
 def report_libraries(graph: Graph, sink: Sink, external: dict[str, list[UseGroup]]) -> None:
@@ -140,7 +143,9 @@ def _report_library(
 ) -> None:
     first = min((use for uses in missing.values() for use in uses), key=Use.location)
     file, ordinal, _ = first.location()
-    lines = [_describe_loss(graph, href, missing[href]) for href in sorted(missing)]
+    descriptions = (_describe_loss(graph, href, missing[href]) for href in sorted(missing))
+    lines = list(dict.fromkeys(descriptions))
+    is_installed = library.startswith(_INSTALLED)
     more = [f"and {len(lines) - _MAX_LISTED} more"] if len(lines) > _MAX_LISTED else []
     sink.report(
         rule,
@@ -148,6 +153,8 @@ def _report_library(
         notes=(*lines[:_MAX_LISTED], *more),
         library=library,
         count=len(missing),
+        file=library.rpartition("/")[2],
+        origin="; the modelling tool installs it with its plug-ins" if is_installed else "",
     )
 
 

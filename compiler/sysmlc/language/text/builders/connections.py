@@ -287,6 +287,10 @@ def _build_tail_usage(
     kind = tail.kind or _KINDS_WITHOUT_DECLARATION.get(tail.word, "ConnectionUsage")
     membership = "" if kind == "Membership" else FEATURE
     node = apply_tail(make_node(kind, membership, tokens, begin, stop), tail, tokens)
+    if tail.word in ("of", "from"):
+        text = f"'{tail.word}' goes with flows and messages, not with a bare declaration"
+        fault = BuildFault("combination", node.start, text, f"write 'flow {tail.word}'")
+        tokens.build_faults.append(fault)
     if kind.endswith("ActionUsage") or kind == "Membership":
         tokens.restricted_nodes.append(node)
     return finish_usage(node, tokens, stop, body or [])

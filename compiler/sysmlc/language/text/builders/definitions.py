@@ -100,7 +100,7 @@ def _make_definition(
     node.relations += [Relation("Subclassification", name) for name in general or ()]
     if isinstance(body, ParallelBody):
         _mark_parallel(node, tokens)
-    if kind == "EnumerationDefinition":
+    if kind in ("EnumerationDefinition", "Definition"):
         tokens.restricted_nodes.append(node)
     return add_members(node, body)
 

@@ -10,7 +10,7 @@ from sysmlc.language.text.builders.declarations import (
 from sysmlc.language.text.builders.definitions import finish_usage
 from sysmlc.language.text.builders.nodes import FEATURE, make_node
 from sysmlc.language.text.builders.usages import Prefix, apply_prefixes
-from sysmlc.language.text.lexer import Tokens
+from sysmlc.language.text.lexer import BuildFault, Tokens
 from sysmlc.language.tree import Node, Reference, Relation
 
 _SUBACTION = "StateSubactionMembership"
@@ -30,6 +30,24 @@ _REFERRING_KINDS = {
     "do": ("PerformActionUsage", _SUBACTION, "do"),
     "exit": ("PerformActionUsage", _SUBACTION, "exit"),
 }
+
+_DECLARED_AS = {
+    "perform": "action",
+    "exhibit": "state",
+    "include": "use case",
+    "event": "occurrence",
+    "assert": "constraint",
+    "satisfy": "requirement",
+    "assume": "constraint",
+    "require": "constraint",
+    "frame": "concern",
+    "verify": "requirement",
+    "render": "rendering",
+    "entry": "action",
+    "do": "action",
+    "exit": "action",
+}
+"""The keyword that may stand between each of these words and the declaration of a new usage."""
 
 
 def _build_assertion_keyword(
@@ -90,9 +108,20 @@ def _build_declaration(
     subject: Reference | None,
     body: list[Node],
 ) -> Node:
+    _check_keyword(tokens, referrer, node)
     return finish_usage(
         _add_subject(_make_usage(tokens, stop, begin, referrer, node), subject), tokens, stop, body
     )
+
+
+def _check_keyword(tokens: Tokens, referrer: int | tuple[str, bool], node: Node) -> None:
+    """Record a fault for a keyword that does not go with the word before it."""
+    word = tokens[referrer] if isinstance(referrer, int) else referrer[0]
+    keyword = _DECLARED_AS[word]
+    if node.kind != f"{keyword.title().replace(' ', '')}Usage":
+        text = f"'{word}' goes with '{keyword}', not with this declaration"
+        advice = f"write '{word} {keyword}', or '{word}' before a name alone"
+        tokens.build_faults.append(BuildFault("combination", node.start, text, advice))
 
 
 def _build_prefixed(

@@ -1,0 +1,108 @@
+"""Guards and effects that the standard allows, but a contract cannot express, are no errors."""
+
+import pytest
+from pass_runs import derive_contracts
+
+TEXTS_OF_A_TRANSITION = """\
+Package p "Plant"
+  Class c "Gate"
+    -> classifier-behavior m
+    Property door "door" aggregation="composite"
+      -> typed-by d
+    Property count "count"
+      -> typed-by int
+    Property weight "weight"
+      -> typed-by real
+    Property word "word"
+      -> typed-by text
+    Operation fill "fill"
+      Parameter amount "amount" direction="in"
+    StateMachine m "Behaviour"
+      Region r
+        Pseudostate i subkind="initial"
+        State a "A"
+        Transition t0
+          -> flow-source i
+          -> flow-target a
+        Transition t1 {guard}
+          -> flow-source a
+          -> flow-target a
+          -> trigger tr
+          -> effect e
+          Trigger tr subkind="call"
+            -> typed-by fill
+          Activity e subkind="opaque" body="{effect}"
+  Class d "Door"
+    Property open "open"
+      -> typed-by bool
+    Property most "MOST" default=7 static=true
+      -> typed-by int
+  Association s "opens"
+    -> end s.gate s.key
+    Property s.gate "gate"
+      -> typed-by c
+    Property s.key "key"
+      -> typed-by d
+  DataType bool "Boolean"
+  DataType int "Integer"
+  DataType real "Real"
+  DataType text "String"
+"""
+
+
+def list_text_findings(guard="count > 3", effect="count := 1", language=""):
+    """Return the findings about a guard and an effect, except the assumed range."""
+    attributes = f'guard="{guard}"' + (f' guard_language="{language}"' if language else "")
+    text = TEXTS_OF_A_TRANSITION.replace("{guard}", attributes).replace("{effect}", effect)
+    _, _, sink = derive_contracts(text)
+    return [
+        f"{diagnostic.rule.code}: {diagnostic.message}"
+        for diagnostic in sink
+        if diagnostic.rule.code not in ("SM410", "SM428")
+    ]
+
+
+@pytest.mark.parametrize(
+    ("guard", "language", "reason"),
+    [
+        ("door.open", "", "'door.open' is a feature of 'Door'"),
+        ("key.open", "OCL", "'key.open' is a feature of 'Door'"),
+        ("count < Door::MOST", "OCL", "'Door::MOST' is a feature of 'Door'"),
+        ("amount > 3", "", "'amount' is a feature of 'fill'"),
+        ("count > 300", "OCL", "300 is outside 0..15, a range that is assumed"),
+        ("word = 'open'", "OCL", "'open' in single quotes is not a text here"),
+        ("ready", "English", "'ready' is not known, and names in English are not checked"),
+        ("count > LIMIT", "Java", "'LIMIT' is not known, and names in Java are not checked"),
+    ],
+)
+def test_a_guard_that_a_contract_cannot_express_is_no_error(guard, language, reason):
+    (finding,) = list_text_findings(guard=guard, language=language)
+    assert finding.startswith(f"SM411: guard '{guard}' has no formula: {reason}; ")
+
+
+@pytest.mark.parametrize("guard", ["door.opne", "Door::LEAST > 3", "amuont > 3", "limit > count"])
+def test_a_guard_that_names_nothing_is_an_error(guard):
+    (finding,) = list_text_findings(guard=guard, language="OCL")
+    assert finding.startswith(f"SM412: guard '{guard}' names ")
+
+
+@pytest.mark.parametrize(
+    ("effect", "reason"),
+    [
+        ("count := amount", "'amount' is a feature of 'fill'"),
+        ("count := 300", "300 is outside 0..15, a range that is assumed"),
+        ("weight := 3", "'weight' has no finite type"),
+        ("door.open := true", "'door.open' is a feature of 'Door'"),
+    ],
+)
+def test_an_effect_that_a_contract_cannot_express_is_no_error(effect, reason):
+    (finding,) = list_text_findings(effect=effect)
+    assert finding.startswith(f"SM416: effect '{effect}' is not understood: {reason}; ")
+
+
+@pytest.mark.parametrize(
+    ("effect", "code"), [("count := amuont", "SM412"), ("cuont := 3", "SM415")]
+)
+def test_an_effect_that_names_nothing_is_an_error(effect, code):
+    (finding,) = list_text_findings(effect=effect)
+    assert finding.startswith(f"{code}: ")
