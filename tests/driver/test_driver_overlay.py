@@ -190,11 +190,11 @@ def test_a_pipe_named_like_an_overlay_is_reported(folder):
 
 
 def test_a_diagnostic_shows_the_line_of_the_overlay(folder):
-    write_file(folder, "line.overlay.yaml", FLOW.replace("to: bt", "to: st/belt"))
+    write_file(folder, "line.overlay.yaml", FLOW.replace("to: bt", "to: st/outt"))
     code, _, errors = run_sysmlc("check", folder / "line.ir", "--no-cache")
     assert code == 1
-    assert "line.overlay.yaml:5:32 (st/belt)\n" in errors
-    assert "    flows: [{item: Pallet, to: st/belt}]\n" in errors
+    assert "line.overlay.yaml:5:32 (st/outt)\n" in errors
+    assert "    flows: [{item: Pallet, to: st/outt}]\n" in errors
     assert "help: did you mean 'st/out'?" in errors
 
 

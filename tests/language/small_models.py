@@ -18,6 +18,10 @@ def load_library() -> Library:
     return load_core()
 
 
+DECLARE_OR_IMPORT = "declare it, import the package that has it, or give its file as an input too"
+"""Advice about a name without a similar one."""
+
+
 def parse_texts(*texts: str, language: str = "sysml") -> list[Document]:
     """Parse each text as a document of its own; a syntax error fails the test."""
     sink = Sink()

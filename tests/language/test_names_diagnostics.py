@@ -1,7 +1,7 @@
 """Diagnostics about names: the examples of the rules, their advice and their locations."""
 
 import pytest
-from small_models import list_name_errors, load_library, parse_texts
+from small_models import DECLARE_OR_IMPORT, list_name_errors, load_library, parse_texts
 
 from sysmlc.diagnostics import Place, Sink
 from sysmlc.language.names import resolve
@@ -68,8 +68,52 @@ def test_the_help_about_a_library_name_says_which_package_to_import():
         "4: unknown name 'km': 'km' is in 'SI', which is not imported here",
         "5: unknown name 'MassValue': 'MassValue' is in 'ISQ', which is not imported here",
         "6: unknown name 'Real': 'Real' is in 'ScalarValues': import ScalarValues::*, not it alone",
-        "7: unknown name 'b': known: Plant, a, count, mass, way, x",
-        "8: unknown name 'A': did you mean 'a'?",
+        f"7: unknown name 'b': {DECLARE_OR_IMPORT}",
+        f"8: unknown name 'A': {DECLARE_OR_IMPORT}",
+    ]
+
+
+def test_only_close_names_of_the_needed_kind_are_suggested():
+    assert list_name_errors("""
+        package Plant {
+            part def Tank { attribute fillLevel; attribute fault1; }
+            metadata def OpcUaMethod;
+            item def tankk;
+            part a : Tankk { attribute :>> levelFill; }
+            part b : TANK;
+            part c { @OpcUaConnection; }
+            attribute mass = 5 [SI::kgg];
+            ref d = a.fault2;
+        }
+    """) == [
+        "6: unknown name 'Tankk': did you mean 'tankk'?",
+        "7: unknown name 'TANK': did you mean 'Tank'?",
+        f"8: unknown name 'OpcUaConnection': {DECLARE_OR_IMPORT}",
+        "9: unknown name 'SI::kgg': did you mean 'kg'?",
+    ]
+
+
+def test_the_advice_about_a_member_of_another_element_names_that_element():
+    assert list_name_errors("""
+        package Plant {
+            enum def Colour { red; green; }
+            part def Tank { attribute fillLevel; attribute fault1; }
+            part tank : Tank; part full :> tank { attribute :>> levelFill; attribute :>> volume; }
+            ref fault = tank.fault2;
+            attribute colour = Colour::blue;
+            attribute unit = SI::tonneForce;
+            part pump : Pumps::Pump;
+            part vessel : Plantt::Tank;
+        }
+    """) == [
+        "5: unknown name 'levelFill': did you mean 'fillLevel'?",
+        "5: unknown name 'volume': only an inherited feature can be redefined: "
+        "declare it in a general type",
+        "6: unknown name 'fault2' in 'tank': declare it in 'tank', which has: fault1, fillLevel",
+        "7: unknown name 'Colour::blue': declare it in 'Colour', which has: green, red",
+        "8: unknown name 'SI::tonneForce': 'SI' of the library has no such name",
+        f"9: unknown name 'Pumps::Pump': {DECLARE_OR_IMPORT}",
+        "10: unknown name 'Plantt::Tank': did you mean 'Plant'?",
     ]
 
 

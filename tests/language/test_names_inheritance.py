@@ -27,7 +27,7 @@ def test_a_redefining_feature_of_another_name_hides_the_redefined_one():
         part def Gate { part motor; }
         part def Big :> Gate { part drive :>> motor; }
         part a :> Big::motor;
-    """) == ["4: unknown name 'Big::motor': known: drive"]
+    """) == ["4: unknown name 'Big::motor': declare it in 'Big', which has: drive"]
 
 
 def test_a_nameless_feature_has_the_name_of_the_feature_it_redefines_or_references():

@@ -1,7 +1,7 @@
 """Lookup of names in scopes: owned, imported, enclosing and global members; filters."""
 
 import pytest
-from small_models import list_name_errors, resolve_texts, target_name
+from small_models import DECLARE_OR_IMPORT, list_name_errors, resolve_texts, target_name
 
 
 def test_a_name_is_looked_up_in_the_innermost_namespace_first():
@@ -77,7 +77,7 @@ def test_import_all_imports_private_members():
     model = resolve_texts(doors, "package Plant { private import all Doors::*; part a : Gate; }")
     assert target_name(model, "Plant::a") == "Doors::Gate"
     assert list_name_errors(doors, "package Plant { private import Doors::*; part a : Gate; }") == [
-        "1: unknown name 'Gate': known: Plant"
+        f"1: unknown name 'Gate': {DECLARE_OR_IMPORT}"
     ]
 
 
@@ -186,8 +186,8 @@ def test_advice_names_neither_the_unknown_use_itself_nor_a_unit():
         """
     ) == [
         "2: unknown name 'grip': 'grip' is in 'Tools', which is not imported here",
-        "4: unknown name 'a': known: grip",
-        "4: unknown name 'N': known: grip",
+        f"4: unknown name 'a': {DECLARE_OR_IMPORT}",
+        f"4: unknown name 'N': {DECLARE_OR_IMPORT}",
     ]
 
 

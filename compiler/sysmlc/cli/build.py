@@ -98,11 +98,11 @@ def _check_command_word(models: tuple[Path, ...]) -> None:
 
     word = str(models[0]) if models else ""
     if word.isalpha() and not Path(word).exists():
-        from difflib import get_close_matches
+        from sysmlc.support.suggestions import find_similar
 
-        near = get_close_matches(word, COMMANDS, n=1, cutoff=0.6)
-        if near:
-            raise click.UsageError(f"no command or file '{word}'; did you mean '{near[0]}'?")
+        similar = find_similar(word, COMMANDS)
+        if similar:
+            raise click.UsageError(f"no command or file '{word}'; did you mean '{similar}'?")
 
 
 def _compare(outcome: "Outcome", target: "Target") -> int:

@@ -16,7 +16,7 @@ UNKNOWN = [
     (
         element_with("").replace('ID="1"', 'ID="1" RefBaseClassPath="Lib/C"'),
         "'Plant::i' has an attribute 'RefBaseClassPath', which CAEX does not define for "
-        "'InternalElement'; did you mean 'RefBaseSystemUnitPath'?",
+        "'InternalElement'; known: ChangeMode, ID, Name, RefBaseSystemUnitPath",
     ),
     (
         element_with('<Attribute Name="a" Value="5"/><Attribute Name="b" Value="5"/>'),

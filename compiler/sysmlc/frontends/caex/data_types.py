@@ -5,7 +5,6 @@ A text that is not a value of its data type is reported once a file, and convert
 
 import re
 from collections.abc import Callable
-from difflib import get_close_matches
 from functools import lru_cache
 
 from sysmlc.diagnostics import Severity, rule
@@ -13,6 +12,7 @@ from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.types import Type
 from sysmlc.ir import AttrValue
+from sysmlc.support.suggestions import find_similar
 
 INVALID_VALUE = rule(
     "SM631",
@@ -260,6 +260,5 @@ def report_values(context: Context) -> None:
 
 def _suggest_data_type(name: str) -> str:
     """Return the data type that is probably meant, if only the spelling is wrong."""
-    names = {data_type.casefold(): data_type for data_type in sorted(DATA_TYPES)}
-    matches = get_close_matches(name.casefold(), names, n=1, cutoff=0.8)
-    return f"did you mean 'xs:{names[matches[0]]}'?" if matches else "its values count as text"
+    similar = find_similar(name, DATA_TYPES)
+    return f"did you mean 'xs:{similar}'?" if similar else "its values count as text"

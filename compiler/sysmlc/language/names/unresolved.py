@@ -10,7 +10,7 @@ from sysmlc.language.names.generals import GENERALIZATION_KINDS
 from sysmlc.language.names.lookup import Lookup
 from sysmlc.language.names.model import Model
 from sysmlc.language.tree import Document, Node, Reference, Relation, make_subject
-from sysmlc.support.suggestions import did_you_mean
+from sysmlc.support.suggestions import find_similar
 
 UNRESOLVED = rule(
     "SM205",
@@ -44,7 +44,10 @@ _IMPORT_RELATIONS = frozenset({"importedNamespace", "importedMembership"})
 _MAX_ADVICE_FROM_IMPORTS = 50
 """Diagnostics of a unit after which names of imported packages are no longer suggested."""
 _NOT_GIVEN = "give the file that has it as an input too, or the folder of all files"
-_UNNAMED = "declare it, or import the package that has it"
+_UNKNOWN = "declare it, import the package that has it, or give its file as an input too"
+_NOT_INHERITED = "only an inherited feature can be redefined: declare it in a general type"
+_MAX_LISTED = 7
+"""Names of the members of an element that are listed in place of a similar name."""
 _TYPES_OF_LIBRARY = ("ScalarValues", "ISQ")
 _UNITS_OF_LIBRARY = ("SI",)
 _CLASSIFIERS = kinds_of("Classifier")
@@ -62,8 +65,39 @@ def _make_advice(
     searches_imports: bool = True,
 ) -> str:
     """Return the help for a name that is not found; ``container`` is the element before a dot."""
-    relation = use[1]
-    lookup = model.lookup
+    relation, lookup = use[1], model.lookup
+    obstacle = _explain_obstacle(lookup, relation, names, context, container)
+    if obstacle:
+        return obstacle
+    package = _find_unimported_package(model, use, names, context) if container is None else None
+    if package is not None:
+        return _advise_import(names[0], package, lookup, context)
+    unknown, container = _find_unknown_part(lookup, names, context, container)
+    if relation.kind in _IMPORT_RELATIONS and container is None:
+        scope_names = {scope.name for scope in _list_scopes(context)}
+        similar = find_similar(unknown, [n for n in model.packages() if n not in scope_names])
+        return f"did you mean '{similar}'?" if similar else _NOT_GIVEN
+    known_names = _list_known_names(
+        model, use, unknown, context, container, searches_imports=searches_imports
+    )
+    if container is None and unknown != names[-1]:
+        known_names += model.packages()
+    similar = find_similar(unknown, known_names)
+    if similar:
+        return f"did you mean '{similar}'?"
+    if container is not None and container.name:
+        return _advise_declaration(model, container, known_names)
+    return _NOT_INHERITED if context.inherited else _UNKNOWN
+
+
+def _explain_obstacle(
+    lookup: Lookup,
+    relation: Relation,
+    names: tuple[str, ...],
+    context: contexts.LookupContext,
+    container: Node | None,
+) -> str:
+    """Return why an element that has the name cannot be used here, or nothing if none has it."""
     of_other_kind = _search_regardless(lookup, names, context, container, everything=False)
     if of_other_kind is not None and relation.kind in _EXPECTED_WORDS:
         kind, expected = describe_kind(of_other_kind), _EXPECTED_WORDS[relation.kind]
@@ -74,19 +108,31 @@ def _make_advice(
         return f"'{names[-1]}' is {hidden.visibility}{owner}"
     if hidden is not None and of_other_kind is None:
         return f"'{names[-1]}' is there by a private import only"
-    package = _find_unimported_package(model, use, names, context) if container is None else None
-    if package is not None:
-        return _advise_import(names[0], package, lookup, context)
-    if relation.kind in _IMPORT_RELATIONS and lookup.search(context, names[:1], None) is None:
-        scope_names = {scope.name for scope in _list_scopes(context)}
-        candidates = [name for name in model.packages() if name not in scope_names]
-        suggestion = did_you_mean(names[0], candidates) if candidates else ""
-        return suggestion if suggestion.startswith("did you mean") else _NOT_GIVEN
-    known_names = _list_known_names(
-        model, use, names, context, container, searches_imports=searches_imports
-    )
-    roots = model.packages() if len(names) > 1 else []
-    return did_you_mean(names[-1], known_names or roots) if known_names or roots else _UNNAMED
+    return ""
+
+
+def _find_unknown_part(
+    lookup: Lookup,
+    names: tuple[str, ...],
+    context: contexts.LookupContext,
+    container: Node | None,
+) -> tuple[str, Node | None]:
+    """Return the first part of a qualified name that is unknown, and the element before it."""
+    for count, name in enumerate(names[:-1], start=1):
+        element = _search_regardless(lookup, names[:count], context, container, everything=False)
+        if element is None:
+            return name, container
+        container = element
+    return names[-1], container
+
+
+def _advise_declaration(model: Model, container: Node, known_names: list[str]) -> str:
+    """Return what to do about a name that is unknown in an element and like none of its names."""
+    if model.document(container) not in model.documents:
+        return f"'{container.name}' of the library has no such name"
+    listed = sorted(set(known_names))
+    others = f", which has: {', '.join(listed)}" if 0 < len(listed) <= _MAX_LISTED else ""
+    return f"declare it in '{container.name}'{others}"
 
 
 def _find_unimported_package(
@@ -185,21 +231,19 @@ def _search_regardless(
 def _list_known_names(
     model: Model,
     use: tuple[Node, Relation],
-    names: tuple[str, ...],
+    unknown: str,
     context: contexts.LookupContext,
     container: Node | None,
     *,
     searches_imports: bool,
 ) -> list[str]:
-    """Return the names of elements of the kind that is needed, else of all elements.
+    """Return the names of elements of the kind that is needed.
 
     After a dot these are members of the element before it, else names in the scopes around and in
     the packages that they import. In the brackets of a quantity the units of SI are valid, too.
     """
     node, relation = use
     lookup = model.lookup
-    if container is None and len(names) > 1:
-        container = lookup.search(context, names[:-1], None)
     if container is None and context.inherited and context.scope is not None:
         scopes = lookup.known_ancestors(context.scope)
     elif container is not None:
@@ -212,20 +256,18 @@ def _list_known_names(
             scopes += _list_imported_namespaces(lookup, outward)
         if searches_imports and _is_unit(node):
             scopes += filter(None, map(model.find, _UNITS_OF_LIBRARY))
-    is_last = names == relation.reference.chain[-1]
+    is_last = unknown == relation.reference.chain[-1][-1]
     kinds = contexts.TARGET_KINDS.get(relation.kind) if is_last else None
-    hits_by_name = [
-        (name, hits)
+    if kinds is not None and relation.kind == "FeatureTyping":
+        kinds = _CLASSIFIERS
+    return [
+        name
         for scope in scopes
         for name, hits in lookup.symbol_table(scope).items()
-        if name != names[-1] and node not in hits
+        if name != unknown
+        and node not in hits
+        and (kinds is None or any(_is_of_kind(lookup, hit, kinds) for hit in hits))
     ]
-    suitable = [
-        name
-        for name, hits in hits_by_name
-        if kinds is not None and any(_is_of_kind(lookup, hit, kinds) for hit in hits)
-    ]
-    return suitable or [name for name, _ in hits_by_name]
 
 
 def _is_of_kind(lookup: Lookup, hit: Node, kinds: frozenset[str]) -> bool:
