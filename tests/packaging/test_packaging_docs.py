@@ -1,5 +1,6 @@
 """Links, commands, configurations and scenarios in the documentation are valid."""
 
+import json
 import re
 from pathlib import Path
 
@@ -10,6 +11,9 @@ from documentation import read_block
 
 from sysmlc import config
 from sysmlc.cli.group import COMMANDS, sysmlc
+from sysmlc.logic.contract import BooleanDomain
+from sysmlc.logic.printing import print_formula
+from sysmlc.logic.sentences import read_requirement
 
 ROOT = Path(__file__).parents[2]
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"), *ROOT.glob("examples/*/*.md")])
@@ -68,6 +72,26 @@ def test_the_documented_scenario_passes(tmp_path):
     assert result.exit_code == 0
     assert 'failures="0"' in report.read_text()
     assert (tmp_path / "gripper.seq.puml").read_text().startswith("@startuml\n")
+
+
+def test_the_documented_structured_requirements_hold(tmp_path):
+    model = tmp_path / "gate.sysml"
+    model.write_text(read_block("docs/contracts.md", "structured requirement"))
+    result = CliRunner().invoke(sysmlc, ["contracts", "check", str(model), "--format", "json"])
+    entries = json.loads(result.stdout)["requirements"]
+    assert [(entry["requirement"], entry["verdict"]) for entry in entries] == [
+        ("Plant::Lock", "holds"),
+        ("Plant::Keep", "holds"),
+    ]
+
+
+def test_structured_sentences_have_the_documented_formulas():
+    text = (ROOT / "docs/contracts.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| (.* shall .*\.) \| `(.*)` \|$", text, re.MULTILINE)
+    names = dict.fromkeys("MPQR", BooleanDomain())
+    formulas = [print_formula(read_requirement(sentence, names, ["Gate"])) for sentence, _ in rows]
+    assert formulas == [formula.replace("\\|", "|") for _, formula in rows]
+    assert len(rows) == 9
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/understand-a-message.md"])

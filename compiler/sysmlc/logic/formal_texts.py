@@ -6,8 +6,7 @@ present in the neutral form.
 """
 
 import re
-from collections.abc import Callable, Mapping
-from typing import NoReturn
+from collections.abc import Callable, Collection, Mapping
 
 from msgspec.structs import replace
 
@@ -17,6 +16,7 @@ from sysmlc.logic.contract import Domain
 from sysmlc.logic.formula import PAST, Formula, Op, has_future, has_primes
 from sysmlc.logic.infix import FormulaReader, Term
 from sysmlc.logic.property_patterns import Scope
+from sysmlc.logic.sentences import SENTENCE_SYNTAX, WordReader, read_requirement
 from sysmlc.logic.syntax import (
     NEUTRAL,
     PAST_WORDS,
@@ -26,14 +26,20 @@ from sysmlc.logic.syntax import (
     tokenize,
 )
 
-_LANGUAGES = ("ltl", "spin", "promela", "pattern")
+_LANGUAGES = ("ltl", "spin", "promela", "pattern", "fret")
 _SENTENCE = re.compile(
     r"\s*globally\s*,|.*\bit\s+is\s+(always|never|eventually)\s+the\s+case\s+that\b",
     re.IGNORECASE | re.DOTALL,
 )
 """The start of a sentence that no informal text contains: tools label any prose as English."""
+_REQUIREMENT = re.compile(
+    r"\bshall(?:\s+the\s+\w+)?(?:\s+|\s*,\s*)(always|never|immediately|eventually|until|before"
+    r"|at\s+the\s+next\s+timepoint|(within|for|after)\s+\d+\s+(tick|step)s?)\b.*\bsatisfy\b",
+    re.IGNORECASE | re.DOTALL,
+)
+"""Words that only a structured requirement contains."""
 _MAX_TIMES = 32
-"""Most phases that a bounded existence counts; each needs a history bit."""
+"""Most phases and steps of a pattern; each needs a history bit."""
 
 
 def is_formal(language: str, text: str) -> bool:
@@ -41,15 +47,21 @@ def is_formal(language: str, text: str) -> bool:
     name = language.lower()
     if any(part in name for part in _LANGUAGES):
         return True
-    return "english" in name and _SENTENCE.match(text) is not None
+    is_sentence = _SENTENCE.match(text) is not None or _REQUIREMENT.search(text) is not None
+    return "english" in name and is_sentence
 
 
-def read_formal(text: str, language: str, variables: Mapping[str, Domain]) -> Formula:
+def read_formal(
+    text: str, language: str, variables: Mapping[str, Domain], components: Collection[str] = ()
+) -> Formula:
     """Return the formula of a formal text; it may have operators of the past.
 
-    Raises FormulaError, which ``describe_error`` shows with its location.
+    *components* are names of the component, which a structured requirement states. Raises
+    FormulaError, which ``describe_error`` shows with its location.
     """
     name = language.lower()
+    if "fret" in name or ("english" in name and _REQUIREMENT.search(text) is not None):
+        return read_requirement(text, variables, components)
     if "pattern" in name or "english" in name:
         return read_sentence(text, variables)
     return read_temporal_logic(text, variables)
@@ -99,7 +111,6 @@ class _TemporalReader(FormulaReader):
 
 # -- sentences -----------------------------------------------------------------------------------
 
-_SENTENCE_SYNTAX = replace(NEUTRAL, signs=(",", "."))
 _ENDINGS: dict[str, Callable[[Scope, Formula], Formula]] = {
     "always holds": patterns.universality,
     "never holds": patterns.absence,
@@ -110,20 +121,14 @@ _ENDINGS: dict[str, Callable[[Scope, Formula], Formula]] = {
 
 def read_sentence(text: str, variables: Mapping[str, Domain]) -> Formula:
     """Return the formula of a sentence. Raises FormulaError with the offset of the fault."""
-    cursor = Cursor(tokenize(text, _SENTENCE_SYNTAX))
-    formula = _SentenceReader(cursor, variables).read()
-    cursor.accept(".")
-    if not cursor.is_at_end:
-        cursor.fail("the end of the sentence is expected")
+    reader = _PatternReader(Cursor(tokenize(text, SENTENCE_SYNTAX)), variables)
+    formula = reader.read()
+    reader.read_end()
     return formula
 
 
-class _SentenceReader:
+class _PatternReader(WordReader):
     """Recursive-descent reader of ``[scope,] pattern``."""
-
-    def __init__(self, cursor: Cursor, variables: Mapping[str, Domain]) -> None:
-        self._cursor = cursor
-        self._conditions = _ConditionReader(cursor, _SENTENCE_SYNTAX, variables)
 
     def read(self) -> Formula:
         scope = self._read_scope()
@@ -190,7 +195,7 @@ class _SentenceReader:
         if self._accept("eventually", "holds") or self._accept("holds", "eventually"):
             return patterns.response(scope, trigger, answer)
         if self._accept("holds", "within"):
-            steps = self._read_count("steps", "step")
+            steps = self._read_count(_MAX_TIMES, "steps", "step")
             return patterns.bounded_response(scope, trigger, answer, steps)
         self._accept("holds")
         if self._cursor.is_at_end or self._cursor.is_next("."):
@@ -208,12 +213,9 @@ class _SentenceReader:
         if self._accept("precedes"):
             return patterns.precedence(scope, condition, self._read_condition())
         if self._accept("holds", "at", "most"):
-            return patterns.bounded_existence(scope, condition, self._read_count("times", "time"))
+            return patterns.bounded_existence(scope, condition, self._read_times())
         endings = "', '".join([*_ENDINGS, "responds to", "precedes"])
         return self._fail(f"'{endings}' or 'holds at most N times'")
-
-    def _read_condition(self) -> Formula:
-        return self._conditions.read_formula()
 
     def _read_held_condition(self) -> Formula:
         """Read ``P [holds|held]``."""
@@ -222,49 +224,9 @@ class _SentenceReader:
             self._accept("held")
         return condition
 
-    def _read_count(self, *units: str) -> int:
-        """Read ``once``, ``twice``, or a number followed by one of *units*."""
-        words = {"once": 1, "twice": 2}
-        token = self._cursor.next
-        if token.text.lower() in words:
-            self._cursor.take()
-            return words[token.text.lower()]
-        number = self._cursor.read_integer()
-        if not 0 <= number <= _MAX_TIMES:
-            raise FormulaError(f"a number from 0 to {_MAX_TIMES} is expected", token.offset)
-        self._expect_one_of(*units)
-        return number
-
-    def _expect(self, *words: str) -> None:
-        for word in words:
-            self._expect_one_of(word)
-
-    def _expect_one_of(self, *words: str) -> str:
-        for word in words:
+    def _read_times(self) -> int:
+        """Read ``once``, ``twice`` or ``3 times``."""
+        for number, word in ((1, "once"), (2, "twice")):
             if self._accept(word):
-                return word
-        return self._fail(" or ".join(f"'{word}'" for word in words))
-
-    def _accept(self, *words: str) -> bool:
-        """Consume the words if they come next, in any letter case; return whether they do."""
-        start = self._cursor.mark()
-        for word in words:
-            if self._cursor.next.text.lower() != word:
-                self._cursor.reset(start)
-                return False
-            self._cursor.take()
-        return True
-
-    def _fail(self, expected: str) -> NoReturn:
-        self._cursor.fail(f"{expected} is expected")
-
-
-class _ConditionReader(FormulaReader):
-    """Reader of conditions about the present: no temporal operators, no primes."""
-
-    def read_formula(self, min_precedence: int = 0) -> Formula:
-        offset = self.cursor.next.offset
-        formula = super().read_formula(min_precedence)
-        if has_primes(formula) or has_future(formula):
-            raise FormulaError("a condition of a pattern is about the present", offset)
-        return formula
+                return number
+        return self._read_count(_MAX_TIMES, "times", "time")

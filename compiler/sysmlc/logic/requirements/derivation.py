@@ -34,6 +34,7 @@ from sysmlc.logic.requirements.statements import (
     component_of,
     definition_of,
     find_redefining_operation,
+    list_component_names,
 )
 from sysmlc.logic.syntax import FormulaError
 
@@ -42,7 +43,8 @@ NOT_A_FORMULA = rule(
     "requirement-not-understood",
     Severity.ERROR,
     "the formula of '{constraint}' in requirement '{requirement}' is not understood: {reason}",
-    help="write LTL (G F X U or [] <> X U) over the features of '{about}': {variables}",
+    help="write LTL (G F X U or [] <> X U), or in FRET 'when P, the {about} shall eventually "
+    "satisfy Q', over the features of '{about}': {variables}",
 )
 NOT_FORMAL = rule(
     "SM523",
@@ -82,7 +84,9 @@ def derive(
             find_redefining_operation(graph, subject),
         )
         own_variables = () if behaviour is None else behaviour.variables
-        scope = scope_of(context, own_variables)
+        scope = replace(
+            scope_of(context, own_variables), component_names=list_component_names(graph, subject)
+        )
         described, whole, obstacle = None, None, ""
         is_machine = behaviour is not None and graph[behaviour.origin].kind is Kind.STATE_MACHINE
         try:
@@ -259,7 +263,8 @@ def _read_temporal(graph: Graph, scope: Scope, statement: Statement, sink: Sink)
     try:
         text, meanings = scope.replace_names(body)
         domains = {name: meaning.domain for name, meaning in meanings.items()}
-        formula = read_formal(text, _language_of(constraint), {**scope.domains, **domains})
+        all_domains = {**scope.domains, **domains}
+        formula = read_formal(text, _language_of(constraint), all_domains, scope.component_names)
     except FormulaError as error:
         sink.report(
             NOT_A_FORMULA,

@@ -20,6 +20,8 @@ _NAME = re.compile(
     r"(?:running|finished)\(\s*[\w.]+\s*\)|[^\W\d]\w*(?:(?:\.|\#\(\d+\)\.)[^\W\d]\w*)*"
 )
 """A name in a formula: of an action, dotted, or plain."""
+_COMPONENT = re.compile(r"\s+shall\b", re.IGNORECASE)
+"""What follows the name of the component in a structured requirement."""
 
 
 class Scope(Struct, frozen=True):
@@ -30,6 +32,8 @@ class Scope(Struct, frozen=True):
     constants: Mapping[str, Literal]
     names: ComponentNames | None = None
     """Names of actions, states and parts; None if the subject has no behaviour to describe."""
+    component_names: tuple[str, ...] = ()
+    """Names by which structured requirements may call the subject."""
 
     @property
     def domains(self) -> dict[str, Domain]:
@@ -85,6 +89,8 @@ class Scope(Struct, frozen=True):
 
     def _replace_name(self, match: re.Match[str], meanings: dict[str, Meaning]) -> str:
         name = match[0]
+        if _COMPONENT.match(match.string, match.end()):
+            return name
         try:
             meaning = self._find_meaning(name)
         except ComponentError as problem:

@@ -116,6 +116,16 @@ def component_of(graph: Graph, subject: Element) -> str:
     return f"{query.component_name(graph, owner)}.{subject.name}"
 
 
+def list_component_names(graph: Graph, subject: Element) -> tuple[str, ...]:
+    """Return the names of a subject, of its definition and of the generals of its definition.
+
+    A structured requirement calls its subject by one of them.
+    """
+    definition = definition_of(graph, subject)
+    elements = (subject, definition, *query.generals(graph, definition))
+    return tuple(dict.fromkeys(element.name for element in elements if element.name))
+
+
 def find_redefining_operation(graph: Graph, subject: Element) -> Element | None:
     """Return *subject* if it is an operation that redefines parameters of its method, else None."""
     if subject.kind is not Kind.OPERATION:

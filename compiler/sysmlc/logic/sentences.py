@@ -1,0 +1,306 @@
+"""Reader of structured requirement sentences, and what it shares with other sentences in English.
+
+``structured_sentences`` states the grammar and the meaning. Conditions are formulas about the
+present in the neutral form.
+"""
+
+from collections.abc import Collection, Mapping
+from typing import NoReturn
+
+from msgspec.structs import replace
+
+from sysmlc.logic import domains
+from sysmlc.logic import formula as f
+from sysmlc.logic.contract import Domain, EnumerationDomain
+from sysmlc.logic.formula import Formula, has_future, has_primes
+from sysmlc.logic.infix import FormulaReader
+from sysmlc.logic.structured_sentences import Sentence, Timing, formalize
+from sysmlc.logic.syntax import NEUTRAL, Cursor, FormulaError, Token, tokenize
+from sysmlc.support.suggestions import find_similar
+
+SENTENCE_SYNTAX = replace(NEUTRAL, signs=(",", "."))
+
+
+class ConditionReader(FormulaReader):
+    """Reader of conditions about the present: no temporal operators, no primes."""
+
+    def read_formula(self, min_precedence: int = 0) -> Formula:
+        offset = self.cursor.next.offset
+        formula = super().read_formula(min_precedence)
+        if has_primes(formula) or has_future(formula):
+            raise FormulaError("a condition of a sentence is about the present", offset)
+        return formula
+
+
+class WordReader:
+    """Reads words in any letter case, and conditions, from a cursor."""
+
+    def __init__(self, cursor: Cursor, variables: Mapping[str, Domain]) -> None:
+        self._cursor = cursor
+        self._variables = variables
+        self._conditions = ConditionReader(cursor, SENTENCE_SYNTAX, variables)
+
+    def read_end(self) -> None:
+        """Read the optional full stop. Raises FormulaError if the text goes on."""
+        self._cursor.accept(".")
+        if not self._cursor.is_at_end:
+            self._cursor.fail("the end of the sentence is expected")
+
+    def _read_condition(self) -> Formula:
+        return self._conditions.read_formula()
+
+    def _read_count(self, largest: int, *units: str) -> int:
+        """Read a number from 0 to *largest* and one of the *units*."""
+        token = self._cursor.next
+        number = self._cursor.read_integer()
+        if not 0 <= number <= largest:
+            raise FormulaError(f"a number from 0 to {largest} is expected", token.offset)
+        self._expect_one_of(*units)
+        return number
+
+    def _expect(self, *words: str) -> None:
+        for word in words:
+            self._expect_one_of(word)
+
+    def _expect_one_of(self, *words: str) -> str:
+        for word in words:
+            if self._accept(word):
+                return word
+        return self._fail(" or ".join(f"'{word}'" for word in words))
+
+    def _accept(self, *words: str) -> bool:
+        """Consume the words if they come next, in any letter case; return whether they do."""
+        start = self._cursor.mark()
+        for word in words:
+            if self._cursor.next.text.lower() != word:
+                self._cursor.reset(start)
+                return False
+            self._cursor.take()
+        return True
+
+    def _fail(self, expected: str) -> NoReturn:
+        self._cursor.fail(f"{expected} is expected")
+
+
+# -- structured requirements -----------------------------------------------------------------------
+
+_MAX_STEPS = 64
+"""Most steps of a duration; the formula has an X for each."""
+_QUALIFIERS = ("when", "if", "upon", "where", "whenever", "unless")
+_SCOPES = ("in", "during", "while", "before", "after", "only", "except", "not")
+_TIMINGS = {
+    "immediately": "immediately",
+    "initially": "immediately",
+    "at the first timepoint": "immediately",
+    "at the same timepoint": "immediately",
+    "at the next timepoint": "next",
+    "at the next step": "next",
+    "eventually": "eventually",
+    "always": "always",
+    "never": "never",
+}
+_TIMING_WORDS = (*_TIMINGS, "within", "for", "after", "until", "before")
+
+
+def read_requirement(
+    text: str, variables: Mapping[str, Domain], components: Collection[str] = ()
+) -> Formula:
+    """Return the formula of a structured requirement, which may have operators of the past.
+
+    *components* are the names that the component may have; if it is empty, any name is accepted.
+    Raises FormulaError with the offset of the fault.
+    """
+    cursor = Cursor(tokenize(text, SENTENCE_SYNTAX))
+    reader = _RequirementReader(cursor, variables)
+    sentence = reader.read(components)
+    reader.read_end()
+    return formalize(sentence)
+
+
+class _RequirementReader(WordReader):
+    """Recursive-descent reader of ``[scope] [condition] [the] COMPONENT shall [timing] response``.
+
+    In sentences with "only", the component may follow "shall".
+    """
+
+    def read(self, components: Collection[str]) -> Sentence:
+        scope, mode = self._read_scope()
+        restriction: Formula = f.TRUE
+        self._cursor.accept(",")
+        if scope and self._accept("while"):
+            restriction = self._read_mode()
+            self._cursor.accept(",")
+        self._accept("and")
+        condition, is_continual = self._read_conditions()
+        if self._accept("shall"):
+            self._read_component(components)
+        else:
+            self._read_component(components)
+            self._expect("shall")
+        self._cursor.accept(",")
+        timing = self._read_timing()
+        self._cursor.accept(",")
+        self._accept("satisfy")
+        response = self._read_response()
+        return Sentence(response, timing, scope, mode, restriction, condition, is_continual)
+
+    # -- scope -------------------------------------------------------------------------------------
+
+    def _read_scope(self) -> tuple[str, Formula]:
+        if self._accept("only"):
+            kind = self._read_scope_word()
+            return f"only {kind}", self._read_mode()
+        if self._accept("except") or self._accept("unless", "in"):
+            self._read_inside_words()
+            return "notin", self._read_mode()
+        for words in ("not in", "when not in", "if not in"):
+            if self._accept(*words.split()):
+                return "notin", self._read_mode()
+        if self._cursor.next.text.lower() in ("before", "after"):
+            return self._cursor.take().text.lower(), self._read_mode()
+        return ("in", self._read_mode()) if self._read_inside_words() else ("", f.TRUE)
+
+    def _read_scope_word(self) -> str:
+        for word in ("before", "after"):
+            if self._accept(word):
+                return word
+        if not self._read_inside_words():
+            self._fail("'in', 'during', 'while', 'before' or 'after'")
+        return "in"
+
+    def _read_inside_words(self) -> bool:
+        return any(
+            self._accept(*words.split()) for words in ("in", "during", "while", "when in", "if in")
+        )
+
+    def _read_mode(self) -> Formula:
+        """Read a condition, or a state as in ``mode Busy`` or ``Busy mode``."""
+        has_word = self._accept("mode")
+        token = self._cursor.next
+        is_state = has_word or self._cursor.after_next.text.lower() == "mode"
+        if is_state and token.kind == "name" and token.text not in self._variables:
+            self._cursor.take()
+            mode = self._find_state(token.text, token.offset)
+        else:
+            mode = self._read_condition()
+        self._accept("mode")
+        return mode
+
+    def _find_state(self, state: str, offset: int) -> Formula:
+        """Return the condition that the only variable with the value *state* has it."""
+        names = [
+            name
+            for name, domain in self._variables.items()
+            if isinstance(domain, EnumerationDomain) and state in domain.literals
+        ]
+        if not names:
+            raise FormulaError(f"'{state}' is neither a state nor a variable", offset)
+        if len(names) > 1:
+            choices = " or ".join(f"{name}={state}" for name in names)
+            raise FormulaError(f"'{state}' is ambiguous: write {choices}", offset)
+        return f.eq(f.var(names[0]), f.const(state))
+
+    # -- conditions --------------------------------------------------------------------------------
+
+    def _read_conditions(self) -> tuple[Formula | None, bool]:
+        """Return the condition, None without one, and whether it triggers in each step."""
+        word = self._cursor.next.text.lower()
+        if word not in _QUALIFIERS:
+            return None, False
+        condition = self._read_qualified_condition()
+        while True:
+            start = self._cursor.mark()
+            self._cursor.accept(",")
+            joins = f.either if self._accept("or") else f.both
+            if joins is f.both:
+                self._accept("and")
+            if self._cursor.next.text.lower() not in _QUALIFIERS:
+                self._cursor.reset(start)
+                break
+            self._check_qualifier(word)
+            condition = joins(condition, self._read_qualified_condition())
+        self._cursor.accept(",")
+        self._accept("then")
+        return condition, word == "whenever"
+
+    def _check_qualifier(self, first: str) -> None:
+        token = self._cursor.next
+        is_mixed = (token.text.lower() == "whenever") != (first == "whenever")
+        if is_mixed and token.text.lower() != "unless":
+            reason = f"'{token.text}' cannot follow a condition with '{first}'"
+            raise FormulaError(reason, token.offset)
+
+    def _read_qualified_condition(self) -> Formula:
+        """Read ``when P [is true|false]``, or ``unless P`` for the negation."""
+        is_negated = self._cursor.take().text.lower() == "unless"
+        condition = self._read_condition()
+        if self._accept("is"):
+            is_negated ^= self._expect_one_of("true", "false") == "false"
+        return f.negate(condition) if is_negated else condition
+
+    # -- component, timing, response ---------------------------------------------------------------
+
+    def _read_component(self, components: Collection[str]) -> None:
+        """Read the name of the component, which may have several words.
+
+        Without known names, it extends to the next word that a sentence has after it.
+        """
+        self._accept("the")
+        first, start = self._cursor.next, self._cursor.mark()
+        names, words, end = {*map(_fold, components)}, "", start
+        while self._cursor.next.kind == "name" and not self._is_after_component():
+            words += self._cursor.take().text
+            if _fold(words) in names or not names:
+                end = self._cursor.mark()
+        self._cursor.reset(end)
+        if end == start:
+            self._raise_no_component(components, first)
+
+    def _is_after_component(self) -> bool:
+        return self._cursor.next.text.lower() == "shall" or self._starts_timing()
+
+    def _raise_no_component(self, components: Collection[str], token: Token) -> NoReturn:
+        """Raise an error about *token*, where a scope, a condition or the component is expected."""
+        names = " or ".join(f"'{name}'" for name in components)
+        expected = f"the component {names}".strip()
+        similar = find_similar(token.text, (*_QUALIFIERS, *_SCOPES, *components))
+        advice = f" (did you mean '{similar}'?)" if similar else ""
+        actual = f"'{token.text}'" if token.kind != "end" else "the end"
+        reason = f"{expected} is expected before 'shall', not {actual}{advice}"
+        raise FormulaError(reason, token.offset)
+
+    def _starts_timing(self) -> bool:
+        words = {words.split()[0] for words in _TIMING_WORDS}
+        return self._cursor.next.text.lower() in {*words, "satisfy", ","}
+
+    def _read_timing(self) -> Timing:
+        for words, kind in _TIMINGS.items():
+            if self._accept(*words.split()):
+                return Timing(kind)
+        for kind in ("within", "for", "after"):
+            if self._accept(kind):
+                return Timing(kind, self._read_count(_MAX_STEPS, "ticks", "tick", "steps", "step"))
+        for kind in ("until", "before"):
+            if self._accept(kind):
+                return Timing(kind, stop=self._read_condition())
+        if self._cursor.next.text.lower() == "at":
+            self._fail("'at the next timepoint'")
+        token = self._cursor.next
+        similar = find_similar(token.text, (*_TIMING_WORDS, "satisfy"))
+        is_value = any(domains.contains(domain, token.text) for domain in self._variables.values())
+        if similar and token.text not in (similar, *self._variables) and not is_value:
+            self._fail(f"'{similar}' or a condition")
+        return Timing()
+
+    def _read_response(self) -> Formula:
+        """Read a condition, or ``if P then Q``."""
+        if not self._accept("if"):
+            return self._read_condition()
+        condition = self._read_condition()
+        self._expect("then")
+        return f.implies(condition, self._read_condition())
+
+
+def _fold(name: str) -> str:
+    """Return the letters and digits of a name in lower case: "Bay Gate" denotes ``BayGate``."""
+    return "".join(filter(str.isalnum, name)).casefold()
