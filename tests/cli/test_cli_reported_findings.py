@@ -244,6 +244,36 @@ package P {
         "assigns it: it has no range (tank.sysml:4:19)"
     ) in lines
 
+    assert list_heads(check("--select", "SM544", model=text)[1]) == ["info[SM544"]
+    assert list_heads(check("--ignore", "SM410", model=text)[1]) == ["info[SM544"]
+
+
+def test_a_bound_of_an_assumed_range_is_no_fault_of_the_author(check):
+    text = """\
+package P {
+    private import ScalarValues::*;
+    part def Belt {
+        attribute count : Integer := 0;
+        item def Go;
+        exhibit state run {
+            entry; then on;
+            state on;
+            transition first on accept Go do assign count := count + 1 then on;
+        }
+    }
+}
+"""
+    _, lines = check("--min-severity", "info", model=text)
+    assert list_heads(lines) == ["info[SM410"]
+    assert (
+        "  note: transition 'on to on' can take it out of this range; "
+        "the contract stops at the bound"
+    ) in lines
+    stated = text.replace(
+        "Integer := 0;", "Integer := 0; assert constraint { 0 <= count and count <= 9 }"
+    )
+    assert "warning[SM428" in list_heads(check("--min-severity", "info", model=stated)[1])
+
 
 def test_findings_are_accepted_one_by_one_before_they_are_merged(check, tmp_path):
     (tmp_path / "sysmlc.toml").write_text(

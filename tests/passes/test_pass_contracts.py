@@ -137,6 +137,18 @@ def test_a_choice_between_transitions_is_an_output_and_reported():
     ]
 
 
+def test_only_the_transitions_that_compete_are_listed():
+    text = machine(
+        arrow("a", "b", "start"),
+        arrow("a", "a", "start", effect="level := 3"),
+        arrow("a", "b", "stop"),
+    )
+    (finding,) = derive_contracts(text)[2]
+    assert finding.message == (
+        "transitions 'A to B', 'A to A' that leave 'A' can be enabled at once"
+    )
+
+
 def test_a_guard_that_does_not_parse_is_an_input():
     _, (contract,), sink = derive_contracts(machine(arrow("a", "b", "start", "bay is free")))
     assert list_codes(sink) == ["SM411"]

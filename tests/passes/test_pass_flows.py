@@ -55,6 +55,12 @@ def test_an_item_flow_from_a_part_to_an_input_of_its_block_is_reported(ends, cod
     assert list_codes(run_until(text, "flows")[1]) == codes
 
 
+def test_a_flow_through_the_border_of_a_block_is_described_from_the_block():
+    text = LINE + print_connector("c", "feed", "a.in") + print_item_flow("in", "feed")
+    messages = [diagnostic.message for diagnostic in run_until(text, "flows")[1]]
+    assert "leaves its block through port 'Line::feed', whose direction is in" in messages[1]
+
+
 def test_a_flow_against_a_port_and_its_connector_are_one_finding():
     text = LINE + print_connector("c", "a.in", "b.in")
     assert list_codes(run_until(text, "flows")[1]) == ["SM315"]

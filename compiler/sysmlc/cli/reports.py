@@ -83,17 +83,24 @@ def print_findings(
     *,
     folds_infos: bool = False,
 ) -> None:
-    """Print the reported findings in the form that the user selected.
+    """Print the reported findings in the form that the user selected, one for each fact.
 
     *details* are members of the document that only the format JSON has. With *folds_infos*, the
     text has one line for each rule with infos, unless options ask for more.
     """
     from sysmlc.diagnostics import Severity
-    from sysmlc.diagnostics.renderers import XPATH_FORMATS, render, render_json, shorten
+    from sysmlc.diagnostics.renderers import (
+        XPATH_FORMATS,
+        merge_facts,
+        render,
+        render_json,
+        shorten,
+    )
 
     on_stdout = settings.form in _FORMS_ON_STDOUT
     stream = sys.stdout if on_stdout else sys.stderr
-    reported = [finding for finding in findings if is_reported(finding.diagnostic, settings)]
+    selected = [finding for finding in findings if is_reported(finding.diagnostic, settings)]
+    reported = merge_facts(selected)
     is_short = folds_infos and settings.form == "text" and not settings.verbose
     infos = [finding for finding in reported if finding.diagnostic.severity is Severity.INFO]
     folded = infos if is_short and not settings.min_severity else []

@@ -283,10 +283,16 @@ def _index_candidates(graph: Graph) -> dict[str, list[Element]]:
     return candidates
 
 
-def find_label(graph: Graph, writer: Element) -> str:
-    """Return the name of a writer, or else of its nearest owner with a name."""
+def find_label(graph: Graph, writer: Element, other: str = "") -> str:
+    """Return the name of a writer, or else of its nearest owner with a name.
+
+    The name is qualified if it is *other*, the name of another behaviour in the same message.
+    """
     elements = (writer, *graph.ancestors(writer))
-    return next((element.name for element in elements if element.name), writer.subkind)
+    named = next((element for element in elements if element.name), None)
+    if named is None:
+        return writer.subkind
+    return graph.qualified_name(named) if named.name == other else named.name
 
 
 class Sharing(Struct, frozen=True):

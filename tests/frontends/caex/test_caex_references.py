@@ -3,7 +3,7 @@
 import pytest
 from reading_caex import Read, aml, aml_2, classes, interfaces, plant, roles, types
 
-from sysmlc.diagnostics.renderers import make_report
+from sysmlc.diagnostics.renderers import make_report, merge_facts
 
 BRACKETS = classes(
     '<SystemUnitClass Name="B/2"><SystemUnitClass Name="T.1"/></SystemUnitClass>'
@@ -162,7 +162,7 @@ def test_references_to_one_missing_alias_class_or_end_are_one_finding():
     missing = "".join(f'<RoleClass Name="{n}" RefBaseClassPath="Roles/Gone"/>' for n in "DE")
     other = '<RoleClass Name="F" RefBaseClassPath="Bl@Base/X"/>'
     source = aml(roles(doors + missing + other) + plant('<InternalElement Name="i" ID="1"/>'))
-    (_, *findings) = make_report(Read(source).sink, [source]).findings
+    (_, *findings) = merge_facts(make_report(Read(source).sink, [source]).findings)
     assert [finding.diagnostic.message for finding in findings] == [
         "'Roles::A' uses the alias 'Al', which no ExternalReference declares (3 places)",
         "'Roles::D' refers to the class 'Roles/Gone', which does not exist (2 places)",

@@ -321,6 +321,12 @@ def test_actions_without_successions_are_correct_but_have_no_contract():
     ]
 
 
+def test_variants_and_the_start_and_end_of_an_action_need_no_order():
+    variants = "variation action def A { variant action a; variant action b; }"
+    ends = "action def B { action a :>> start; action b :>> done; }"
+    assert list_action_findings(f"{variants} {ends}") == []
+
+
 def test_components_of_one_name_in_two_files_are_reported_once_with_both():
     text = "package P { action def A { first start; then action x; then done; } }"
     reading = read(text, text, passes=ALL)

@@ -87,10 +87,10 @@ def test_an_output_that_is_bound_to_a_feature_writes_it():
     reset = "action def Reset { inout x : Boolean; " + CLEAR.format("x") + " }"
     step = "then action reset : Reset { inout x = full; }"
     graph, sink = write_plant(step=step, elsewhere=reset)
-    assert list_messages(sink) == [
+    assert set(list_messages(sink)) == {
         "the contract of 'work' treats 'full' as an input although action 'fill' and action "
         "'reset' assign it: the contract does not follow the assigned value"
-    ]
+    }
     assert list_owners(graph, "full") == {Owner.ENVIRONMENT}
 
 
@@ -111,6 +111,37 @@ def test_machines_that_write_the_same_promise_nothing_of_it():
         "and shows 'full := false' as output 'full_false'",
     ]
     assert list_owners(graph, "full") == {Owner.ENVIRONMENT}
+
+
+def test_machines_of_one_name_are_told_apart():
+    machine = MACHINE.format(name="mode", value="true")
+    text = (
+        "part def P {{ attribute full : ScalarValues::Boolean; part a {{ {0} }} part b {{ {0} }} }}"
+    )
+    reading = read(text.format(machine))
+    pipeline.run(reading.graph, reading.sink, verify_each=True)
+    assert list_messages(reading.sink) == [
+        f"'full' is also assigned by 'P::{other}::mode', so the contract of 'mode' treats it as an "
+        "input and shows 'full := true' as output 'full_true'"
+        for other in ("b", "a")
+    ]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "place"),
+    [
+        ("full : Boolean", "full : Integer", "Plant::Base::full"),
+        ("full : Boolean", "full : Boolean[0..4]", "Plant::Base::full"),
+        ("{ assign full := true; }", "{ assign full := measure(); }", "Plant::Cell::work::fill"),
+        ("{ assign full := true; }", "{ assign full := true; }", "Plant::Cell::work::fill"),
+    ],
+)
+def test_the_finding_is_where_the_reason_is(old, new, place):
+    text = PLANT.format(base="", own="", step="", beside=without_text("full"), elsewhere="")
+    reading = read(text.replace(old, new))
+    pipeline.run(reading.graph, reading.sink, verify_each=True)
+    names = [d.subject.name for d in reading.sink if d.rule.code == "SM544"]
+    assert place in names
 
 
 def test_the_rule_of_machines_reports_its_wrong_model_and_not_its_right_one():

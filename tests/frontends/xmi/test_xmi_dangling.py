@@ -3,7 +3,7 @@
 import pytest
 from reading_xmi import magicdraw, papyrus, read
 
-from sysmlc.diagnostics.renderers import make_report
+from sysmlc.diagnostics.renderers import make_report, merge_facts
 from sysmlc.passes import pipeline
 
 ACTIVITY = '<packagedElement xmi:type="uml:Activity" xmi:id="a" name="Open">{}</packagedElement>'
@@ -103,7 +103,7 @@ def test_a_missing_element_is_one_fact_and_not_a_missing_file():
     assert not any(line.startswith("SM152") for line in findings(source))
     reading = read(source)
     pipeline.load("resolve").run(reading.graph, reading.sink)
-    (finding,) = make_report(reading.sink, [source]).findings
+    (finding,) = merge_facts(make_report(reading.sink, [source]).findings)
     assert finding.diagnostic.message.endswith("'gone', which does not exist (2 places)")
     outside = SLOTS.replace(' instance="{}"/>', '><instance href="other.uml#o"/></value>')
     other = papyrus(outside)

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from sysmlc.diagnostics.renderers.json_documents import render_json, render_sarif
 from sysmlc.diagnostics.renderers.lines import render_concise, render_github, render_grouped
-from sysmlc.diagnostics.renderers.report import Finding, Report, make_report, shorten
+from sysmlc.diagnostics.renderers.report import Finding, Report, make_report, merge_facts, shorten
 from sysmlc.diagnostics.renderers.text import render_text
 
 __all__ = [
@@ -13,6 +13,7 @@ __all__ = [
     "Finding",
     "Report",
     "make_report",
+    "merge_facts",
     "render",
     "render_json",
     "shorten",

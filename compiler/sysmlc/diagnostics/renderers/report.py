@@ -75,7 +75,7 @@ def make_report(
     sources: Iterable[Source],
     shown_name: Callable[[str], str] = str,
 ) -> Report:
-    """Return the diagnostics with lines, columns, excerpts and XPaths, one for each fact.
+    """Return the diagnostics with lines, columns, excerpts and XPaths.
 
     *shown_name* converts the name of a file in the compile unit to the name that users see, which
     is usually relative to the working folder.
@@ -83,14 +83,13 @@ def make_report(
     diagnostics = list(diagnostics)
     places = [d.subject.place for d in diagnostics if d.subject.place]
     locations = locate(sources, places, with_xpath=True)
-    findings = (_make_finding(d, locations, shown_name) for d in diagnostics)
-    return Report(tuple(_merge_facts(findings)))
+    return Report(tuple(_make_finding(d, locations, shown_name) for d in diagnostics))
 
 
 # -- findings about one fact -------------------------------------------------------------------
 
 
-def _merge_facts(findings: Iterable[Finding]) -> list[Finding]:
+def merge_facts(findings: Iterable[Finding]) -> list[Finding]:
     """Return the first finding about each fact in a file, with a note for each further one.
 
     Findings of one severity with the same cause are about one fact. So are warnings and infos of

@@ -116,17 +116,32 @@ def report_range(graph: Graph, feature: Feature, sink: Sink) -> None:
             DEFAULT_OUTSIDE, subject, default=feature.invalid_default, name=name, domain=values
         )
     if feature.is_assumed and isinstance(domain, IntegerDomain):
-        low, high, name = domain.low, domain.high, feature.element.name
-        subject, values = graph.subject(feature.element), f"{low}..{high}"
-        sink.report(
-            ASSUMED_RANGE,
-            subject,
-            cause=describe_missing_range(subject.id),
-            name=name,
-            range=values,
-            low=low,
-            high=high,
-        )
+        report_assumed_range(graph, feature.element, domain, sink)
+
+
+def report_assumed_range(
+    graph: Graph,
+    element: Element,
+    domain: IntegerDomain,
+    sink: Sink,
+    user: Element | None = None,
+    *,
+    note: str = "",
+) -> None:
+    """Report that a feature without a range has the range *domain*.
+
+    The finding is at the feature, or at its *user* with a *note* about the consequence there.
+    """
+    sink.report(
+        ASSUMED_RANGE,
+        graph.subject(user or element),
+        notes=(note,) if note else (),
+        cause=describe_missing_range(element.id),
+        name=element.name,
+        range=describe(domain),
+        low=domain.low,
+        high=domain.high,
+    )
 
 
 def _find_elements(

@@ -299,7 +299,7 @@ def _has_other_writer(
             name=feature.element.name,
             text=text.strip(),
             variable=_effect_output(reading, text, behaviour),
-            writer=find_label(reading.graph, writer),
+            writer=find_label(reading.graph, writer, reading.sharing.machine.name),
         )
     return writer is not None
 

@@ -97,15 +97,24 @@ def may_compete(
     )
 
 
-def have_common_cause(
-    outgoing: tuple[Transition, ...], vertex: Vertex, comparison: GuardComparison
-) -> bool:
-    """Whether one occurrence can enable two of the *outgoing* transitions."""
-    return any(
-        (vertex.kind != "state" or _have_equal_trigger(left, right))
-        and comparison.are_compatible(left, right)
-        for left, right in combinations(outgoing, 2)
-    )
+def list_competing(
+    outgoing: tuple[Transition, ...],
+    vertex: Vertex,
+    comparison: GuardComparison,
+    *,
+    by_one_occurrence: bool,
+) -> list[Transition]:
+    """Return the *outgoing* transitions that can be enabled together with another of them.
+
+    With *by_one_occurrence*, the same occurrence of a trigger has to enable both.
+    """
+    is_state = vertex.kind == "state"
+    can_meet = _have_equal_trigger if by_one_occurrence else _can_coincide
+    competing: dict[str, Transition] = {}
+    for left, right in combinations(outgoing, 2):
+        if (not is_state or can_meet(left, right)) and comparison.are_compatible(left, right):
+            competing |= {left.id: left, right.id: right}
+    return [transition for transition in outgoing if transition.id in competing]
 
 
 def _have_equal_trigger(left_transition: Transition, right_transition: Transition) -> bool:

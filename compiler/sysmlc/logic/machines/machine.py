@@ -167,6 +167,8 @@ class Machine(Struct, frozen=True):
     """Default values of the assigned properties; a property without default is not in it."""
     outputs: tuple[str, ...] = ()
     assigned: tuple[str, ...] = ()
+    assumed: tuple[str, ...] = ()
+    """Assigned properties without a range, so that the compiler chose one."""
     memories: dict[str, Expression] = field(default_factory=dict)
 
     def find_variable(self, name: str) -> Variable:

@@ -13,10 +13,9 @@ from msgspec.structs import replace
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Graph
 from sysmlc.logic import formula as f
-from sysmlc.logic.contract import (
-    Domain,
-)
+from sysmlc.logic.contract import Domain, IntegerDomain
 from sysmlc.logic.domains import valuations
+from sysmlc.logic.expressions.context import report_assumed_range
 from sysmlc.logic.expressions.elaboration import elaborate_condition
 from sysmlc.logic.formula import Const, Formula, Op
 from sysmlc.logic.machines import descriptions as texts
@@ -309,8 +308,15 @@ def _report_faults(
     """Report assignments that saturate, and a choice whose guards do not cover all cases."""
     subject = graph.subject(graph[element_id(transition.id)])
     name = texts.name_transition(transition)
-    for path in paths:
-        for variable, _ in path.saturated:
+    for variable in dict.fromkeys(name for path in paths for name, _ in path.saturated):
+        domain = domains[variable]
+        if variable in machine.assumed and isinstance(domain, IntegerDomain):
+            # The author stated no range, so that the bound is a limit of the contract only.
+            feature = graph[machine.find_variable(variable).origin]
+            user = graph[element_id(transition.id)]
+            note = f"{name} can take it out of this range; the contract stops at the bound"
+            report_assumed_range(graph, feature, domain, sink, user, note=note)
+        else:
             sink.report(SATURATES, subject, transition=name, can="can", variable=variable)
     target = machine.vertices[transition.target] if transition.target else None
     if target is None or target.is_stable or transition.kind == "internal":

@@ -18,7 +18,7 @@ from sysmlc.logic.machines.conflicts import (
     GuardComparison,
     TooManyValuationsError,
     are_regions_independent,
-    have_common_cause,
+    list_competing,
     may_compete,
     report_lost_events,
 )
@@ -181,10 +181,13 @@ def _add_choice_variable(
     literals = tuple(transition.literal for transition in outgoing)
     domain = EnumerationDomain((NO_EVENT, *literals))
     pick = reading.variable_for(f"pick {id}", f"taken_{name}", Owner.SYSTEM, domain, element_id(id))
-    names = ", ".join(f"'{transition.words}'" for transition in outgoing)
+    vertex, rule = draft.vertices[id], NONDETERMINISTIC
+    competing = list_competing(outgoing, vertex, comparison, by_one_occurrence=True)
+    if not competing:
+        rule = COINCIDING
+        competing = list_competing(outgoing, vertex, comparison, by_one_occurrence=False)
+    names = ", ".join(f"'{transition.words}'" for transition in competing)
     subject = reading.graph.subject(draft.element(id))
-    has_common_cause = have_common_cause(outgoing, draft.vertices[id], comparison)
-    rule = NONDETERMINISTIC if has_common_cause else COINCIDING
     reading.sink.report(rule, subject, transitions=names, vertex=name, pick=pick)
     return pick
 
@@ -206,6 +209,7 @@ def _assemble(draft: MachineDraft, top: tuple[str, ...]) -> Machine:
         {name: value for name, value in defaults.items() if value is not None},
         tuple(reading.output_names),
         assigned,
+        tuple(name for name in assigned if features[name].is_assumed),
         draft.memories,
     )
 

@@ -285,5 +285,7 @@ class _InformalConditions:
 
 def _explain(context: Context, error: Exception) -> str:
     if isinstance(error, ElaborationError) and error.fault is Fault.UNKNOWN:
+        if error.name == "null":
+            return "'null' (no value) is no value of a Boolean, an enumeration or an Integer"
         return f"'{error.name}' is not a parameter or feature with finitely many values"
     return str(error)

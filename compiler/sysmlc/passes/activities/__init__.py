@@ -34,6 +34,8 @@ from sysmlc.passes.activities.guard_names import read_guard_names
 from sysmlc.passes.activities.inputs import Inputs, Scope
 from sysmlc.passes.activities.stores import track_stores
 
+_START_AND_END = ("Actions::Action::start", "Actions::Action::done")
+
 
 class _OtherBehaviours(Struct, frozen=True):
     """Facts about other behaviours: the exceptions they raise and the features they write."""
@@ -130,7 +132,10 @@ def _check_order(graph: Graph, drawing: activity_drawing.Drawing, sink: Sink) ->
 
     By the letter of UML 2.5.1, 15.2.3, all its actions would start at once.
     """
-    steps = drawing.list_steps()
+    if drawing.activity.attrs.get("variation") and not drawing.flows:
+        _report_empty(graph, drawing.activity, "is a variation: it has variants, no steps", sink)
+        raise activity_drawing.CannotPlayError
+    steps = [step for step in drawing.list_steps() if not _is_start_or_end(graph, step)]
     if not steps and not drawing.flows:
         _report_empty(graph, drawing.activity, "has no actions", sink)
         raise activity_drawing.CannotPlayError
@@ -140,6 +145,12 @@ def _check_order(graph: Graph, drawing: activity_drawing.Drawing, sink: Sink) ->
     activity = drawing.activity
     sink.report(rules.UNORDERED, graph.subject(activity), activity=activity.name)
     raise activity_drawing.CannotPlayError
+
+
+def _is_start_or_end(graph: Graph, step: Element) -> bool:
+    """Whether a step redefines the start or the end that each action of SysML v2 inherits."""
+    called = graph.target(step, Edge.CALLS)
+    return called is not None and called.attrs.get("qualified_name") in _START_AND_END
 
 
 def _describe_binding(graph: Graph, activity: Element) -> str:

@@ -4,7 +4,7 @@ A feature that an activity assigns, but that its contract does not track, is rep
 reason (SM544).
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 from msgspec import Struct
 
@@ -152,7 +152,8 @@ def report_unknown_targets(
             if activity in graph.ancestors(target):
                 continue
             label = find_label(graph, assignment.action)
-            unfollowed = UntrackedFeature(target, OTHER_OBJECT, (f"action '{label}'",))
+            writers_by_label = {f"action '{label}'": assignment.action}
+            unfollowed = UntrackedFeature(target, OTHER_OBJECT, writers_by_label)
             report_untracked(graph, activity, [unfollowed], sink)
         elif assignment.name.partition(".")[0] not in (
             known_names := set(_list_known_names(graph, activity))
@@ -193,12 +194,19 @@ class Refusal(Struct, frozen=True):
 
     reason: str
     advice: str
+    is_declared: bool = False
+    """Whether the declaration of the feature is the reason; else the assignments are."""
 
 
 NO_FINITE_DOMAIN = Refusal(
-    "it has no finite type", "type it by a Boolean, an enumeration or an Integer"
+    "it has no finite type", "type it by a Boolean, an enumeration or an Integer", is_declared=True
 )
-NO_RANGE = Refusal("it has no range", "constrain it ({name} >= 0 and {name} <= 9)")
+NO_RANGE = Refusal(
+    "it has no range", "constrain it ({name} >= 0 and {name} <= 9)", is_declared=True
+)
+SEVERAL_VALUES = Refusal(
+    "it has several values", "use one property for each value", is_declared=True
+)
 GIVEN_OR_CONSTANT = Refusal(
     "others decide it too", "assign to a feature that is neither given nor constant"
 )
@@ -215,11 +223,12 @@ def refuse_shared(writer: str) -> Refusal:
 
 
 class UntrackedFeature(Struct, frozen=True):
-    """An assigned feature that is not tracked, the reason, and the labels of assigning actions."""
+    """An assigned feature that is not tracked, the reason, and the actions that assign it."""
 
     feature: Element
     refusal: Refusal
-    writers: tuple[str, ...]
+    writers: Mapping[str, Element]
+    """The assigning actions by their labels."""
 
 
 def _describe_cause(untracked: UntrackedFeature) -> str:
@@ -231,16 +240,21 @@ def _describe_cause(untracked: UntrackedFeature) -> str:
 def report_untracked(
     graph: Graph, activity: Element, untracked: Iterable[UntrackedFeature], sink: Sink
 ) -> None:
-    """Report each feature that the contract treats as an input although actions assign it."""
+    """Report each feature that the contract treats as an input although actions assign it.
+
+    The finding is at the feature if its declaration is the reason, else at each assigning action.
+    """
     for feature in untracked:
-        sink.report(
-            UNTRACKED,
-            graph.subject(feature.feature),
-            cause=_describe_cause(feature),
-            activity=activity.name,
-            name=feature.feature.name,
-            writers=" and ".join(feature.writers),
-            verb="assigns" if len(feature.writers) == 1 else "assign",
-            reason=feature.refusal.reason,
-            advice=feature.refusal.advice.format(name=feature.feature.name),
-        )
+        element, refusal = feature.feature, feature.refusal
+        for place in [element] if refusal.is_declared else feature.writers.values():
+            sink.report(
+                UNTRACKED,
+                graph.subject(place),
+                cause=_describe_cause(feature),
+                activity=find_label(graph, activity),
+                name=element.name,
+                writers=" and ".join(feature.writers),
+                verb="assigns" if len(feature.writers) == 1 else "assign",
+                reason=refusal.reason,
+                advice=refusal.advice.format(name=element.name),
+            )

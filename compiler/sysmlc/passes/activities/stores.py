@@ -23,6 +23,7 @@ from sysmlc.passes.activities.assignments import (
     NO_FINITE_DOMAIN,
     NO_RANGE,
     OTHER_OBJECT,
+    SEVERAL_VALUES,
     UNKNOWN_VALUE,
     Refusal,
     ResolvedAssignment,
@@ -242,11 +243,16 @@ class _StoreTracker:
         if refusal is not None or self._is_local(self.features[name]):
             return refusal
         writer = self._find_other_writer(self.features[name])
-        return None if writer is None else refuse_shared(find_label(self.graph, writer))
+        if writer is None:
+            return None
+        return refuse_shared(find_label(self.graph, writer, self.activity.name))
 
     def _find_own_refusal(self, name: str) -> Refusal | None:
         """Return a reason that does not depend on other behaviours, or None."""
         feature = self.features[name]
+        limits = query.bounds(feature.element.attrs.get("multiplicity"))
+        if limits is not None and limits[1] != 1:
+            return SEVERAL_VALUES
         if feature.domain is None:
             return NO_FINITE_DOMAIN
         if feature.is_assumed:
@@ -270,12 +276,11 @@ class _StoreTracker:
         for name, writes in self.assigned.items():
             refusal = self._find_refusal(name) if self._needs_report(name) else None
             if refusal is not None:
-                labels = dict.fromkeys(
-                    self.nodes[assignment.action.id].label for assignment in writes
-                )
-                untracked.append(
-                    UntrackedFeature(self.features[name].element, refusal, tuple(labels))
-                )
+                actions: dict[str, Element] = {}
+                for assignment in writes:
+                    label = self.nodes[assignment.action.id].label
+                    actions.setdefault(label, assignment.action)
+                untracked.append(UntrackedFeature(self.features[name].element, refusal, actions))
         return untracked
 
     def _needs_report(self, name: str) -> bool:

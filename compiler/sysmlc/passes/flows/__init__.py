@@ -156,13 +156,13 @@ def _title(graph: Graph, relation: Element) -> str:
 
 def _list_port_ends(graph: Graph, flow: Element) -> Iterator[tuple[Element, str, str]]:
     """Yield each port at an end of the flow, its expected direction, and the verb for messages."""
-    for edge, outside, inside, way in (
-        (Edge.FLOW_SOURCE, "out", "in", "leaves"),
-        (Edge.FLOW_TARGET, "in", "out", "enters"),
+    for edge, outside, inside in (
+        (Edge.FLOW_SOURCE, ("out", "leaves"), ("in", "enters its block through")),
+        (Edge.FLOW_TARGET, ("in", "enters"), ("out", "leaves its block through")),
     ):
         for end in graph.targets(flow, edge):
             if end.kind is Kind.PORT:
-                yield end, inside if _runs_inside(graph, flow, end) else outside, way
+                yield end, *(inside if _runs_inside(graph, flow, end) else outside)
 
 
 def _runs_inside(graph: Graph, flow: Element, port: Element) -> bool:
