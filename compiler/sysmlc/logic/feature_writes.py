@@ -24,6 +24,9 @@ from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
 
 _ASSIGNED_NAME = re.compile(r"([^\W\d]\w*)\s*:=")
 """The last name of each assigned path, in a body without quoted names."""
+_FOREIGN_ASSIGNMENT = re.compile(r"(?<![=<>!:])=(?!=)|\+\+|--")
+"""A sign of an assignment in a programming language; KerML and UML write ``:=``."""
+_WORD = re.compile(r"[^\W\d]\w*")
 _PATH_SEPARATOR = re.compile(r"::|\.")
 _NAMED = (*VALUE_KINDS, *query.CLASSIFIERS, Kind.PACKAGE)
 """Kinds that a path of names may lead through."""
@@ -181,6 +184,7 @@ class WriterIndex:
         self._candidates_by_name: dict[str, list[Element]] | None = None
         self._members_by_scope: dict[str, dict[str, Element]] = {}
         self._writers_by_name: dict[str, dict[str, list[Element]]] = {}
+        self._unclear_by_name: dict[str, list[Element]] | None = None
 
     def find_other_writer(self, feature: Element, behaviour: Element) -> Element | None:
         """Return the first writer of the feature that is outside the behaviour."""
@@ -210,6 +214,40 @@ class WriterIndex:
         )
         for slot in redefinitions:
             yield from self._index_writers(slot.name).get(slot.id, ())
+
+    def iter_unclear_writers(self, feature: Element) -> Iterator[Element]:
+        """Yield the actions and effects of which it is not known whether they write the feature.
+
+        Their text names it beside an assignment that is not understood (``this.level++``), or they
+        clear the feature or remove a value.
+        """
+        if self._unclear_by_name is None:
+            self._unclear_by_name = {}
+            for writer in (*self._graph.of_kind(Kind.ACTION), *self._graph.of_kind(Kind.ACTIVITY)):
+                for name in dict.fromkeys(self._iter_unclear_names(writer)):
+                    self._unclear_by_name.setdefault(name, []).append(writer)
+        redefined = query.redefined_features(self._graph, feature)
+        for name in dict.fromkeys(slot.name for slot in (feature, *redefined)):
+            yield from self._unclear_by_name.get(name, ())
+
+    def _iter_unclear_names(self, writer: Element) -> Iterator[str]:
+        if writer.subkind in ("clear", "remove"):
+            yield from (feature.name for feature in self._graph.targets(writer, Edge.CALLS))
+        body = writer.attrs.get("body")
+        if not isinstance(body, str):
+            return
+        if _FOREIGN_ASSIGNMENT.search(body):
+            yield from _WORD.findall(body)
+        elif ":=" in body:
+            try:
+                statements = parse_effect(body)
+            except ExpressionError:
+                yield from _WORD.findall(body)
+                return
+            for statement in statements:
+                path = name_of(statement.target) if isinstance(statement, Assignment) else None
+                if path and self.resolve_target(writer, path.removeprefix("self.")) is None:
+                    yield last_name(path)
 
     def _index_writers(self, name: str) -> dict[str, list[Element]]:
         """Return the writers of all features of a name, by the id of the feature."""

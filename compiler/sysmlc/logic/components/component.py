@@ -20,6 +20,7 @@ from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Owner, Source,
 from sysmlc.logic.expressions.context import context_of
 from sysmlc.logic.expressions.expression import ExpressionError, last_name, name_of
 from sysmlc.logic.expressions.parsing import parse_expression
+from sysmlc.logic.feature_writes import WriterIndex
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.identifiers import Names, identifier
 from sysmlc.logic.machines.machine import Vertex
@@ -40,8 +41,18 @@ class Root:
 class Component:
     """Builds the step relation of one component. Names are resolved before it is complete."""
 
-    def __init__(self, graph: Graph, subject: Element, options: MachineOptions) -> None:
-        """Collect the objects and behaviours. Raises ComponentError."""
+    def __init__(
+        self,
+        graph: Graph,
+        subject: Element,
+        options: MachineOptions,
+        writers: WriterIndex | None = None,
+    ) -> None:
+        """Collect the objects and behaviours. Raises ComponentError.
+
+        *writers* are the writers of all features of the graph, if an index exists.
+        """
+        self.writers = writers or WriterIndex(graph)
         self.graph = graph
         self.subject = subject
         self._options = options
@@ -168,7 +179,7 @@ class Component:
             return object_, behaviour
         called = self.graph.targets(behaviour, Edge.CALLS)
         if called:
-            performer = self.performances.find_performer(object_, called[0])
+            performer = self.tree.find_performer(object_, called[0])
             return None if performer is None else (performer, called[0])
         try:
             path = name_of(parse_expression(str(behaviour.attrs.get("body", "")))) or ""

@@ -30,7 +30,7 @@ from sysmlc.logic.contract import (
     Source,
     Variable,
 )
-from sysmlc.logic.feature_writes import WriterIndex, find_label
+from sysmlc.logic.feature_writes import find_label
 from sysmlc.logic.formula import Const, Formula
 from sysmlc.logic.machines.machine import element_id
 from sysmlc.logic.simplification import substitute
@@ -122,8 +122,8 @@ class _Description:
         self._conjuncts += outputs.derive(formulas)
         gaps = dict(performances.gaps) | outputs.gaps
         writers = self._list_writers(formulas, machine_writes, outputs.writes)
-        gaps |= self._derive_starts(writers, written)
         gaps |= self._derive_updates(writers, outputs.origins)
+        gaps |= self._derive_starts(gaps)
         wiring = derive_events(self.component)
         self._conjuncts += wiring.conjuncts
         gaps |= wiring.gaps
@@ -247,11 +247,12 @@ class _Description:
                 others.append(when)
         yield f.negate(f.either(*others)), value
 
-    def _derive_starts(
-        self, writers: Mapping[Slot, list[Writer]], written: set[Slot]
-    ) -> dict[str, str]:
-        """Add the initial values; return the features that two machines set at their start."""
-        gaps: dict[str, str] = {}
+    def _derive_starts(self, gaps: Mapping[str, str]) -> dict[str, str]:
+        """Add the initial values of features without gaps.
+
+        Return the features that two machines set at their start.
+        """
+        clashes: dict[str, str] = {}
         decided: set[str] = set()
         for machine in self.machines:
             names = [machine.variables[name] for name in machine.list_start_writes()]
@@ -259,31 +260,28 @@ class _Description:
             decided.update(names)
             for conjunct in machine.iter_starts():
                 read = {variable.name for variable in f.variables(conjunct.formula)}
-                if read.isdisjoint(clash):
+                if read.isdisjoint((*clash, *gaps)):
                     self._conjuncts.append(conjunct)
             for name in clash:
-                gaps[name] = f"several behaviours set '{name}' at their start"
-        for slot in writers:
-            feature = self.tree.read_slot(slot)
+                clashes[name] = f"several behaviours set '{name}' at their start"
+        for feature in self.tree.used_slots.values():
             name = feature.variable.name
-            if feature.default is not None and name not in decided:
-                self._add(
-                    equals(feature.variable, Const(feature.default)),
-                    Class.INIT,
-                    feature.variable.origin,
-                )
+            is_free = feature.is_input or name in decided or name in gaps
+            if feature.default is not None and not is_free:
+                initial = equals(feature.variable, Const(feature.default))
+                self._add(initial, Class.INIT, feature.variable.origin)
         for store, _ in self.performances.locals:
             if store.first is not None:
                 self._add(
                     equals(store.variable, Const(store.first)), Class.INIT, store.variable.origin
                 )
-        return gaps
+        return clashes
 
     def _derive_updates(
         self, writers: Mapping[Slot, list[Writer]], bound: set[str]
     ) -> dict[str, str]:
         """Add the next-state relation of each feature; return those with other writers."""
-        index = WriterIndex(self.graph)
+        index = self.component.writers
         described = bound | {write.origin for write in self.performances.writes}
         described |= {id for machine in self.machines for id in machine.written}
         described -= self.component.released
@@ -293,7 +291,10 @@ class _Description:
             others = (
                 writer
                 for element in feature.elements
-                for writer in index.iter_writers(element)
+                for writer in (
+                    *index.iter_writers(element),
+                    *index.iter_unclear_writers(element),
+                )
                 if writer.id not in described
             )
             other = next(others, None)
@@ -303,8 +304,11 @@ class _Description:
                     f"'{name}' is assigned by '{label}', which the check does not combine with it"
                 )
                 continue
+            if feature.is_computed:
+                gaps[name] = f"'{name}' has a computed value, which the check does not follow"
+                continue
             group = writers.get(slot, [])
-            if group:
+            if group or not feature.is_input:
                 when = f.either(*(writer.condition for writer in group))
                 values = (
                     f.both(writer.condition, equals(feature.variable, writer.value, is_next=True))
@@ -325,7 +329,8 @@ class _Description:
     ) -> dict[str, Variable]:
         variables = [*events, *self.component.variables, *arguments]
         for slot, feature in self.tree.used_slots.items():
-            owner = Owner.SYSTEM if slot in written else Owner.ENVIRONMENT
+            is_decided = slot in written or not feature.is_input
+            owner = Owner.SYSTEM if is_decided else Owner.ENVIRONMENT
             variables.append(replace(feature.variable, owner=owner))
         for machine in self.machines:
             variables += (

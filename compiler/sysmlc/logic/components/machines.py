@@ -230,7 +230,7 @@ def _find_slot(
     element = tree.graph.get(variable.origin)
     if element is None or not is_value(element) or machine in tree.graph.ancestors(element):
         return None
-    slot = tree.find_slot(object_, element, variable.name)
+    slot = tree.find_slot(object_, element, variable.name, machine)
     if slot is not None and tree.read_slot(slot).variable.domain != variable.domain:
         raise ComponentError(f"'{variable.name}' has other values in '{machine.name}'")
     return slot

@@ -51,9 +51,7 @@ class ComponentNames:
         path, dot, last = name.rpartition(".")
         if last == EVENT and self._component.tree.find_object(path) is not None:
             return self._find_event(path)
-        if not dot:
-            return self._find_own(name)
-        return self._find_feature(name)
+        return (None if dot else self._find_own(name)) or self._find_feature(name)
 
     def _find_event(self, path: str) -> Meaning | None:
         name = self._component.events.get(path)
@@ -88,6 +86,8 @@ class ComponentNames:
             feature_name = name.removeprefix(prefix)
             if name.startswith(prefix) and feature_name in tree.context(object_).features:
                 feature = tree.context(object_).features[feature_name]
+                if feature.domain is None and not object_.path:
+                    return None
                 if feature.domain is None:
                     raise ComponentError(f"'{name}' has not finitely many values")
                 if feature.is_constant and feature.default is not None:

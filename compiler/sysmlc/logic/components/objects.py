@@ -46,7 +46,11 @@ class FeatureSlot(Struct, frozen=True):
     default: Literal | None
     elements: tuple[Element, ...]
     is_input: bool
-    """Whether all joined features have the direction ``in``, so that the environment decides it."""
+    """Whether the environment decides it: all joined features have the direction ``in`` or
+    ``inout``, or something outside the component is connected with the only one.
+    """
+    is_computed: bool
+    """Whether an expression that is no constant states the value."""
 
 
 class ObjectTree:
@@ -98,7 +102,8 @@ class ObjectTree:
         for suffix in self._iter_suffixes(left):
             if suffix in suffixes:
                 self.joined.union(
-                    (left.path, left.feature + suffix), (right.path, right.feature + suffix)
+                    self._follow_parts(left.path, left.feature + suffix),
+                    self._follow_parts(right.path, right.feature + suffix),
                 )
 
     def _iter_suffixes(self, end: End) -> Iterator[str]:
@@ -123,6 +128,25 @@ class ObjectTree:
             object_ = object_.owner
         return None
 
+    def find_performer(self, start: ComponentObject, activity: Element) -> ComponentObject | None:
+        """Return the object that performs an activity which an object calls.
+
+        It is the object itself or one around it that has the activity, or else the only part that
+        has it. An activity of no classifier is performed by the caller.
+        """
+        owner = self.graph.owner(activity)
+        if owner is None or owner.kind is Kind.PACKAGE:
+            return start
+        object_: ComponentObject | None = start
+        while object_ is not None:
+            if owner in object_.list_family(self.graph) or owner in self.graph.ancestors(
+                object_.type_
+            ):
+                return object_
+            object_ = object_.owner
+        parts = [part for part in self.objects if owner in part.list_family(self.graph)]
+        return parts[0] if len(parts) == 1 else None
+
     def context(self, object_: ComponentObject) -> Context:
         """Return what names mean inside an object."""
         if object_.path not in self._contexts:
@@ -131,23 +155,53 @@ class ObjectTree:
 
     # -- features ----------------------------------------------------------------------------------
 
-    def find_slot(self, object_: ComponentObject, element: Element, variable: str) -> Slot | None:
+    def find_slot(
+        self,
+        object_: ComponentObject,
+        element: Element,
+        variable: str,
+        behaviour: Element | None = None,
+    ) -> Slot | None:
         """Return the slot of a feature that a behaviour of an object names, or None.
 
         *variable* is the variable of the feature in the behaviour. A value at a port
-        (``level.value``) belongs to the object that has the port.
+        (``level.value``) belongs to the object that has the port, a value in a part
+        (``cell.full``) to the part.
         """
+        contexts = [self.context(object_)]
+        if behaviour is not None:
+            contexts.insert(0, self._context_in(object_, behaviour))
+        for context in contexts:
+            for name, candidate in context.variables.items():
+                # A path comes first: an object around may have the feature, too.
+                is_same = "." in name and candidate == variable
+                if is_same and context.features[name].element is element:
+                    return self.slot_of(object_.path, name)
         holder = self.find_holder(object_, element)
-        if holder is not None:
-            return self.slot_of(holder.path, self._find_name(element))
-        variables = self.context(object_).variables
-        dotted = (name for name in variables if "." in name and variables[name] == variable)
-        name = next(dotted, None)
-        return None if name is None else self.slot_of(object_.path, name)
+        return None if holder is None else self.slot_of(holder.path, self._find_name(element))
+
+    def _context_in(self, object_: ComponentObject, behaviour: Element) -> Context:
+        """Return what names mean in a behaviour of an object."""
+        key = f"{object_.path} {behaviour.id}"
+        if key not in self._contexts:
+            # The names of an activity are its own; it is read without its classifier.
+            classifier = behaviour if behaviour.kind is Kind.ACTIVITY else object_.type_
+            self._contexts[key] = context_of(self.graph, classifier, self.assumed_range, behaviour)
+        return self._contexts[key]
 
     def slot_of(self, path: str, name: str) -> Slot:
-        """Return the representative of the joined features to which a feature belongs."""
-        return self.joined.find((path, name))
+        """Return the representative of the joined features to which a feature belongs.
+
+        A name that leads into a part (``cell.full``) is a feature of the part.
+        """
+        return self.joined.find(self._follow_parts(path, name))
+
+    def _follow_parts(self, path: str, name: str) -> Slot:
+        first, dot, rest = name.partition(".")
+        part = join_path(path, first)
+        if not dot or self.find_object(part) is None:
+            return path, name
+        return self._follow_parts(part, rest)
 
     def _find_name(self, feature: Element) -> str:
         """Return the name of the feature that a feature redefines in the end, else its own."""
@@ -160,7 +214,8 @@ class ObjectTree:
         for object_ in self.objects:
             features = self.context(object_).features
             for name in features:
-                if self.joined.find((object_.path, name)) == slot:
+                own = object_.path, name
+                if self._follow_parts(*own) == own and self.joined.find(own) == slot:
                     joined.append((object_, features[name]))
         return joined
 
@@ -200,8 +255,28 @@ class ObjectTree:
             Variable(variable, Owner.SYSTEM, domains[0], first.element.id),
             next(defaults, None),
             tuple(feature.element for _, feature in joined),
-            all(feature.direction == "in" for _, feature in joined),
+            all(self._is_input(feature) for _, feature in joined)
+            or (len(joined) == 1 and self._is_open(name, first)),
+            any(_is_computed(feature) for _, feature in joined),
         )
+
+    def _is_input(self, feature: Feature) -> bool:
+        # A flow property without a direction is ``inout`` (SysML 1.6 clause 9.3.2.8).
+        default = "inout" if feature.element.kind is Kind.FLOW_PROPERTY else ""
+        return (feature.direction or default) in ("in", "inout")
+
+    def _is_open(self, name: str, feature: Feature) -> bool:
+        """Whether a feature that nothing inside joins may get its value through a connection."""
+        if feature.direction == "out":
+            return False
+        is_connected = any(True for _ in self.graph.sources(feature.element, Edge.ROLE))
+        return "." in name or is_connected
+
+
+def _is_computed(feature: Feature) -> bool:
+    # A default such as ``0..5`` states a range.
+    text = str(feature.element.attrs.get("default", ".."))
+    return feature.default is None and ".." not in text
 
 
 def is_value(element: Element | None) -> bool:

@@ -234,7 +234,7 @@ class Performances:
         element = self._graph.get(variable.origin)
         is_own = element is not None and copy.activity in self._graph.ancestors(element)
         if element is not None and is_value(element) and variable.name not in tokens.pulses:
-            slot = self._tree.find_slot(copy.caller.owner, element, variable.name)
+            slot = self._find_slot(copy, element, variable.name)
             if slot is not None:
                 shared = self._tree.read_slot(slot).variable
                 if shared.domain == variable.domain:
@@ -249,6 +249,10 @@ class Performances:
             copy.parameters[element.name] = self.inputs[name]
         return name
 
+    def _find_slot(self, copy: Copy, element: Element, variable: str) -> Slot | None:
+        drawn = find_drawn_activity(self._graph, copy.activity)
+        return self._tree.find_slot(copy.caller.owner, element, variable, drawn)
+
     def _is_of_object(self, feature: Element) -> bool:
         """Whether an object has the feature, and not what an event or a flow brings."""
         owner = self._graph.owner(feature)
@@ -259,7 +263,7 @@ class Performances:
         element = self._graph.get(store.variable.origin)
         slot: Slot | None = None
         if element is not None:
-            slot = self._tree.find_slot(copy.caller.owner, element, store.variable.name)
+            slot = self._find_slot(copy, element, store.variable.name)
         writes = [_rename_write(write, copy, ids) for write in store.writes]
         if slot is not None and self._tree.read_slot(slot).variable.name == name:
             for write in writes:
@@ -310,7 +314,8 @@ class Performances:
         activity = called[0] if len(called) == 1 else None
         tokens = None if activity is None else self.find_tokens(activity)
         has_steps = any(self.has_steps(behaviour) for behaviour in called)
-        object_ = None if activity is None else self.find_performer(copy.caller.owner, activity)
+        owner = copy.caller.owner
+        object_ = None if activity is None else self._tree.find_performer(owner, activity)
         reason = ""
         if node.duration is not Duration.TIMED:
             reason = f"'{node.label}' does not wait for its end"
@@ -328,7 +333,7 @@ class Performances:
         assert tokens is not None
         assert object_ is not None
         self._drop_end(node)
-        if object_.path != copy.caller.owner.path:
+        if object_.path != owner.path:
             self.paths.append(ActionPath((*object_.path.split("."), activity.name), node.id))
         elif activity.name != element.name:
             self.paths.append(ActionPath((*names[:-1], activity.name), node.id))
@@ -350,25 +355,6 @@ class Performances:
         """Whether an activity is drawn with actions."""
         drawn = find_drawn_activity(self._graph, behaviour)
         return any(element.kind is Kind.ACTION for element in self._graph.owned(drawn))
-
-    def find_performer(self, start: ComponentObject, activity: Element) -> ComponentObject | None:
-        """Return the object that performs an activity which an object calls.
-
-        It is the object itself or one around it that has the activity, or else the only part that
-        has it. An activity of no classifier is performed by the caller.
-        """
-        owner = self._graph.owner(activity)
-        if owner is None or owner.kind is Kind.PACKAGE:
-            return start
-        object_: ComponentObject | None = start
-        while object_ is not None:
-            if owner in object_.list_family(self._graph) or owner in self._graph.ancestors(
-                object_.type_
-            ):
-                return object_
-            object_ = object_.owner
-        parts = [part for part in self._tree.objects if owner in part.list_family(self._graph)]
-        return parts[0] if len(parts) == 1 else None
 
 
 def _is_call(element: Element) -> bool:

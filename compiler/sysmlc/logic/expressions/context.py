@@ -12,7 +12,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.ir import Element, Graph, Kind
+from sysmlc.ir import Element, Graph, Kind, query
 from sysmlc.logic.contract import EnumerationDomain, IntegerDomain
 from sysmlc.logic.domains import describe
 from sysmlc.logic.expressions.features import (
@@ -29,6 +29,7 @@ from sysmlc.logic.expressions.named_elements import (
     find_direction,
     find_named_values,
     find_object_values,
+    find_part_values,
     find_port_values,
 )
 from sysmlc.logic.expressions.parsing import unquote
@@ -152,7 +153,23 @@ def _find_elements(
     elements |= find_object_values(graph, classifier)
     if behaviour is not None and behaviour is not classifier:
         elements |= find_named_values(graph, behaviour) | find_object_values(graph, behaviour)
-    return elements
+    return _find_values_in_parts(graph, classifier, behaviour or classifier) | elements
+
+
+def _find_values_in_parts(
+    graph: Graph, classifier: Element, behaviour: Element
+) -> dict[str, Element]:
+    """Return the values in parts of the object around a behaviour that the behaviour names."""
+    if behaviour.kind not in _BEHAVIOURS:
+        return {}
+    owner: Element | None = classifier
+    if behaviour is classifier:
+        around = (a for a in graph.ancestors(behaviour) if a.kind in (Kind.CLASS, Kind.COMPONENT))
+        owner = next(around, None)
+    if owner is None or not any(part.role == "part" for part in query.features(graph, owner)):
+        return {}
+    paths = (name for text in _iter_texts(graph, behaviour) for name in _PATH.findall(text))
+    return find_part_values(graph, owner, dict.fromkeys(paths))
 
 
 def _find_enclosing_values(graph: Graph, classifier: Element) -> dict[str, Element]:
@@ -292,6 +309,8 @@ _WORD = r"[^\W\d][\w.]*"
 _NAME = rf"{_WORD}|'(?:[^'\\]|\\.)*'"
 _VALUE = rf"-?\d+(?![\w.])|{_WORD}::\w+"
 _NAME_FIRST = re.compile(rf"({_NAME})\s*(?:==|!=|<=|>=|<|>|:=)\s*({_VALUE})")
+_PATH = re.compile(r"[^\W\d]\w*(?:\.[^\W\d]\w*)+")
+"""Plain names that are joined by dots."""
 _VALUE_FIRST = re.compile(rf"(?<![\w.:])({_VALUE})\s*(?:==|!=|<=|>=|<|>)\s*({_NAME})")
 _CACHE_SIZE = 4096
 """Texts whose values are cached: the same guards occur in many behaviours."""

@@ -59,6 +59,29 @@ def _iter_port_items(graph: Graph, port_type: Element) -> Iterator[Element]:
             yield feature
 
 
+def find_part_values(graph: Graph, classifier: Element, names: Iterable[str]) -> dict[str, Element]:
+    """Return the values in parts of a classifier for those of *names* that lead to one.
+
+    ``cell.full`` is a feature of the type of the single part ``cell``.
+    """
+    values: dict[str, Element] = {}
+    for name in names:
+        *path, last = name.split(".")
+        owner: Element | None = classifier
+        for step in path:
+            part = None if owner is None else find_named_values(graph, owner).get(step)
+            is_single = part is not None and query.bounds(part.attrs.get("multiplicity")) in (
+                None,
+                (1, 1),
+            )
+            is_part = part is not None and part.role == "part" and is_single
+            owner = query.type_of(graph, part) if part is not None and is_part else None
+        value = None if owner is None else find_named_values(graph, owner).get(last)
+        if path and value is not None and value.kind is Kind.PROPERTY and value.role == "value":
+            values[name] = value
+    return values
+
+
 def find_direction(graph: Graph, classifier: Element, name: str, element: Element) -> str:
     """Return the direction of a feature as seen by the classifier; empty if it has none.
 

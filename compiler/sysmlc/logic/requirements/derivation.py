@@ -22,6 +22,7 @@ from sysmlc.logic.expressions.context import context_of, report_range
 from sysmlc.logic.expressions.elaboration import ElaborationError, Fault, elaborate_condition
 from sysmlc.logic.expressions.expression import ExpressionError
 from sysmlc.logic.expressions.parsing import parse_expression
+from sysmlc.logic.feature_writes import WriterIndex
 from sysmlc.logic.formal_texts import describe_error, is_formal, read_formal
 from sysmlc.logic.formula import Formula, Literal
 from sysmlc.logic.machines.reader import MachineOptions, find_context_classifier
@@ -74,6 +75,7 @@ def derive(
     """
     behaviour_by_component = {contract.component: contract for contract in behaviours}
     informal = _InformalStatements()
+    writers = WriterIndex(graph)
     for subject, statements in collect_statements(graph):
         component = component_of(graph, subject)
         behaviour = behaviour_by_component.get(component)
@@ -90,7 +92,7 @@ def derive(
         described, whole, obstacle = None, None, ""
         is_machine = behaviour is not None and graph[behaviour.origin].kind is Kind.STATE_MACHINE
         try:
-            described = _open_component(graph, subject, options)
+            described = _open_component(graph, subject, options, writers)
         except ComponentError as problem:
             obstacle = str(problem)
             whole = _describe_alone(behaviour, obstacle, is_machine=is_machine)
@@ -127,13 +129,15 @@ def derive(
     informal.report(graph, sink)
 
 
-def _open_component(graph: Graph, subject: Element, options: MachineOptions) -> Component | None:
+def _open_component(
+    graph: Graph, subject: Element, options: MachineOptions, writers: WriterIndex
+) -> Component | None:
     """Return the component whose behaviour a subject is or has, or None if it has none."""
     if subject.kind is Kind.STATE_MACHINE:
         subject = find_context_classifier(graph, subject) or subject
     if subject.kind not in (Kind.CLASS, Kind.COMPONENT, Kind.ACTIVITY):
         return None
-    component = Component(graph, subject, options)
+    component = Component(graph, subject, options, writers)
     # An action without steps is one node: only its contract says what it does.
     has_steps = len(component.performances.nodes) > (subject.kind is Kind.ACTIVITY)
     return component if component.machines or has_steps else None

@@ -1,0 +1,98 @@
+"""Verdicts about a component: who writes a feature, and which object performs an action."""
+
+import json
+
+import pytest
+
+CELL = "part def Cell { attribute full : Boolean := false; }"
+ROBOT = """part def Robot {
+    attribute gripped : Boolean := false;
+    action pick { first start then close; action close assign gripped := true; then done; }
+}"""
+MOVE = (
+    "exhibit state M {{ entry; then S; state S; transition first S accept Go {} then T; state T; }}"
+)
+FLAGS = "attribute x : Boolean := false; attribute y : Boolean := false;"
+
+
+@pytest.fixture
+def decide(workspace, all_passes):
+    """Return a function from a block and formulas to the verdicts about the formulas."""
+
+    def check(block, *formulas, others=""):
+        requirements = (
+            f"requirement def R{number} {{ subject b : B; "
+            f'require constraint {{ language "ltl" /* {formula} */ }} }}'
+            for number, formula in enumerate(formulas)
+        )
+        head = ("package P {", "private import ScalarValues::*;", "item def Go;", others)
+        lines = (*head, f"part def B {{ {block} }}", *requirements, "}")
+        workspace.write("model.sysml", "\n".join(lines))
+        result = workspace.sysmlc("contracts", "check", "--format", "json", "model.sysml")
+        entries = json.loads(result.stdout)["requirements"]
+        assert len(entries) == len(formulas)
+        return [entry["verdict"] for entry in entries]
+
+    return check
+
+
+# -- features ------------------------------------------------------------------------------------
+
+
+def test_a_feature_that_nothing_assigns_keeps_its_value(decide):
+    block = FLAGS + MOVE.format("if x do assign y := true")
+    assert decide(block, "G !x", "G !y", "G (state=S)") == ["holds", "holds", "holds"]
+
+
+def test_a_feature_without_default_keeps_one_of_its_values(decide):
+    block = "attribute x : Boolean; attribute y : Boolean := false;"
+    block += MOVE.format("if x do assign y := true")
+    assert decide(block, "G x | G !x", "G !x", "G !y") == ["holds", "broken", "broken"]
+
+
+def test_the_environment_changes_a_feature_with_the_direction_in(decide):
+    block = "in attribute x : Boolean; attribute y : Boolean := false;"
+    block += MOVE.format("if x do assign y := true")
+    assert decide(block, "G x | G !x", "G !y") == ["broken", "broken"]
+
+
+def test_a_computed_feature_is_not_decided(decide):
+    block = "attribute x : Boolean := false; attribute z : Boolean = not x;"
+    block += MOVE.format("if z do assign x := true")
+    assert decide(block, "G !x", "G (x -> z)") == ["not-decided", "not-decided"]
+
+
+def test_an_assignment_in_another_language_may_change_a_feature(decide):
+    block = FLAGS + MOVE.format('do action { language "Java" /* if (ok()) x = true; */ }')
+    assert decide(block, "G !x") == ["not-decided"]
+
+
+# -- features of parts ---------------------------------------------------------------------------
+
+
+def test_an_effect_assigns_a_feature_of_a_part(decide):
+    block = "part c : Cell;" + MOVE.format("do assign c.full := true")
+    formulas = ("G !(c.full)", "G (event=Go -> X c.full)", "G (c.full -> state=T)")
+    assert decide(block, *formulas, others=CELL) == ["broken", "holds", "holds"]
+
+
+def test_each_part_has_its_own_feature(decide):
+    block = "part c : Cell; part d : Cell;" + MOVE.format("do assign c.full := true")
+    assert decide(block, "G !(c.full)", "G !(d.full)", others=CELL) == ["broken", "holds"]
+
+
+def test_a_guard_reads_a_feature_of_a_part(decide):
+    block = "part c : Cell; attribute y : Boolean := false;"
+    block += MOVE.format("if c.full do assign y := true")
+    assert decide(block, "G !y", others=CELL) == ["holds"]
+    assert decide(block, "G !y", others=CELL.replace("attribute", "in attribute")) == ["broken"]
+
+
+# -- behaviours of states --------------------------------------------------------------------------
+
+SET_Y = "action set { first start then s; action s assign y := true; then done; }"
+
+
+def test_what_an_entry_performs_may_change_the_initial_value(decide):
+    block = FLAGS + SET_Y + "exhibit state M { entry; then S; state S { entry set; } }"
+    assert decide(block, "!y", "G (x -> X x)") == ["not-decided", "holds"]
