@@ -62,7 +62,7 @@ def read_observed_steps(component, block):
     with manager.guard():
         universe = Universe((whole,), manager)
         runs = Runs(universe.system((*contract.guarantees, *definitions)))
-        states = runs.reachable & runs.states_with_infinite_runs
+        states = runs.fair
         pairs = set()
         for observation in list_observations(runs, states, facts):
             same = states & describe(runs, observation, facts)
@@ -115,5 +115,6 @@ def test_random_blocks_have_the_steps_of_the_interpreter(seed, tmp_path):
 
 
 @pytest.mark.long
-def test_many_random_blocks_have_the_steps_of_the_interpreter(tmp_path):
-    assert sum(compare(seed, tmp_path) for seed in range(100, 200)) >= 33
+@pytest.mark.parametrize("first", range(100, 200, 20))
+def test_many_random_blocks_have_the_steps_of_the_interpreter(first, tmp_path):
+    assert sum(compare(seed, tmp_path) for seed in range(first, first + 20)) >= 5
