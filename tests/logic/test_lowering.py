@@ -26,9 +26,12 @@ from sysmlc.logic.formats.lowering import (
     eliminate_arithmetic,
     expand_comparison,
     rename_reserved,
+    rewrite_atoms,
+    separate_steps,
 )
 from sysmlc.logic.formula import Apply, Const, Op, Var
 from sysmlc.logic.infix import parse_formula
+from sysmlc.logic.printing import print_formula
 
 DOMAINS = {variable.name: variable.domain for variable in VARIABLES}
 
@@ -76,6 +79,29 @@ def test_a_lowered_formula_is_true_for_the_same_values(formula):
         assert is_true(flat, row, next_row) == truth
         assert is_true(integers, encode_integers(row), encode_integers(next_row)) == truth
         assert is_true(bits, encode_bits(row), encode_bits(next_row)) == truth
+
+
+@given(conditions(primed_or_not))
+@settings(max_examples=examples(60), deadline=None)
+def test_comparisons_across_a_step_become_cases_with_the_same_meaning(formula):
+    cases = rewrite_atoms(formula, lambda atom: separate_steps(atom, DOMAINS))
+    for row, next_row in PAIRS[:100]:
+        assert is_true(cases, row, next_row) == is_true(formula, row, next_row)
+
+
+@pytest.mark.parametrize(
+    ("text", "cases"),
+    [
+        ("n + low>m", "n + low>m"),  # one step: arithmetic remains
+        ("m'=n + low", "m'=2 & n + low=2 | m'=3 & n + low=3 | m'=4 & n + low=4"),
+        ("m'=n + 1", "m'=2 & n=1 | m'=3 & n=2 | m'=4 & n=3"),
+        ("done'=go", "done' <-> go"),
+        ("m=7", "false"),
+        ("1<m", "true"),
+    ],
+)
+def test_the_step_with_fewer_values_is_listed(text, cases):
+    assert print_formula(separate_steps(parse_formula(text, DOMAINS), DOMAINS)) == cases
 
 
 def encode_for_slugs(row):

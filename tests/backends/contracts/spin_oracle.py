@@ -1,8 +1,8 @@
 """The meaning of SPIN texts, computed with Spot without the printer's code.
 
-The oracle encodes every variable in bits, and every comparison as the disjunction of the values
-for which it is true. State axioms relate the propositions of the text, such as ``x==3``, to the
-bits. Spot then decides whether text and formula are equivalent where the axioms hold.
+The oracle encodes every variable in bits, and every comparison and every proposition of the text,
+such as ``{x<y + 1}``, as the disjunction of the values for which it is true. Spot then decides
+whether text and formula are equivalent where the axioms hold.
 """
 
 import re
@@ -29,11 +29,30 @@ OPERATIONS = {
 }
 
 
-def read_text(text):
+def parse_leniently(text):
     """Parse with Spot, whose lenient mode reads braces as propositions."""
     parsed = spot.parse_infix_psl(text, spot.default_environment.instance(), False, True)
     assert not parsed.errors, text
     return parsed.f
+
+
+def read_text(text, domains):
+    """Parse with Spot; the proposition in each pair of braces becomes its truth table over bits."""
+    parse_leniently(text)
+    return parse_leniently(re.sub(r"\{(.*?)\}", lambda match: tabulate(match[1], domains), text))
+
+
+def tabulate(proposition, domains):
+    """Return the truth table of a C expression. Names without values are literals."""
+    words = re.findall(r"[^\W\d]\w*", proposition)
+    names = sorted({word for word in words if word in domains})
+    rows = []
+    for row in product(*(values(domains[name]) for name in names)):
+        meanings = {word: word for word in words} | dict(zip(names, row, strict=True))
+        if eval(proposition, {}, meanings):
+            codes = (encode_value(domains, *pair) for pair in zip(names, row, strict=True))
+            rows.append(f"({' & '.join(codes) or '1'})")
+    return f"({' | '.join(rows) or '0'})"
 
 
 def list_domains(contract):
@@ -53,24 +72,14 @@ def encode_value(domains, name, value):
     return " & ".join(f'{"" if index >> bit & 1 else "!"}"{name}.{bit}"' for bit in range(width))
 
 
-def write_proposition(name, value):
-    """Return the proposition of the SPIN text for a value; a Boolean in small letters has none."""
-    if value is True:
-        return name if re.match("[a-z_]", name) else f"{name}==1"
-    return f"{name}=={value}"
-
-
 def write_axioms(domains, names):
-    """Return that the bits of each variable encode a value, and the propositions are that value."""
+    """Return that the bits of each variable encode a value; ``p`` is the bit of a Boolean."""
     axioms = []
     for name in sorted(names):
         codes = [f"({encode_value(domains, name, value)})" for value in values(domains[name])]
         axioms.append(f"({' | '.join(codes)})")
-        axioms += [
-            f'("{write_proposition(name, value)}" <-> {code})'
-            for value, code in zip(values(domains[name]), codes, strict=True)
-            if value is not False
-        ]
+        if values(domains[name]) == (False, True) and re.match("[a-z_]", name):
+            axioms.append(f'("{name}" <-> {codes[1]})')
     return " & ".join(axioms) or "1"
 
 

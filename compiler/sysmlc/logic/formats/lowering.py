@@ -4,8 +4,10 @@ Each function returns a contract with the same meaning that uses fewer construct
 goes further and replaces enumerations by integers, and integers by bits.
 """
 
+import math
 from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache
+from itertools import product, starmap
 
 from msgspec.structs import replace
 
@@ -21,6 +23,7 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.evaluate import Evaluation, compile_evaluation
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
+from sysmlc.logic.simplification import rebuild
 from sysmlc.logic.syntax import ARITHMETIC, COMPARISONS
 
 MAX_VALUATIONS = 1 << 16
@@ -82,7 +85,6 @@ def rewrite_conjuncts(
     contract: Contract, rewrite: Rewrite, variables: Iterable[Variable] | None = None
 ) -> Contract:
     """Replace the formula of every conjunct, and the variables if any are given.
-
     Raises TooManyValuesError with the conjunct whose rewriting raised it.
     """
 
@@ -279,6 +281,81 @@ def _expand_variables(
     if len({case for _, case in cases}) == 1:
         return cases[0][1]
     return f.either(*(f.both(_build_equality(variable, value), case) for value, case in cases))
+
+
+def separate_steps(
+    comparison: Formula, variable_domains: Domains, limit: int = MAX_VALUATIONS
+) -> Formula:
+    """Return a comparison as a formula whose comparisons are each about one step.
+
+    A comparison of current with next values becomes cases over the values of the step that has
+    fewer of them; arithmetic over the other step remains. ``x' = y + z`` becomes
+    ``x'=0 & y + z=0 | x'=1 & y + z=1``. Raises TooManyValuesError.
+    """
+    match comparison:
+        case Apply(Op.EQ | Op.NE as op, (left, right)) if is_boolean(left, variable_domains):
+            equivalence = f.fold_iff(
+                *(
+                    rewrite_atoms(side, lambda atom: separate_steps(atom, variable_domains, limit))
+                    for side in (left, right)
+                )
+            )
+            return equivalence if op is Op.EQ else f.negate(equivalence)
+        case Var() | Const():
+            return comparison
+    variables = tuple(dict.fromkeys(f.variables(comparison)))
+    if not variables:
+        return Const(bool(compile_evaluation(comparison)({}, {})))
+    steps = [
+        tuple(
+            (variable, variable_domains[variable.name])
+            for variable in variables
+            if variable.primed is is_primed
+        )
+        for is_primed in (False, True)
+    ]
+    if not all(steps):
+        return _fold_unreachable(comparison, variable_domains)
+    listed = min(steps, key=lambda step: math.prod(domains.size(domain) for _, domain in step))
+    if math.prod(domains.size(domain) for _, domain in listed) > limit:
+        raise TooManyValuesError
+    cases = []
+    for values in product(*(domains.values(domain) for _, domain in listed)):
+        valuation = dict(zip((variable for variable, _ in listed), values, strict=True))
+        rest = _fold_unreachable(_assign(comparison, valuation), variable_domains)
+        cases.append(f.both(*starmap(_build_equality, valuation.items()), rest))
+    return f.either(*cases)
+
+
+def _assign(formula: Formula, valuation: Mapping[Var, Literal]) -> Formula:
+    """Return the formula with values for some variables and with folded constants."""
+    match formula:
+        case Var() if formula in valuation:
+            return Const(valuation[formula])
+        case Apply(op, args):
+            return rebuild(op, tuple(_assign(arg, valuation) for arg in args))
+        case _:
+            return formula
+
+
+def _fold_unreachable(comparison: Formula, variable_domains: Domains) -> Formula:
+    """Return true or false if a comparison with a value is constant, else the comparison.
+
+    ``x=9`` is false and ``x<9`` is true for a variable ``x`` from 0 to 3.
+    """
+    match comparison:
+        case Apply(_, (Var(name), Const(value))):
+            values = domains.values(variable_domains[name])
+            # One of these three values differs from the others if any value of a range does.
+            samples = {values[0], values[-1], value if value in values else values[0]}
+            truth = compile_evaluation(comparison)
+            truths = {truth(row, row) for row in ({name: sample} for sample in samples)}
+            return comparison if len(truths) > 1 else Const(bool(truths.pop()))
+        case Apply(op, (Const() as value, (Var() | Apply()) as term)):
+            mirrored = rebuild(_MIRRORED.get(op, op), (term, value))
+            return _fold_unreachable(mirrored, variable_domains)
+        case _:
+            return comparison
 
 
 def _build_equality(variable: Var, value: Literal) -> Formula:

@@ -21,11 +21,11 @@ from sysmlc.logic.contract import (
 from sysmlc.logic.formats.draft import ContractDraft, SpecificationFile
 from sysmlc.logic.formats.lowering import (
     eliminate_weak_until,
-    expand_comparison,
     index_domains,
     rename_reserved,
     rewrite_conjuncts,
     rewrite_contract_atoms,
+    separate_steps,
 )
 from sysmlc.logic.formats.spot import print_implication, read_sides
 from sysmlc.logic.formats.writing import (
@@ -182,17 +182,12 @@ def lower(contract: Contract, format_name: str) -> Contract:
     Raises NotExpressibleError.
     """
     lowered = rewrite_conjuncts(rename_reserved(contract, _RESERVED), eliminate_weak_until)
-    return apply_lowering(lowered, format_name, _expand_step_comparisons)
+    return apply_lowering(lowered, format_name, _separate_steps)
 
 
-def _expand_step_comparisons(contract: Contract) -> Contract:
+def _separate_steps(contract: Contract) -> Contract:
     domains = index_domains(contract)
-
-    def expand(atom: Formula) -> Formula:
-        has_two_steps = len({variable.primed for variable in f.variables(atom)}) > 1
-        return expand_comparison(atom, domains) if has_two_steps else atom
-
-    return rewrite_contract_atoms(contract, expand)
+    return rewrite_contract_atoms(contract, lambda atom: separate_steps(atom, domains))
 
 
 def write(contract: Contract, format_name: str) -> str:

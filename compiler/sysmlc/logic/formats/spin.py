@@ -12,7 +12,6 @@ from pathlib import PurePath
 
 from msgspec.structs import replace
 
-from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import (
     BooleanDomain,
@@ -24,14 +23,15 @@ from sysmlc.logic.contract import (
     IntegerDomain,
     Owner,
 )
-from sysmlc.logic.evaluate import Evaluation, compile_evaluation
 from sysmlc.logic.formats import rules
 from sysmlc.logic.formats.draft import ContractDraft, SpecificationFile
 from sysmlc.logic.formats.lowering import (
     TooManyValuesError,
-    eliminate_arithmetic,
+    expand_comparison,
     index_domains,
     rename_ambiguous_literals,
+    rewrite_contract_atoms,
+    separate_steps,
 )
 from sysmlc.logic.formats.spot import (
     blank_partition,
@@ -39,17 +39,21 @@ from sysmlc.logic.formats.spot import (
     read_implication,
     read_partition,
 )
-from sysmlc.logic.formats.writing import NotExpressibleError, apply_lowering
-from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
+from sysmlc.logic.formats.writing import Notation, NotExpressibleError, apply_lowering
+from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
 from sysmlc.logic.infix import FormulaReader, Term
 from sysmlc.logic.printing import print_literal
 from sysmlc.logic.syntax import NEUTRAL, FormulaError
+from sysmlc.support.disjoint_sets import DisjointSets
 
 # -- reading ---------------------------------------------------------------------------------------
 
-SYNTAX = replace(NEUTRAL, comment=r"/\*[\s\S]*?\*/|//[^\n]*")
+SYNTAX = replace(NEUTRAL, infix={**NEUTRAL.infix, "%": Op.MOD}, comment=r"/\*[\s\S]*?\*/|//[^\n]*")
 _EQUAL_PRECEDENCE = frozenset([Op.AND, Op.OR, Op.IMPLIES, Op.IFF])
-_EQUALITY = re.compile(r"\{\s*([^\W\d]\w*)\s*==\s*(-?\w+)\s*\}")
+_BRACES = re.compile(r"\{([^{}]*)\}")
+_EQUALITY = re.compile(r"\s*([^\W\d]\w*)\s*==\s*(-?\w+)\s*")
+_WORD = re.compile(r"[^\W\d]\w*")
+_NUMBER = re.compile(r"(?<!\w)-?\d{1,18}(?!\d)")
 # A proposition is matched whole, so that no names are found inside it.
 _NAME_OR_PROPOSITION = re.compile(r"\{[^{}]*\}|[^\W\d]\w*|[\s\S]")
 _MOST_NAMED = 8
@@ -62,7 +66,7 @@ def read(file: SpecificationFile) -> tuple[Contract, ...]:
     text = blank_partition(file.text)
     owners = read_partition(file.text)
     without_owner = []
-    for name, domain in _infer_domains(text).items():
+    for name, domain in _infer_domains(text, owners).items():
         if name not in owners:
             without_owner.append(name)
         draft.declare(name, 0, owners.get(name, Owner.SYSTEM), domain)
@@ -72,11 +76,32 @@ def read(file: SpecificationFile) -> tuple[Contract, ...]:
     return draft.build(PurePath(file.path).stem.removesuffix(".spin"))
 
 
-def _infer_domains(text: str) -> dict[str, Domain]:
-    """Return the variables of the formula with the values that it compares them with."""
+def _infer_domains(text: str, owners: Iterable[str]) -> dict[str, Domain]:
+    """Return the variables of the formula with the values that it compares them with.
+
+    Variables in one expression have the same values. The text has no ranges, so that numbers are
+    those of the formula, and one more below and above for an expression that is not ``x==3``.
+    """
+    propositions = [match.group(1) for match in _BRACES.finditer(text)]
+    equalities = [match.groups() for match in map(_EQUALITY.fullmatch, propositions) if match]
+    variables = {*owners, *(name for name, _ in equalities)}
     values: dict[str, dict[str, None]] = {}
-    for equality in _EQUALITY.finditer(text):
-        values.setdefault(equality.group(1), {})[equality.group(2)] = None
+    groups: DisjointSets[str] = DisjointSets()
+    for proposition in propositions:
+        equality = _EQUALITY.fullmatch(proposition)
+        if equality is not None and equality.group(2) not in variables:
+            values.setdefault(equality.group(1), {})[equality.group(2)] = None
+            continue
+        operands = [word for word in _WORD.findall(proposition) if word not in SYNTAX.infix]
+        numbers = [int(number) for number in _NUMBER.findall(proposition)]
+        for name in operands:
+            groups.union(operands[0], name)
+            nearby = (str(number + offset) for number in numbers for offset in (-1, 0, 1))
+            values.setdefault(name, {}).update(dict.fromkeys(nearby))
+    merged: dict[str, dict[str, None]] = {}
+    for name, compared in values.items():
+        merged.setdefault(groups.find(name), {}).update(compared)
+    inferred = {name: _infer_domain(list(merged[groups.find(name)])) for name in values}
     without_comments = re.sub(SYNTAX.comment, " ", text)
     words = {*SYNTAX.prefix, *SYNTAX.infix, *SYNTAX.booleans}
     names = dict.fromkeys(
@@ -84,7 +109,6 @@ def _infer_domains(text: str) -> dict[str, Domain]:
         for name in _NAME_OR_PROPOSITION.findall(without_comments)
         if name[0].isidentifier() and name not in words
     )
-    inferred = {name: _infer_domain(list(compared)) for name, compared in values.items()}
     return inferred | {name: BooleanDomain() for name in names if name not in inferred}
 
 
@@ -95,7 +119,7 @@ def _infer_domain(values: list[str]) -> Domain:
     """
     numbers = [int(value) for value in values if re.fullmatch(r"-?\d{1,18}", value)]
     if len(numbers) == len(values):
-        return IntegerDomain(min(0, *numbers), max(1, *numbers))
+        return IntegerDomain(min([0, *numbers]), max([1, *numbers]))
     if len(values) == 1:
         values = [*values, f"not_{values[0]}".replace("-", "_")]
     return EnumerationDomain(tuple(values))
@@ -133,7 +157,11 @@ _INFIX = {
     Op.RELEASE: "V",
     Op.WEAK_UNTIL: "W",
 }
+_EXPRESSIONS = Notation({**{op: str(op) for op in Op}, Op.EQ: "==", Op.MOD: "%"}, lambda name: name)
+"""Comparisons in SPIN's expression language, which is that of C."""
 _PREFIX = {Op.NOT: "!", Op.NEXT: "X ", Op.ALWAYS: "[]", Op.EVENTUALLY: "<>"}
+_EXPRESSIONS = Notation({**{op: str(op) for op in Op}, Op.EQ: "==", Op.MOD: "%"}, lambda name: name)
+"""Comparisons in SPIN's expression language, which is that of C."""
 _PROPOSITION = re.compile(r"!?(X )?(\{[^{}]*\}|\w+)")
 _SPIN_NAME = re.compile(r"[a-z_]\w*")
 MAX_PROPOSITIONS = 20_000
@@ -148,8 +176,16 @@ class TooLargeError(Exception):
 
 
 def lower(contract: Contract, format_name: str) -> Contract:
-    """Return the contract without arithmetic. Raises NotExpressibleError."""
-    return apply_lowering(rename_ambiguous_literals(contract), format_name, eliminate_arithmetic)
+    """Return the contract without comparisons across a step. Raises NotExpressibleError."""
+    renamed = rename_ambiguous_literals(contract)
+    variable_domains = index_domains(renamed)
+    return apply_lowering(
+        renamed,
+        format_name,
+        lambda lowered: rewrite_contract_atoms(
+            lowered, lambda atom: separate_steps(atom, variable_domains)
+        ),
+    )
 
 
 def write(contract: Contract, format_name: str) -> str:
@@ -163,19 +199,18 @@ def write(contract: Contract, format_name: str) -> str:
 
 
 def print_spin(contract: Contract) -> str:
-    """Return ``(assumptions) -> (guarantees)``. Raises TooLargeError."""
+    """Return ``(assumptions) -> (guarantees)``, or the guarantees alone. Raises TooLargeError."""
     printer = _create_printer(tuple(index_domains(contract).items()))
     assumptions = printer.print_conjunction(contract.assumptions)
     guarantees = printer.print_conjunction(contract.guarantees)
-    return f"({assumptions}) -> ({guarantees})\n"
+    return f"{guarantees}\n" if assumptions == "true" else f"({assumptions}) -> ({guarantees})\n"
 
 
 class SpinPrinter:
     """Prints formulas over some variables, each formula once.
 
-    Tools read ``{x==3}`` as an opaque proposition. Comparisons and arithmetic are therefore
-    expanded over the values of the variables, and X stands before the proposition of a primed
-    variable.
+    A comparison about one step is a proposition with arithmetic, such as ``{x<y + 1}``, or
+    ``X {x<3}`` about next values. A comparison of current with next values becomes cases.
     """
 
     def __init__(self, variable_domains: Mapping[str, Domain]) -> None:
@@ -184,7 +219,8 @@ class SpinPrinter:
 
     def print_conjunction(self, conjuncts: Iterable[Conjunct]) -> str:
         """Return the conjunction of the conjuncts. Raises TooLargeError."""
-        return " && ".join(map(self.print_conjunct, conjuncts)) or "true"
+        stated = (item for item in conjuncts if self.print_formula(item.formula) != "true")
+        return " && ".join(map(self.print_conjunct, stated)) or "true"
 
     def print_conjunct(self, conjunct: Conjunct) -> str:
         """Return a conjunct with the temporal operators of its class. Raises TooLargeError."""
@@ -208,8 +244,8 @@ class SpinPrinter:
         match formula:
             case Const(value):
                 return print_literal(value)
-            case Var(name):
-                return _print_proposition(formula, True, self._domains[name])
+            case Var():
+                return _print_variable(formula)
             case Apply(op, args) if op in _INFIX:
                 return f" {_INFIX[op]} ".join(map(self._print_operand, args))
             case Apply(op, args) if op in _PREFIX:
@@ -217,7 +253,9 @@ class SpinPrinter:
             case _:
                 names = dict.fromkeys(variable.name for variable in f.variables(formula))
                 pairs = tuple((name, self._domains[name]) for name in names)
-                return _print_comparison(formula, pairs)
+                separate = _separate(formula, pairs)
+                is_proposition = separate == formula
+                return _print_comparison(formula) if is_proposition else self._print(separate)
 
     def _print_operand(self, formula: Formula) -> str:
         text = self.print_formula(formula)
@@ -232,63 +270,48 @@ def _create_printer(variables: tuple[tuple[str, Domain], ...]) -> SpinPrinter:
 
 
 @lru_cache(_CACHED_COMPARISONS)
-def _print_comparison(formula: Formula, pairs: tuple[tuple[str, Domain], ...]) -> str:
-    """Return a comparison expanded over the values of its variables. Raises TooLargeError."""
+def _separate(comparison: Formula, pairs: tuple[tuple[str, Domain], ...]) -> Formula:
+    """Return a comparison as propositions about one step each. Raises TooLargeError."""
     variable_domains = dict(pairs)
-    variables = list(dict.fromkeys(f.variables(formula)))
-    count = 1
-    for variable in variables:
-        count *= domains.size(variable_domains[variable.name])
-    if count > MAX_PROPOSITIONS:
-        raise TooLargeError
+    try:
+        if _has_partial_division(comparison):
+            return expand_comparison(comparison, variable_domains, MAX_PROPOSITIONS)
+        return separate_steps(comparison, variable_domains, MAX_PROPOSITIONS)
+    except TooManyValuesError:
+        raise TooLargeError from None
+
+
+def _has_partial_division(formula: Formula) -> bool:
+    """Whether the formula divides by something that can be 0, where C and SPIN have no value."""
     match formula:
-        case Apply(Op.NE, (Var(name) as variable, Const(value))) if value in domains.values(
-            variable_domains[name]
+        case Apply(Op.DIV | Op.MOD, (_, divisor)) if (
+            not isinstance(divisor, Const) or divisor.value == 0
         ):
-            text = _print_proposition(variable, value, variable_domains[name])
-            return f"!({text})" if " " in text else f"!{text}"
+            return True
+        case Apply(_, args):
+            return any(map(_has_partial_division, args))
         case _:
-            return _print_cases(compile_evaluation(formula), variables, {}, {}, variable_domains)
+            return False
 
 
-def _print_cases(
-    evaluation: Evaluation,
-    variables: list[Var],
-    current: dict[str, Literal],
-    following: dict[str, Literal],
-    variable_domains: Mapping[str, Domain],
-) -> str:
-    """Return the valuations that make the comparison true; the first variable is the outermost."""
-    if not variables:
-        return print_literal(bool(evaluation(current, following)))
-    variable, *rest = variables
-    domain = variable_domains[variable.name]
-    cases: list[str] = []
-    for value in domains.values(domain):
-        extended = {variable.name: value}
-        before = current if variable.primed else current | extended
-        after = following | extended if variable.primed else following
-        case = _print_cases(evaluation, rest, before, after, variable_domains)
-        if case == "false":
-            continue
-        proposition = _print_proposition(variable, value, domain)
-        if case != "true":
-            case = f"({case})" if " || " in case else case
-            proposition = f"({proposition} && {case})"
-        cases.append(proposition)
-    if not cases:
-        return "false"
-    is_valid = len(cases) == domains.size(domain) and not any("&&" in case for case in cases)
-    return "true" if is_valid else " || ".join(cases)
+def _print_comparison(comparison: Formula) -> str:
+    """Return a comparison about one step as a proposition of SPIN's language, with its operators.
+
+    That a variable has no value is the negated proposition that it has the value.
+    """
+    match comparison:
+        case Apply(Op.NE, (Var(_, is_primed) as variable, Const() as value)):
+            text = _print_comparison(f.eq(variable, value))
+            return f"!({text})" if is_primed else f"!{text}"
+        case _:
+            text = _EXPRESSIONS.print(comparison)
+            is_primed = any(variable.primed for variable in f.variables(comparison))
+            return f"X {{{text}}}" if is_primed else f"{{{text}}}"
 
 
-def _print_proposition(variable: Var, value: Literal, domain: Domain) -> str:
-    """Return the proposition that a variable has a value."""
-    if isinstance(domain, BooleanDomain):
-        # Names of SPIN's propositions begin with a small letter.
-        is_name = _SPIN_NAME.fullmatch(variable.name)
-        text = variable.name if is_name else f"{{{variable.name}==1}}"
-        text = text if value else f"!{text}"
-    else:
-        text = f"{{{variable.name}=={print_literal(value)}}}"
+def _print_variable(variable: Var) -> str:
+    """Return the proposition that a Boolean is true."""
+    # Names of SPIN's propositions begin with a small letter.
+    is_name = _SPIN_NAME.fullmatch(variable.name)
+    text = variable.name if is_name else f"{{{variable.name}==1}}"
     return f"X {text}" if variable.primed else text

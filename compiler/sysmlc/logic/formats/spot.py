@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from pathlib import PurePath
 
 from sysmlc.logic import formula as f
-from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owner
+from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owner, drop_trivial
 from sysmlc.logic.formats.draft import ContractDraft, SpecificationFile
 from sysmlc.logic.formats.encodings import encode_as_bits
 from sysmlc.logic.formats.lowering import rename_reserved
@@ -165,12 +165,17 @@ def list_partition(contract: Contract) -> list[str]:
 
 
 def print_implication(contract: Contract, notation: Notation, format_name: str) -> str:
-    """Return ``(assumptions) -> (guarantees)``, with ``true`` for no assumptions."""
-    assumptions = _print_conjunction(contract.assumptions, notation, format_name)
+    """Return ``(assumptions) -> (guarantees)``, or the guarantees alone if nothing is assumed."""
     guarantees = _print_conjunction(contract.guarantees, notation, format_name)
+    assumptions = _print_conjunction(contract.assumptions, notation, format_name)
+    if assumptions == "true":
+        return guarantees
     return f"({assumptions}) {notation.words[Op.IMPLIES]} ({guarantees})"
 
 
 def _print_conjunction(conjuncts: Iterable[Conjunct], notation: Notation, format_name: str) -> str:
-    texts = [f"({print_ltl_conjunct(format_name, notation, conjunct)})" for conjunct in conjuncts]
+    texts = [
+        f"({print_ltl_conjunct(format_name, notation, conjunct)})"
+        for conjunct in drop_trivial(conjuncts)
+    ]
     return f" {notation.words[Op.AND]} ".join(texts) or "true"
