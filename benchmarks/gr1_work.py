@@ -74,7 +74,7 @@ def check_refinement(concrete: str, abstract: str) -> str:
         read_contract("abstract.gr1.json", abstract),
     )
     try:
-        failures = list(find_refinement_failures(*pair, Manager(limits=OPTIONS.limits)))
+        failures = list(find_refinement_failures(*pair, lambda: Manager(limits=OPTIONS.limits)))
     except DomainError as problem:
         return f"not comparable: {problem}"
     return f"no, {len(failures)} conjuncts fail" if failures else "refines"

@@ -4,9 +4,9 @@ import pytest
 import spot
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from spot_formulas import conjoin, conjoin_parts, print_for_spot
 
 from long_runs import examples
+from spot_formulas import conjoin, conjoin_parts, print_for_spot
 from sysmlc.logic.contract import BooleanDomain, IntegerDomain
 from sysmlc.logic.formal_texts import read_sentence
 from sysmlc.logic.infix import parse_formula

@@ -74,7 +74,7 @@ def _iter_commands(page: str) -> Iterator[str]:
 def _iter_help_pages() -> Iterator[str]:
     yield "sysmlc"
     yield from (f"sysmlc {name}" for name in COMMANDS)
-    yield "sysmlc contracts check"
+    yield from (f"sysmlc contracts {name}" for name in ("check", "refine"))
 
 
 def _iter_examples(command: str) -> Iterator[str]:

@@ -19,6 +19,8 @@ COPIES = {
     "plant/plant.sysml": READER_MODELS / "plant.sysml",
     "models/plant.sysml": READER_MODELS / "plant.sysml",
     "cart.gr1.json": READER_MODELS / "cart.gr1.json",
+    "line.gr1.json": READER_MODELS / "line.gr1.json",
+    "filler.gr1.json": READER_MODELS / "filler.gr1.json",
     "amba.tlsf": READER_MODELS / "amba.tlsf",
     "schemas/plant.xsd": READER_MODELS / "plant.xsd",
     "model.uml": LEGO,

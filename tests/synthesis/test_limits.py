@@ -99,7 +99,9 @@ def test_refinement_obeys_limits() -> None:
     weaker = Contract(contract.component, contract.origin, contract.variables, (), ())
 
     with pytest.raises(LimitError, match="CPU time"):
-        list(find_refinement_failures(weaker, contract, Manager("cudd", Limits(seconds=0.3))))
+        list(
+            find_refinement_failures(weaker, contract, lambda: Manager("cudd", Limits(seconds=0.3)))
+        )
 
 
 @pytest.fixture

@@ -42,14 +42,14 @@ def test_a_conjunction_refines_every_viewpoint():
     conjunction = conjoin_viewpoints(whole)
     for name in ("powered", "shines"):
         assert (
-            list(find_refinement_failures(conjunction, select_viewpoint(whole, name), Manager()))
+            list(find_refinement_failures(conjunction, select_viewpoint(whole, name), Manager))
             == []
         )
 
 
 def test_the_union_of_viewpoints_need_not_refine_each_viewpoint():
     whole = merge_viewpoints(powered=POWERED, shines=SHINES)
-    failures = list(find_refinement_failures(whole, select_viewpoint(whole, "shines"), Manager()))
+    failures = list(find_refinement_failures(whole, select_viewpoint(whole, "shines"), Manager))
     assert {failure.is_assumption for failure in failures} == {True}
 
 

@@ -187,9 +187,16 @@ def show_results(
     The format JSON contains the *details*, such as the verdicts about requirements.
     """
     from sysmlc.cli import reports
+
+    reports.print_findings(list_findings(read), settings, dict(details or {}))
+    for line in lines:
+        terminal.echo(line, err=not reports.allows_sentences(settings))
+
+
+def list_findings(read: ContractFile) -> "list[Finding]":
+    """Return the findings about a file and its contracts."""
+    from sysmlc.cli import reports
     from sysmlc.diagnostics.renderers import make_report
 
     findings = reports.localize(read.root, make_report(read.sink, read.sources).findings)
-    reports.print_findings([*read.findings, *findings], settings, dict(details or {}))
-    for line in lines:
-        terminal.echo(line, err=not reports.allows_sentences(settings))
+    return [*read.findings, *findings]

@@ -8,6 +8,7 @@ import click
 from msgspec.structs import replace
 
 from sysmlc.cli import options
+from sysmlc.cli.contract_operations import COMMANDS
 from sysmlc.cli.recorded_runs import accept_command
 
 if TYPE_CHECKING:
@@ -22,10 +23,11 @@ if TYPE_CHECKING:
 
 @click.group("contracts", short_help="Check contracts, by themselves and against one another.")
 def command() -> None:
-    """Check the contracts of a model, and runs of its components."""
+    """Check contracts, and runs of components; compare and combine contracts."""
 
 
-command.add_command(accept_command)
+for _subcommand in (accept_command, *COMMANDS):
+    command.add_command(_subcommand)
 
 
 @command.command(

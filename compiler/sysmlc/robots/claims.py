@@ -20,11 +20,10 @@ from sysmlc.robots.system_contract import system_contract
 from sysmlc.synthesis.algebra.fair_systems import Trace, Universe
 from sysmlc.synthesis.algebra.refinement import Entailment, find_refinement_failures
 from sysmlc.synthesis.bdd.limits import LimitError
-from sysmlc.synthesis.bdd.manager import Manager
+from sysmlc.synthesis.bdd.manager import Manager, ManagerFactory
 from sysmlc.synthesis.decision import Options
 from sysmlc.synthesis.witnesses import describe_run, manager_factory
 
-ManagerFactory = Callable[[], Manager]
 """Creates a manager with the limits of the options."""
 
 
@@ -105,7 +104,7 @@ def _decide_refinement(
     }
     if not shared_names:
         return Claim(claim, False, "they have no variable in common")
-    failure = next(find_refinement_failures(concrete, abstract, new_manager()), None)
+    failure = next(find_refinement_failures(concrete, abstract, new_manager), None)
     if failure is None:
         return Claim(claim, True)
     verb = "assumes more" if failure.is_assumption else "does not promise"

@@ -322,7 +322,7 @@ def _find_undischarged(
             find_refinement_failures(
                 replace(behaviour, assumptions=stated),
                 replace(requirements, guarantees=()),
-                manager_factory(options)(),
+                manager_factory(options),
             )
         )
     except (OutsideGr1Error, DomainError, LimitError):

@@ -25,11 +25,10 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.formula import Apply, Const, Formula, Op
 from sysmlc.logic.printing import print_formula
-from sysmlc.logic.reduction.contract_reduction import as_ltl, is_gr1
+from sysmlc.logic.reduction.contract_reduction import as_ltl
 from sysmlc.logic.reduction.formula_reduction import NotReducibleError
-from sysmlc.synthesis.algebra.fair_systems import DomainError, Trace, Universe
-from sysmlc.synthesis.algebra.refinement import Entailment
-from sysmlc.synthesis.algebra.tableau import build_tableau
+from sysmlc.synthesis.algebra.fair_systems import DomainError, Trace
+from sysmlc.synthesis.algebra.refinement import RunSearch
 from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.decision import Options
 from sysmlc.synthesis.games.game import OutsideGr1Error
@@ -112,9 +111,7 @@ class BehaviourCheck:
         self._facts = (*assumed, *definitions, *(() if undischarged else stated))
         self._unproven = (*undischarged, *stated) if undischarged else ()
         self._endings = tuple(conjunct for conjunct in contract.assumptions if conjunct.is_derived)
-        variables = (*contract.variables, *requirements.variables)
-        self._variable_names = tuple(dict.fromkeys(variable.name for variable in variables))
-        self._entailments: dict[tuple[Conjunct, ...], Entailment] = {}
+        self._search = RunSearch((contract, requirements), manager_factory(options))
 
     def decide_requirements(self) -> Iterator[RequirementVerdict]:
         """Yield the verdict about each conjunct that the author requires."""
@@ -196,16 +193,12 @@ class BehaviourCheck:
 
         The ranges of Integers are facts of the model: the numbers next to them count, too.
         """
-        negation = Conjunct(f.negate(as_ltl(conjunct)), Class.OTHER, conjunct.origin)
-        variables, conjuncts = self._lower((negation,))
-        manager = manager_factory(self._options)()
-        with manager.guard():
-            names = _names_of((conjunct,))
-            declared = (*self._behaviour.contract.variables, *self._requirements.variables)
-            read = (_widen(variable) for variable in declared if variable.name in names)
-            free = Contract("", "", (*read, *variables), (), ())
-            universe = Universe((free,), manager)
-            return not Entailment(universe, universe.system(conjuncts)).is_possible
+        names = _names_of((conjunct,))
+        declared = (*self._behaviour.contract.variables, *self._requirements.variables)
+        read = tuple(_widen(variable) for variable in declared if variable.name in names)
+        free = Contract("", "", read, (), ())
+        new_manager = manager_factory(self._options)
+        return RunSearch((free,), new_manager).find_violation((), conjunct) is None
 
     # -- refutation ------------------------------------------------------------------------------
 
@@ -258,68 +251,24 @@ class BehaviourCheck:
     # -- runs ------------------------------------------------------------------------------------
 
     def _has_runs(self) -> bool:
-        runs = self._explore(())
-        with runs.manager.guard():
-            return runs.is_possible
+        return self._search.has_runs(self._list_facts(()))
 
     def _entails(self, endings: tuple[Conjunct, ...], conjunct: Conjunct) -> bool:
         return self._find_violation(endings, conjunct) is None
 
     def _find_violation(self, facts: tuple[Conjunct, ...], conjunct: Conjunct) -> Trace | None:
         """Return a run of the behaviour with additional facts that violates the conjunct."""
-        if is_gr1(conjunct):
-            runs = self._explore(facts)
-            with runs.manager.guard():
-                trace = runs.find_violation(conjunct)
-        else:
-            negation = Conjunct(f.negate(as_ltl(conjunct)), Class.OTHER, conjunct.origin)
-            runs = self._explore((*facts, negation))
-            with runs.manager.guard():
-                trace = runs.find_example()
-        return None if trace is None else self._show(trace)
+        return self._search.find_violation(self._list_facts(facts), conjunct)
 
-    def _explore(self, facts: tuple[Conjunct, ...]) -> Entailment:
-        """Return the runs of the behaviour that satisfy the check's facts and further *facts*."""
-        reading = self._behaviour.contract
-        steps = tuple(
+    def _list_facts(self, facts: tuple[Conjunct, ...]) -> tuple[Conjunct, ...]:
+        """Return what all runs of the behaviour satisfy, with further *facts*."""
+        steps = (
             conjunct
-            for conjunct in reading.guarantees
+            for conjunct in self._behaviour.contract.guarantees
             # That an activity goes on for ever follows from the assumption that actions end.
             if conjunct.is_derived and conjunct.class_ is not Class.LIVENESS
         )
-        key = (*steps, *facts)
-        if key not in self._entailments:
-            variables, conjuncts = self._lower((*self._facts, *key))
-            predictions = Contract("", "", variables, (), ())
-            manager = manager_factory(self._options)()
-            with manager.guard():
-                universe = Universe((reading, self._requirements, predictions), manager)
-                self._entailments[key] = Entailment(universe, universe.system(conjuncts))
-        return self._entailments[key]
-
-    def _lower(self, conjuncts: Iterable[Conjunct]) -> tuple[tuple[Variable, ...], list[Conjunct]]:
-        """Return the conjuncts with tableaux in place of general LTL, and their variables."""
-        names = self._variable_names
-        variables: list[Variable] = []
-        lowered: list[Conjunct] = []
-        for conjunct in conjuncts:
-            if is_gr1(conjunct):
-                lowered.append(conjunct)
-                continue
-            taken = (*names, *(variable.name for variable in variables))
-            tableau = build_tableau(as_ltl(conjunct), taken)
-            variables += tableau.variables
-            lowered += (replace(conjunct, formula=tableau.formula, class_=Class.INIT),)
-            lowered += tableau.conjuncts
-        return tuple(variables), lowered
-
-    def _show(self, trace: Trace) -> Trace:
-        """Return the run without the variables that only the check uses."""
-        steps = tuple(
-            {name: value for name, value in values.items() if name in self._variable_names}
-            for values in trace.steps
-        )
-        return replace(trace, steps=steps)
+        return (*self._facts, *steps, *facts)
 
 
 def _names_of(conjuncts: Iterable[Conjunct]) -> set[str]:

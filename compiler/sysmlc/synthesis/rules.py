@@ -1,4 +1,4 @@
-"""Rules about decisions, syntheses and lints of contracts (SM530 to SM543, SM575 and SM576)."""
+"""Rules about decisions, syntheses and lints of contracts (SM527 to SM543, SM575 and SM576)."""
 
 from sysmlc.diagnostics import Severity, rule
 
@@ -144,4 +144,30 @@ UNREACHABLE = rule(
     Severity.WARNING,
     "no run of '{component}' reaches '{name}'",
     help="correct the way to it, remove it, or require that it is never reached",
+)
+
+
+# -- two contracts -----------------------------------------------------------------------------
+
+GUARANTEES_LESS = rule(
+    "SM527",
+    "refinement-guarantees-less",
+    Severity.ERROR,
+    "'{concrete}' does not guarantee '{formula}', which '{abstract}' guarantees{context}",
+    help="let the concrete contract guarantee it; the run shows how it is violated",
+)
+ASSUMES_MORE = rule(
+    "SM528",
+    "refinement-assumes-more",
+    Severity.ERROR,
+    "'{concrete}' assumes '{formula}', which the assumptions of '{abstract}' do not imply{context}",
+    help="assume less, or let the abstract contract assume it, too; the run shows an environment",
+)
+NOT_COMPARABLE = rule(
+    "SM529",
+    "contracts-not-comparable",
+    Severity.ERROR,
+    "'{first}' and '{second}' cannot be {work}: {reason}",
+    help="shared variables need the same direction and type; a question may need more time "
+    "(--question-limit)",
 )

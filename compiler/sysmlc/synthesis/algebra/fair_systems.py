@@ -46,7 +46,7 @@ class Universe:
     def __init__(self, contracts: Iterable[Contract], manager: Manager) -> None:
         """Declare the variables; the manager must be new. Raises DomainError."""
         self.manager = manager
-        self.symbols = Symbols(manager, _merge_variables(contracts))
+        self.symbols = Symbols(manager, merge_variables(contracts))
         self._current_ranges = self._compute_ranges(primed=False)
         self._next_ranges = self._compute_ranges(primed=True)
 
@@ -83,13 +83,17 @@ class Universe:
         return tuple(node for node in nodes if node != self.manager.true)
 
 
-def _merge_variables(contracts: Iterable[Contract]) -> Iterator[Variable]:
+def merge_variables(contracts: Iterable[Contract]) -> tuple[Variable, ...]:
+    """Return the variables of all contracts; equal names denote one variable.
+
+    Raises DomainError.
+    """
     merged: dict[str, Variable] = {}
     for variable in (variable for contract in contracts for variable in contract.variables):
         first = merged.setdefault(variable.name, variable)
         if first.domain != variable.domain:
             raise DomainError(variable.name, (first.domain, variable.domain))
-    yield from merged.values()
+    return tuple(merged.values())
 
 
 class Runs:

@@ -7,22 +7,27 @@ A contract denotes a set of environments (those that satisfy its assumptions) an
 fair runs of the others, so a failure names the conjunct and shows a run that violates it.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator
 
 from msgspec import Struct
+from msgspec.structs import replace
 
+from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Class, Conjunct, Contract
+from sysmlc.logic.reduction.contract_reduction import as_ltl, is_gr1
 from sysmlc.synthesis.algebra.fair_systems import (
     FairSystem,
     Runs,
     Trace,
     Universe,
     build_lasso,
+    merge_variables,
     observe_histories,
     pick_state,
     shortest_path,
 )
-from sysmlc.synthesis.bdd.manager import Manager, Node
+from sysmlc.synthesis.algebra.tableau import encode_conjuncts
+from sysmlc.synthesis.bdd.manager import Manager, ManagerFactory, Node
 
 
 class Entailment:
@@ -96,6 +101,61 @@ _VIOLATION_SEARCHES = {
 }
 
 
+class RunSearch:
+    """Questions about the runs that satisfy conjuncts in any LTL (``tableau``).
+
+    Each set of facts is explored once.
+    """
+
+    def __init__(self, contracts: Iterable[Contract], new_manager: ManagerFactory) -> None:
+        """Prepare questions about runs over the variables of the contracts. Raises DomainError."""
+        self._contracts = tuple(contracts)
+        self._new_manager = new_manager
+        self._names = tuple(variable.name for variable in merge_variables(self._contracts))
+        self._entailments: dict[tuple[Conjunct, ...], Entailment] = {}
+
+    def has_runs(self, facts: tuple[Conjunct, ...]) -> bool:
+        """Whether some run satisfies the facts. Raises the errors of ``find_violation``."""
+        runs = self._explore(facts)
+        with runs.manager.guard():
+            return runs.is_possible
+
+    def find_violation(self, facts: tuple[Conjunct, ...], conjunct: Conjunct) -> Trace | None:
+        """Return a run that satisfies the facts and violates the conjunct, or None.
+
+        Raises DomainError, OutsideGr1Error, NotReducibleError, LimitError.
+        """
+        if (conjunct.class_, conjunct.formula) in {(fact.class_, fact.formula) for fact in facts}:
+            return None
+        if is_gr1(conjunct):
+            runs = self._explore(facts)
+            with runs.manager.guard():
+                trace = runs.find_violation(conjunct)
+        else:
+            negation = Conjunct(f.negate(as_ltl(conjunct)), Class.OTHER, conjunct.origin)
+            runs = self._explore((*facts, negation))
+            with runs.manager.guard():
+                trace = runs.find_example()
+        return None if trace is None else self._drop_auxiliary_variables(trace)
+
+    def _explore(self, facts: tuple[Conjunct, ...]) -> Entailment:
+        if facts not in self._entailments:
+            variables, conjuncts = encode_conjuncts(facts, self._names)
+            predictions = Contract("", "", variables, (), ())
+            manager = self._new_manager()
+            with manager.guard():
+                universe = Universe((*self._contracts, predictions), manager)
+                self._entailments[facts] = Entailment(universe, universe.system(conjuncts))
+        return self._entailments[facts]
+
+    def _drop_auxiliary_variables(self, trace: Trace) -> Trace:
+        steps = tuple(
+            {name: value for name, value in values.items() if name in self._names}
+            for values in trace.steps
+        )
+        return replace(trace, steps=steps)
+
+
 class Failure(Struct, frozen=True):
     """A conjunct that is not entailed, with a run that violates it."""
 
@@ -106,47 +166,32 @@ class Failure(Struct, frozen=True):
 
 
 def find_refinement_failures(
-    concrete: Contract, abstract: Contract, manager: Manager
+    concrete: Contract, abstract: Contract, new_manager: ManagerFactory
 ) -> Iterator[Failure]:
     """Yield the reasons why *concrete* does not refine *abstract*; none if it does.
 
     A contract refines another one if it assumes no more and guarantees no less. That is: the
     abstract assumptions entail the concrete assumptions, and the abstract assumptions together with
-    the concrete guarantees entail the abstract guarantees. Raises DomainError, OutsideGr1Error,
-    LimitError.
+    the concrete guarantees entail the abstract guarantees. The conjuncts are in any LTL. Raises
+    DomainError, OutsideGr1Error, NotReducibleError, LimitError.
     """
-    with manager.guard():
-        yield from _find_all_failures(concrete, abstract, manager)
-
-
-def _find_all_failures(
-    concrete: Contract, abstract: Contract, manager: Manager
-) -> Iterator[Failure]:
-    observed = observe_histories((concrete, abstract))
-    (concrete, abstract), definitions = observed.contracts, observed.definitions
-    universe = Universe(observed.contracts, manager)
-    assumed_runs = Entailment(universe, universe.system((*abstract.assumptions, *definitions)))
-    yield from _find_failures(
-        assumed_runs, _without_repeated(concrete.assumptions, abstract.assumptions), True
-    )
-    facts = (*abstract.assumptions, *concrete.guarantees, *definitions)
-    guaranteed_runs = Entailment(universe, universe.system(facts))
-    yield from _find_failures(guaranteed_runs, _without_repeated(abstract.guarantees, facts), False)
+    search = RunSearch((concrete, abstract), new_manager)
+    facts = abstract.assumptions
+    yield from _find_failures(search, facts, concrete.assumptions, True)
+    facts = (*abstract.assumptions, *concrete.guarantees)
+    yield from _find_failures(search, facts, abstract.guarantees, False)
 
 
 def _find_failures(
-    runs: Entailment, conjuncts: Sequence[Conjunct], is_assumption: bool
+    search: RunSearch,
+    facts: tuple[Conjunct, ...],
+    conjuncts: Iterable[Conjunct],
+    is_assumption: bool,
 ) -> Iterator[Failure]:
     for conjunct in conjuncts:
-        trace = runs.find_violation(conjunct)
+        trace = search.find_violation(facts, conjunct)
         if trace is not None:
             yield Failure(conjunct, is_assumption, trace)
-
-
-def _without_repeated(conjuncts: Sequence[Conjunct], facts: Sequence[Conjunct]) -> list[Conjunct]:
-    """Return the conjuncts that are not literally among the facts, which need no search."""
-    stated = {(conjunct.class_, conjunct.formula) for conjunct in facts}
-    return [conjunct for conjunct in conjuncts if (conjunct.class_, conjunct.formula) not in stated]
 
 
 def find_environment_run(contract: Contract, manager: Manager) -> Trace | None:

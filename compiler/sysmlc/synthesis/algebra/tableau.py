@@ -6,12 +6,16 @@ ever. The fair runs in which the encoding holds in the first step are those that
 formula. Operators of the past become history bits, which are deterministic.
 """
 
+from collections.abc import Iterable
+
 from msgspec import Struct
+from msgspec.structs import replace
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Owner, Variable
 from sysmlc.logic.formula import FUTURE, Apply, Formula, Op, Var, has_primes
 from sysmlc.logic.identifiers import Names
+from sysmlc.logic.reduction.contract_reduction import as_ltl, is_gr1
 from sysmlc.logic.reduction.formula_reduction import FormulaReduction
 from sysmlc.logic.reduction.history import History
 
@@ -38,6 +42,29 @@ def build_tableau(formula: Formula, taken: tuple[str, ...]) -> Tableau:
         (*history.variables, *encoder.variables),
         (*history.conjuncts, *encoder.conjuncts),
     )
+
+
+def encode_conjuncts(
+    conjuncts: Iterable[Conjunct], names: Iterable[str]
+) -> tuple[tuple[Variable, ...], tuple[Conjunct, ...]]:
+    """Return the variables of tableaux, and the conjuncts with tableaux in place of general LTL.
+
+    *names* are the variables of the conjuncts. Raises NotReducibleError like ``build_tableau``.
+    """
+    taken = tuple(names)
+    variables: list[Variable] = []
+    encoded: list[Conjunct] = []
+    for conjunct in conjuncts:
+        if is_gr1(conjunct):
+            encoded.append(conjunct)
+            continue
+        tableau = build_tableau(
+            as_ltl(conjunct), (*taken, *(variable.name for variable in variables))
+        )
+        variables += tableau.variables
+        encoded.append(replace(conjunct, formula=tableau.formula, class_=Class.INIT))
+        encoded += tableau.conjuncts
+    return tuple(variables), tuple(encoded)
 
 
 class _Encoder:

@@ -8,7 +8,7 @@ import logging
 import sys
 import time
 import warnings
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager
 from importlib import import_module
 from types import FrameType, ModuleType
@@ -310,6 +310,10 @@ class Manager:
         if self._stop_reason is not None:
             raise KeyboardInterrupt
         self._stop_reason = KeyboardInterrupt
+
+
+ManagerFactory = Callable[[], Manager]
+"""Creates a manager for the variables of one question."""
 
 
 def _is_memory_error(text: str) -> bool:

@@ -10,9 +10,9 @@ from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
 from sysmlc.synthesis import rules
 from sysmlc.synthesis.algebra.refinement import find_environment_run
+from sysmlc.synthesis.bdd.manager import ManagerFactory
 from sysmlc.synthesis.lints.checks import (
     LintFinding,
-    ManagerFactory,
     check_games,
     check_ownership,
     check_runs,

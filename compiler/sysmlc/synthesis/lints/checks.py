@@ -5,7 +5,7 @@ needless fairness, and assumptions that the component can force the environment 
 show dead ends of the environment, and outputs without a frame condition.
 """
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 
 from msgspec import Struct
 from msgspec.structs import replace
@@ -26,7 +26,7 @@ from sysmlc.logic.formula import Formula, Var, prime, variables
 from sysmlc.logic.printing import print_formula, print_literal
 from sysmlc.synthesis import rules
 from sysmlc.synthesis.algebra.fair_systems import FairSystem, Runs
-from sysmlc.synthesis.bdd.manager import Manager, Node
+from sysmlc.synthesis.bdd.manager import Manager, ManagerFactory, Node
 from sysmlc.synthesis.games.game import Constraint, Game, make_game
 from sysmlc.synthesis.games.relational_product import Product
 from sysmlc.synthesis.games.solver import solve
@@ -117,7 +117,6 @@ def _primed_names(formula: Formula) -> set[str]:
 
 # -- games and runs ----------------------------------------------------------------------------
 
-ManagerFactory = Callable[[], Manager]
 _MAX_REMOVED_ASSUMPTIONS = 40
 """Assumptions up to which each of them is removed in turn to find the culprits."""
 

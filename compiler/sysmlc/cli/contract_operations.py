@@ -1,0 +1,336 @@
+"""``sysmlc contracts refine``, ``quotient``, ``merge``, ``conjoin`` and ``compose``: two contracts.
+
+An operand is a file, or ``FILE#COMPONENT`` for one contract of a file with several.
+"""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+from msgspec import Struct
+
+from sysmlc.cli import options, terminal
+
+if TYPE_CHECKING:
+    from sysmlc.cli.contract_files import ContractFile
+    from sysmlc.cli.session import Settings
+    from sysmlc.config import Config
+    from sysmlc.diagnostics import Subject
+    from sysmlc.logic.contract import Conjunct, Contract
+    from sysmlc.synthesis.algebra.refinement import Failure
+
+_OPERANDS = """\b
+An operand is a model or a contract in any format that sysmlc reads. If the
+file has several contracts, append '#' and the name of a component."""
+
+
+class Operand(Struct, frozen=True):
+    """A contract and the file that it is from."""
+
+    contract: "Contract"
+    file: "ContractFile"
+    path: Path
+
+    def find_subject(self, conjunct: "Conjunct | None" = None) -> "Subject":
+        """Return the element, or else the file, of a conjunct or of the whole contract."""
+        from sysmlc.diagnostics import Place, Subject
+        from sysmlc.support.escapes import escape_undecodable
+
+        subject = self.file.place(conjunct.origin if conjunct else self.contract.origin)
+        if subject.place is not None:
+            return subject
+        place = Place(escape_undecodable(self.path.as_posix()))
+        return Subject(self.contract.component, place=place)
+
+
+def _read_operand(text: str, language: str, config: "Config", settings: "Settings") -> Operand:
+    """Read one contract; exits with code 2 if there is none, or more than one."""
+    from sysmlc.cli.contract_files import read_contracts, select_contracts
+    from sysmlc.cli.session import fail
+
+    file, component = Path(text), ""
+    if "#" in text and not file.exists():
+        file, component = Path(text.partition("#")[0]), text.partition("#")[2]
+    contract_file = read_contracts(file, language, config, settings)
+    if not contract_file.contracts:
+        _print_findings([contract_file], settings)
+        fail(f"'{file}' has no contract that could be read")
+    contracts = select_contracts(contract_file.contracts, component)
+    if len(contracts) != 1:
+        names = ", ".join(contract.component for contract in contracts)
+        fail(f"'{file}' has {len(contracts)} contracts; append '#' and one of {names}")
+    return Operand(contracts[0], contract_file, file)
+
+
+def _print_findings(files: "list[ContractFile]", settings: "Settings") -> None:
+    from sysmlc.cli import reports
+    from sysmlc.cli.contract_files import list_findings
+
+    unique = {id(file): file for file in files}.values()
+    reports.print_findings([item for file in unique for item in list_findings(file)], settings)
+
+
+def _report_obstacle(problem: Exception, work: str, first: Operand, second: Operand) -> None:
+    from sysmlc.synthesis import rules
+    from sysmlc.synthesis.witnesses import describe_problem
+
+    first.file.sink.report(
+        rules.NOT_COMPARABLE,
+        first.find_subject(),
+        first=first.contract.component,
+        second=second.contract.component,
+        work=work,
+        reason=describe_problem(problem),
+    )
+
+
+def _read_both(
+    texts: tuple[str, str], language: str, settings: "Settings"
+) -> tuple[Operand, Operand]:
+    from sysmlc.cli import session
+
+    config = session.load_config(tuple(Path(text.partition("#")[0]) for text in texts), settings)
+    first, second = (_read_operand(text, language, config, settings) for text in texts)
+    return first, second
+
+
+_LANGUAGE = click.option("--from", "language", default="", metavar="FORM", help="Format of files.")
+
+
+# -- refinement --------------------------------------------------------------------------------
+
+
+@click.command(
+    "refine",
+    short_help="Decide whether a contract refines another one.",
+    epilog="""\b
+Examples:
+  sysmlc contracts refine filler.gr1.json line.gr1.json
+  sysmlc contracts refine plant.uml#Plant::Gate gate.contract.json
+
+Exit codes: 0 CONCRETE refines ABSTRACT, 1 it does not, 2 that is not decided.""",
+)
+@click.argument("abstract", metavar="ABSTRACT")
+@click.argument("concrete", metavar="CONCRETE")
+@options.folder("Draw the runs that show why it does not there (PlantUML).")
+@_LANGUAGE
+@options.question_limit(default=10.0)
+@options.reporting
+@options.reading
+@click.pass_context
+def refine_command(
+    ctx: click.Context,
+    /,
+    abstract: str,
+    concrete: str,
+    output: Path | None,
+    language: str,
+    seconds: float,
+    **setting_values: Any,  # noqa: ANN401 - the fields of Settings
+) -> None:
+    """Decide whether the contract CONCRETE refines the contract ABSTRACT.
+
+    It does if it assumes no more and guarantees no less, so that it may be used in its place. A run
+    shows each assumption and each guarantee for which that is not so.
+    """
+    from sysmlc.cli import reports, session
+    from sysmlc.synthesis.witnesses import Party, Witness, witness_files
+
+    settings = session.Settings(**setting_values)
+    whole, part = _read_both((abstract, concrete), language, settings)
+    failures, is_decided = _find_failures(whole, part, seconds)
+    if output is not None:
+        parties = (Party(part.contract.component, part.contract),)
+        name = part.contract.component
+        reports.write_files(
+            witness_files(Witness(name, item.conjunct, item.trace, parties) for item in failures),
+            output,
+        )
+    _print_findings([whole.file, part.file], settings)
+    if is_decided or failures:
+        verb = "does not refine" if failures else "refines"
+        line = f"{part.contract.component} {verb} {whole.contract.component}"
+        terminal.echo(line, err=not reports.allows_sentences(settings))
+    ctx.exit(1 if failures else 0 if is_decided else 2)
+
+
+def _find_failures(
+    abstract: Operand, concrete: Operand, seconds: float
+) -> "tuple[list[Failure], bool]":
+    """Report and return the reasons against refinement, and whether all questions are decided."""
+    from sysmlc.synthesis import Limits, Manager, rules
+    from sysmlc.synthesis.algebra.operations import OBSTACLES, align_domains, check_owners
+    from sysmlc.synthesis.algebra.refinement import find_refinement_failures
+    from sysmlc.synthesis.witnesses import describe_run, print_temporal, text_in_parentheses
+
+    failures: list[Failure] = []
+    try:
+        check_owners(concrete.contract, abstract.contract)
+        pair = align_domains(concrete.contract, abstract.contract)
+        for failure in find_refinement_failures(
+            *pair, lambda: Manager(limits=Limits(0, 0, seconds))
+        ):
+            failures.append(failure)
+            owner = concrete if failure.is_assumption else abstract
+            owner.file.sink.report(
+                rules.ASSUMES_MORE if failure.is_assumption else rules.GUARANTEES_LESS,
+                owner.find_subject(failure.conjunct),
+                notes=tuple(describe_run(failure.trace, failure.conjunct)),
+                concrete=concrete.contract.component,
+                abstract=abstract.contract.component,
+                formula=print_temporal(failure.conjunct),
+                context=text_in_parentheses(failure.conjunct),
+            )
+    except OBSTACLES as problem:
+        _report_obstacle(problem, "compared", abstract, concrete)
+        return failures, False
+    return failures, True
+
+
+# -- operations --------------------------------------------------------------------------------
+
+
+def _add_operation(
+    name: str, operands: tuple[str, str], participle: str, summary: str, help: str
+) -> click.Command:
+    """Return the command of an operation whose result is a contract."""
+
+    @click.command(name, short_help=summary, help=f"{help}\n\n{_OPERANDS}")
+    @click.argument("first", metavar=operands[0])
+    @click.argument("second", metavar=operands[1])
+    @click.option(
+        "-o",
+        "--output",
+        type=click.Path(path_type=Path, dir_okay=False),
+        metavar="FILE",
+        help="Write the contract there, in the format of the ending.  [default: print JSON]",
+    )
+    @_LANGUAGE
+    @options.question_limit(default=10.0)
+    @options.reporting
+    @options.reading
+    @click.pass_context
+    def operation_command(
+        ctx: click.Context,
+        /,
+        first: str,
+        second: str,
+        output: Path | None,
+        language: str,
+        seconds: float,
+        **setting_values: Any,  # noqa: ANN401 - the fields of Settings
+    ) -> None:
+        from sysmlc.cli import reports, session
+
+        format_name = _choose_format(output)
+        settings = session.Settings(**setting_values)
+        if output is None and not reports.allows_sentences(settings):
+            session.fail(f"with --format {settings.form}, give the contract a file with -o")
+        operands = _read_both((first, second), language, settings)
+        contract = _operate(_load_operation(name), operands, participle, seconds)
+        _print_findings([operand.file for operand in operands], settings)
+        if contract is None:
+            ctx.exit(2)
+        _write_result(contract, output, format_name)
+
+    return operation_command
+
+
+def _load_operation(name: str) -> "Callable[..., Contract]":
+    from sysmlc.synthesis.algebra import operations
+
+    return {
+        "quotient": operations.divide,
+        "merge": operations.merge,
+        "conjoin": operations.conjoin,
+        "compose": operations.compose,
+    }[name]
+
+
+def _operate(
+    operation: "Callable[..., Contract]",
+    operands: tuple[Operand, Operand],
+    participle: str,
+    seconds: float,
+) -> "Contract | None":
+    """Return the result of the operation; report why there is none."""
+    from sysmlc.synthesis import Limits, Manager
+    from sysmlc.synthesis.algebra.operations import OBSTACLES
+
+    contracts = (operand.contract for operand in operands)
+    try:
+        return operation(*contracts, lambda: Manager(limits=Limits(0, 0, seconds)))
+    except OBSTACLES as problem:
+        _report_obstacle(problem, participle, *operands)
+        return None
+
+
+def _choose_format(output: Path | None) -> str:
+    """Return the format with the ending of a file; exits with code 2 if there is none."""
+    from sysmlc.cli.session import fail
+    from sysmlc.logic.formats import FORMATS
+
+    is_json = output is None or output.suffix.lower() == ".json"
+    written = {name: form.endings for name, form in FORMATS.items() if form.is_written}
+    name = output.name.lower() if output else ""
+    matches = [form for form, endings in written.items() if endings and name.endswith(endings)]
+    if not matches and not is_json:
+        known = ", ".join(ending for endings in written.values() for ending in endings)
+        fail(f"'{output}' has no ending of a contract format; these are {known}")
+    return next(iter(matches), "contract")
+
+
+def _write_result(contract: "Contract", output: Path | None, format_name: str) -> None:
+    from sysmlc.cli.reports import write_files
+    from sysmlc.cli.session import fail
+    from sysmlc.logic import formats
+    from sysmlc.logic.printing import print_formula
+
+    try:
+        text = formats.write(contract, format_name)
+    except formats.NotExpressibleError as problem:
+        formula = f"'{print_formula(problem.conjunct.formula)}'" if problem.conjunct else "it"
+        fail(f"the contract cannot be written for {format_name}: {formula}: {problem.reason}")
+    if output is None:
+        terminal.echo_text(text.removesuffix("\n"))
+        return
+    write_files([(output.name, text)], output.parent)
+    counts = (len(contract.assumptions), "assumptions"), (len(contract.guarantees), "guarantees")
+    summary = ", ".join(
+        f"{count} {word if count != 1 else word.removesuffix('s')}" for count, word in counts
+    )
+    terminal.echo(f"{contract.component}: {summary}")
+
+
+COMMANDS = (
+    refine_command,
+    _add_operation(
+        "quotient",
+        ("SYSTEM", "PART"),
+        "divided",
+        "Write what is missing besides a part.",
+        "Write the weakest contract of a component that completes PART to SYSTEM.",
+    ),
+    _add_operation(
+        "merge",
+        ("FIRST", "SECOND"),
+        "merged",
+        "Write the contract of two viewpoints.",
+        "Write the contract of a component with both viewpoints, where both assumptions hold.",
+    ),
+    _add_operation(
+        "conjoin",
+        ("FIRST", "SECOND"),
+        "conjoined",
+        "Write the weakest contract that refines two.",
+        "Write the weakest contract that refines FIRST and SECOND.",
+    ),
+    _add_operation(
+        "compose",
+        ("FIRST", "SECOND"),
+        "composed",
+        "Write the contract of two components together.",
+        "Write the contract of two components that run together.",
+    ),
+)
