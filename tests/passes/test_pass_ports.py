@@ -291,12 +291,12 @@ def test_an_empty_conjugated_interface_block_has_the_directions_of_its_original(
 # -- ports of plants --------------------------------------------------------------------------
 
 
-def run_on_plants(port):
+def run_on_plants(port, first_class='Class c "C"'):
     """Run the pass on a class with ports of two AutomationML files; return codes and subjects."""
     ports = "".join(port.format(n=n, file=file) for n, file in enumerate("a" * 10 + "b"))
     documents = "".join(f'Document {f} "{f}" subkind="caex" @{f}.aml:0\n' for f in "ab")
     directed = 'Class d "D" @a.aml:98\n  Port d.p "p" direction="in" @a.aml:99\n    -> typed-by c\n'
-    _, sink = run_until(f'{documents}Class c "C" @a.aml:97\n{ports}{directed}', "ports")
+    _, sink = run_until(f"{documents}{first_class} @a.aml:97\n{ports}{directed}", "ports")
     messages = [f"{diagnostic.rule.code}: {diagnostic.message}" for diagnostic in sink]
     return messages, [diagnostic.subject.id for diagnostic in sink]
 
@@ -320,3 +320,9 @@ def test_ports_of_plants_without_a_direction_are_reported_if_another_port_has_on
         [f"SM121: 10 of 11 ports of 'a.aml' have no direction: {FIRST_PORTS} and 2 more"],
         ["p0"],
     )
+
+
+def test_connectors_of_products_processes_and_resources_need_no_direction():
+    connector = 'Class PPRConnector "PPRConnector" @a.aml:96\nClass c "C"'
+    port = '  Port p{n} "p{n}" @{file}.aml:{n}\n    -> typed-by PPRConnector\n'
+    assert run_on_plants(port, connector) == ([], [])

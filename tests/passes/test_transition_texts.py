@@ -80,6 +80,20 @@ def test_a_guard_that_a_contract_cannot_express_is_no_error(guard, language, rea
     assert finding.startswith(f"SM411: guard '{guard}' has no formula: {reason}; ")
 
 
+def test_a_word_without_a_language_is_a_condition_in_words():
+    (finding,) = list_text_findings(guard="ready")
+    assert finding == (
+        "SM411: guard 'ready' has no formula: the word 'ready' is not a property of 'Gate'; "
+        "the contract treats it as the input 'ready'"
+    )
+
+
+@pytest.mark.parametrize(("guard", "language"), [("cuont", ""), ("redy > 3", ""), ("ready", "OCL")])
+def test_a_misspelt_property_and_a_name_in_an_expression_are_errors(guard, language):
+    (finding,) = list_text_findings(guard=guard, language=language)
+    assert finding.startswith(f"SM412: guard '{guard}' names ")
+
+
 @pytest.mark.parametrize("guard", ["door.opne", "Door::LEAST > 3", "amuont > 3", "limit > count"])
 def test_a_guard_that_names_nothing_is_an_error(guard):
     (finding,) = list_text_findings(guard=guard, language="OCL")

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator
 
 from msgspec import Struct
 
+from sysmlc.diagnostics import Severity, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic.expressions.expression import (
     Assignment,
@@ -331,6 +332,16 @@ def find_label(graph: Graph, writer: Element, other: str = "") -> str:
     if named is None:
         return writer.subkind
     return graph.qualified_name(named) if named.name == other else named.name
+
+
+SHARED = rule(
+    "SM546",
+    "others-write-it-too",
+    Severity.INFO,
+    "'{name}' is also assigned by '{writer}', so the contract of '{machine}' treats it "
+    "as an input and shows '{text}' as output '{variable}'",
+    help="let only one behaviour assign it, or specify it in a requirement",
+)
 
 
 class Sharing(Struct, frozen=True):

@@ -357,21 +357,23 @@ def _find_plant_files(graph: Graph) -> frozenset[str]:
 
 
 def _find_undirected_plant_ports(graph: Graph, ports: Iterable[Element]) -> list[Element]:
-    """Return the ports without direction, in files where other ports have a direction.
-
-    Ports that refer to a document, such as a drawing of the element, need no direction.
-    """
+    """Return the ports for flows without direction, in files where other ports have one."""
     # In most files no port has a direction, which is no fault of single ports.
-    flow_ports = [port for port in ports if not _leads_to_document(graph, port)]
+    flow_ports = [port for port in ports if _is_for_flows(graph, port)]
     files_with_directions = {port.source for port in flow_ports if "direction" in port.attrs}
     return [
         p for p in flow_ports if p.source in files_with_directions and "direction" not in p.attrs
     ]
 
 
-def _leads_to_document(graph: Graph, port: Element) -> bool:
+def _is_for_flows(graph: Graph, port: Element) -> bool:
+    """Whether something may flow through a port: it is no link to a document or PPRConnector."""
+    type_ = type_of(graph, port)
+    family = () if type_ is None else (type_, *generals(graph, type_))
     referring = graph.sources(port, Edge.REFERENCES)
-    return any(element.kind is Kind.DOCUMENT for element in referring)
+    return "PPRConnector" not in {general.name for general in family} and not any(
+        element.kind is Kind.DOCUMENT for element in referring
+    )
 
 
 def _report_by_file(

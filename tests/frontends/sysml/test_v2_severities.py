@@ -327,6 +327,24 @@ def test_variants_and_the_start_and_end_of_an_action_need_no_order():
     assert list_action_findings(f"{variants} {ends}") == []
 
 
+def test_a_condition_over_a_feature_of_a_package_names_the_package():
+    text = """package P {
+        attribute ready : ScalarValues::Boolean;
+        part def Cell {
+            action work { first start; then decide; if ready then a; else a; action a; }
+            exhibit state s { entry; then x; state x; transition first x if ready then x; }
+        }
+    }"""
+    findings = [
+        d for d in read(text, passes=ALL).sink if d.rule.code in ("SM411", "SM412", "SM458")
+    ]
+    assert {d.rule.code for d in findings} == {"SM411", "SM458"}
+    assert all(
+        "has no formula: 'ready' is a feature of package 'P'; " in d.message for d in findings
+    )
+    assert all(d.help.startswith("use a property of the owner") for d in findings)
+
+
 def test_components_of_one_name_in_two_files_are_reported_once_with_both():
     text = "package P { action def A { first start; then action x; then done; } }"
     reading = read(text, text, passes=ALL)

@@ -77,6 +77,10 @@ class Symbol(Struct, frozen=True):
 Scope = Callable[[str], Symbol | None]
 """Looks up a name; None if it is unknown."""
 FINITE_ADVICE = "use properties that are a Boolean, an enumeration or an Integer for a contract"
+ELSEWHERE_ADVICE = (
+    "use a property of the owner of the behaviour, or pass the value by a signal, for a contract "
+    "about it"
+)
 _ORDER = {"<": Op.LT, "<=": Op.LE, ">": Op.GT, ">=": Op.GE}
 _EQUALITY = {"==": Op.EQ, "!=": Op.NE}
 _ARITHMETIC = {"+": Op.ADD, "-": Op.SUB, "*": Op.MUL, "/": Op.DIV, "%": Op.MOD}

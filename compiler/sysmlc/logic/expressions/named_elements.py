@@ -105,7 +105,8 @@ def find_feature_elsewhere(
     ``door.open`` is a feature of the type of part ``door``, or of the type of an association end,
     of the classifier around *behaviour*. In the texts of a transition, ``amount`` is also a
     parameter of the operation that triggers it, or an attribute of the signal; ``signal.amount`` is
-    the same. ``Limits::MAX`` is a feature of any classifier of that name.
+    the same. ``Limits::MAX`` is a feature of any classifier of that name, ``limit`` also a feature
+    that a package around *behaviour* owns.
     """
     qualifier, _, last = name.rpartition("::")
     if qualifier:
@@ -121,7 +122,26 @@ def find_feature_elsewhere(
             return feature
     classifiers = (a for a in graph.ancestors(behaviour) if a.kind in query.CLASSIFIERS)
     owner = next((a for a in classifiers if a.kind not in query.BEHAVIORS), None)
-    return _follow_path(graph, owner, path) if rest and owner is not None else None
+    feature = _follow_path(graph, owner, path) if rest and owner is not None else None
+    if feature is not None:
+        return feature
+    packages = (a for a in graph.ancestors(behaviour) if a.kind is Kind.PACKAGE)
+    values = (value for package in packages for value in graph.owned(package))
+    kinds = (*VALUE_KINDS, Kind.INSTANCE)
+    start = next((value for value in values if value.name == head and value.kind in kinds), None)
+    if start is None or not rest:
+        return start
+    return _follow_path(graph, query.type_of(graph, start) or start, rest)
+
+
+def describe_feature_elsewhere(graph: Graph, behaviour: Element, user: Element, name: str) -> str:
+    """Return whose feature *name* is in a text of *user*, or an empty text if it is nobody's."""
+    feature = find_feature_elsewhere(graph, behaviour, user, name)
+    if feature is None:
+        return ""
+    owner = graph.owner(feature) or feature
+    package = "package " if owner.kind is Kind.PACKAGE else ""
+    return f"'{name}' is a feature of {package}'{owner.name}'"
 
 
 def _follow_path(graph: Graph, start: Element, path: list[str]) -> Element | None:

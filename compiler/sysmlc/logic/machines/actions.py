@@ -10,6 +10,7 @@ from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, Owne
 from sysmlc.logic.domains import describe
 from sysmlc.logic.expressions.context import Context, report_range
 from sysmlc.logic.expressions.elaboration import (
+    ELSEWHERE_ADVICE,
     FINITE_ADVICE,
     ElaborationError,
     Fault,
@@ -33,21 +34,12 @@ from sysmlc.logic.expressions.expression import (
     walk_expression,
 )
 from sysmlc.logic.expressions.features import Feature
-from sysmlc.logic.expressions.named_elements import find_feature_elsewhere
+from sysmlc.logic.expressions.named_elements import describe_feature_elsewhere
 from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
-from sysmlc.logic.feature_writes import Sharing, find_label
+from sysmlc.logic.feature_writes import SHARED, Sharing, find_label
 from sysmlc.logic.identifiers import Names
 from sysmlc.logic.machines.machine import Action, Assign, Raise
-
-SHARED = rule(
-    "SM546",
-    "others-write-it-too",
-    Severity.INFO,
-    "'{name}' is also assigned by '{writer}', so the contract of '{machine}' treats it "
-    "as an input and shows '{text}' as output '{variable}'",
-    help="let only one behaviour assign it, or specify it in a requirement",
-)
-
+from sysmlc.support.suggestions import find_similar
 
 NOT_UNDERSTOOD = rule(
     "SM411",
@@ -205,11 +197,12 @@ def _classify_fault(
 
 def _explain_name(reading: ReadingContext, element: Element, text: str, name: str) -> str:
     """Return why a name that is no property of the context is no error, or an empty text."""
-    graph = reading.graph
-    feature = find_feature_elsewhere(graph, reading.sharing.machine, element, name)
-    if feature is not None:
-        return f"'{name}' is a feature of '{(graph.owner(feature) or feature).name}'"
+    owner = describe_feature_elsewhere(reading.graph, reading.sharing.machine, element, name)
+    if owner:
+        return owner
     language = str(element.attrs.get("guard_language", element.attrs.get("language", "")))
+    if not language and text.strip() == name and not find_similar(name, reading.context.features):
+        return f"the word '{name}' is not a property of '{reading.context.name}'"
     if language and language.lower() not in _CHECKED_LANGUAGES:
         return f"'{name}' is not known, and names in {language} are not checked"
     return f"'{name}' in single quotes is not a text here" if f"'{name}'" in text else ""
@@ -228,7 +221,9 @@ def _replace_by_input(
     rule, reason, name, advice = NOT_UNDERSTOOD, str(error), "", _SYNTAX_ADVICE
     if isinstance(error, ElaborationError):
         rule, reason = _classify_fault(reading, error, element, text, *read)
-        name, advice = error.name, ""
+        name = error.name
+        is_elsewhere = rule is NOT_UNDERSTOOD and error.fault is Fault.UNKNOWN
+        advice = ELSEWHERE_ADVICE if is_elsewhere else ""
     reading.sink.report(
         rule,
         reading.graph.subject(element),

@@ -18,6 +18,7 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.expressions.context import context_of, report_range
 from sysmlc.logic.expressions.elaboration import (
+    ELSEWHERE_ADVICE,
     FINITE_ADVICE,
     ElaborationError,
     Fault,
@@ -28,6 +29,7 @@ from sysmlc.logic.expressions.elaboration import (
 )
 from sysmlc.logic.expressions.expression import Expression, ExpressionError
 from sysmlc.logic.expressions.features import Feature
+from sysmlc.logic.expressions.named_elements import describe_feature_elsewhere
 from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.formula import Formula, const, var, variables
 from sysmlc.logic.identifiers import Names, identifier, make_unique
@@ -60,7 +62,7 @@ class Scope:
         self, graph: Graph, activity: Element, assumed_range: tuple[int, int], sink: Sink
     ) -> None:
         above = (a for a in graph.ancestors(activity) if a.kind in _CLASSIFIERS)
-        self._graph, self._sink = graph, sink
+        self._graph, self._sink, self._activity = graph, sink, activity
         self._outer = context_of(graph, next(above, None), assumed_range)
         self._inner = context_of(graph, activity, assumed_range)
         self._variables = {**self._outer.variables, **self._inner.variables}
@@ -127,8 +129,12 @@ class Scope:
             raise UnreadableError(str(error)) from None
         except ElaborationError as error:
             if error.fault is Fault.UNKNOWN:
-                message = f"'{error.name}' is not a property of the activity or its owner"
-                raise UnreadableError(message, error.name) from None
+                activity = self._activity
+                owner = describe_feature_elsewhere(self._graph, activity, activity, error.name)
+                element = f"'{activity.name}'" if activity.name else "the activity"
+                message = owner or f"'{error.name}' is not a property of {element} or its owner"
+                advice = ELSEWHERE_ADVICE if owner else ""
+                raise UnreadableError(message, error.name, advice) from None
             advice = FINITE_ADVICE if error.fault is Fault.UNSUPPORTED else ""
             raise UnreadableError(str(error), advice=advice) from None
         return formula, [
