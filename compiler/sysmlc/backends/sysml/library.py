@@ -187,6 +187,11 @@ BASES = {
 """Bases of usages by keyword."""
 _CONTROL_NODES = ("decide", "merge", "fork", "join")
 """Keywords of control nodes, whose base is that of actions."""
+_PRIVATELY_IMPORTED_NAMES = frozenset(("add", "addAt", "remove", "removeAt"))
+"""Functions that OccurrenceFunctions imports privately.
+
+The OpenMBEE toolkit finds them in actions all the same, before members of the model.
+"""
 
 
 # -- types and units -----------------------------------------------------------------------------
@@ -233,10 +238,14 @@ def find_quantity_of_kind(quantity_kind: Element) -> str | None:
 
 @cache
 def list_inherited_names(keyword: str) -> frozenset[str]:
-    """Return the names that a definition or usage with this keyword inherits from the library."""
+    """Return the names that hide those of the model in a definition or usage with this keyword.
+
+    It inherits them from the library.
+    """
     usage_keyword = keyword.removesuffix(" def")
     base = BASES.get("action" if usage_keyword in _CONTROL_NODES else usage_keyword)
-    return _read_member_names().get(base or "", frozenset())
+    names = _read_member_names().get(base or "", frozenset())
+    return names | _PRIVATELY_IMPORTED_NAMES if usage_keyword == "action" else names
 
 
 @cache
