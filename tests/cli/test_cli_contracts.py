@@ -1,6 +1,7 @@
 """``sysmlc contracts check``: one line for each contract, diagnostics, exit codes."""
 
 import json
+from pathlib import Path
 
 import pytest
 
@@ -151,3 +152,57 @@ def test_no_performance_of_an_activity_is_forgotten(
     result = workspace.sysmlc("contracts", "check", "plant.sysml", "--format", "json")
     (entry,) = json.loads(result.stdout)["requirements"]
     assert entry["verdict"] == verdict
+
+
+TEXTS = """package Line {
+    private import RecipeLevels::*;
+    item def Go;
+    part def Gate {
+        exhibit state S { entry; then A; state A; transition first A accept Go then B; state B; }
+        satisfy Polite;
+    }
+    requirement <R1> Polite { doc /* The gate is polite. */ }
+    requirement <R2> Alone { doc /* Nobody satisfies it. */ }
+    requirement <R3> Formal {
+        doc /* Text and formula. */
+        subject gate : Gate;
+        require constraint { language "ltl" /* G (state=B -> X state=B) */ }
+    }
+}
+"""
+
+
+def test_requirements_that_are_only_text_are_listed_as_not_formalised(workspace, all_passes):
+    workspace.write("line.sysml", TEXTS)
+    result = workspace.sysmlc("contracts", "check", "line.sysml", "--format", "json")
+    assert [
+        (entry["requirement"], entry["component"], entry["verdict"], entry["reason"])
+        for entry in json.loads(result.stdout)["requirements"]
+    ] == [
+        ("Line::Formal", "Line::Gate", "holds", None),
+        ("Line::Polite", "Line::Gate", "not-decided", ONLY_TEXT),
+        ("Line::Alone", None, "not-decided", ONLY_TEXT),
+    ]
+    result = workspace.sysmlc("contracts", "check", "line.sysml")
+    assert result.stdout.endswith("2 requirements not formalised: Polite, Alone\n")
+    workspace.sysmlc("line.sysml", "-o", "out")
+    page = Path("out/contracts/Line.Gate.md").read_text()
+    assert page.endswith("- R1 Polite: The gate is polite.\n")
+
+
+ONLY_TEXT = "not formalised: the requirement is only text"
+
+
+def test_a_text_about_a_time_is_decided_by_the_recipe(workspace, all_passes):
+    model = Path("examples/lego-recipe-v2/lego-recipe.sysml")
+    arguments = ("contracts", "check", str(Path(__file__).parents[2] / model), "--format", "json")
+    entries = {
+        entry["requirement"].rpartition("::")[2]: entry
+        for entry in json.loads(workspace.sysmlc(*arguments).stdout)["requirements"]
+    }
+    assert entries["AssembleTime"]["verdict"] == "holds"
+    assert entries["AssembleTime"]["reason"] == (
+        f"{ONLY_TEXT}; the recipe decides it: "
+        "'LegoRecipe::Recipes::BuildLegoStack::assemble' takes 23300 to 40800 ms, "
+        "and at most 75000 ms is allowed"
+    )

@@ -16,6 +16,7 @@ from sysmlc.ir.compare.titles import separate_words
 from sysmlc.logic.contract import Class, Conjunct, Contract, Variable
 from sysmlc.logic.domains import describe
 from sysmlc.logic.printing import print_formula
+from sysmlc.logic.requirements.statements import list_texts_about
 from sysmlc.support.escapes import escape_code, escape_markdown
 
 _SHIPPED = Templates("contracts", None)
@@ -81,6 +82,8 @@ class Page(Struct, frozen=True):
     """Meanings of variables whose names have a common prefix."""
     about: str = ""
     """The author's comment on the component."""
+    texts: tuple[str, ...] = ()
+    """Requirements on the component that are only text."""
 
 
 def print_page(graph: Graph, contract: Contract, templates: Templates = _SHIPPED) -> str:
@@ -108,6 +111,7 @@ class _PageBuilder:
             self._build_sections(contract.guarantees),
             "; ".join(_explain_prefixes(contract)),
             escape_markdown(_find_author_comment(self._graph, contract)),
+            tuple(_list_texts(self._graph, contract)),
         )
 
     def _label_element(self, id: str) -> tuple[str, str]:
@@ -168,6 +172,17 @@ def _explain_prefixes(contract: Contract) -> Iterator[str]:
     for prefix, meaning in _PREFIXES.items():
         if prefix in prefixes:
             yield f"`{prefix}...`: {meaning}"
+
+
+def _list_texts(graph: Graph, contract: Contract) -> Iterator[str]:
+    """Yield id, name and text of the requirements on a component that are only text."""
+    origin = graph[contract.origin]
+    owner = graph.owner(origin) if origin.kind is Kind.STATE_MACHINE else None
+    for element in (origin,) if owner is None else (origin, owner):
+        for requirement in list_texts_about(graph, element):
+            text = " ".join(str(requirement.attrs["text"]).split())
+            id = str(requirement.attrs.get("req_id", ""))
+            yield escape_markdown(f"{id} {requirement.name}: {text}".strip())
 
 
 # -- comments of the author ----------------------------------------------------------------------

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from sysmlc.logic.components.derivation import ComponentBehaviour
     from sysmlc.logic.contract import Composite, Contract
     from sysmlc.logic.requirements.statements import StatedRequirement
+    from sysmlc.recipe.recipe_times import LimitVerdict
     from sysmlc.sources import Source
     from sysmlc.synthesis.decision import Place
 
@@ -42,6 +43,8 @@ class ContractFile(Struct, frozen=True):
     """The behaviours of a model by component."""
     requirements: "tuple[StatedRequirement, ...]" = ()
     """The requirements of a model."""
+    time_verdicts: "Mapping[str, LimitVerdict]" = {}
+    """Verdicts on the times that requirements state, by the id of the requirement."""
 
 
 def select_contracts(
@@ -83,6 +86,8 @@ def _read_model(file: Path, config: "Config", settings: "Settings") -> ContractF
     from sysmlc.logic.composition.derivation import compose_blocks
     from sysmlc.logic.contract import Contract
     from sysmlc.logic.requirements.statements import list_stated_requirements
+    from sysmlc.recipe.model import Model
+    from sysmlc.recipe.recipe_times import decide_limits
 
     compilation = session.compile_unit((file,), config, settings)
     findings = tuple(reports.list_findings(compilation, only_errors=not settings.verbose))
@@ -114,6 +119,7 @@ def _read_model(file: Path, config: "Config", settings: "Settings") -> ContractF
         compilation.root,
         behaviours={behaviour.contract.component: behaviour for behaviour in behaviours},
         requirements=tuple(list_stated_requirements(compilation.graph, contracts, reasons)),
+        time_verdicts=decide_limits(compilation.graph.derived(Model)),
     )
 
 

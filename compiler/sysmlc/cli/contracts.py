@@ -1,6 +1,6 @@
 """``sysmlc contracts``: checks of contracts, by themselves and against one another."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from sysmlc.cli.session import Settings
     from sysmlc.logic.contract import Composite
     from sysmlc.logic.requirements.statements import StatedRequirement
+    from sysmlc.recipe.recipe_times import LimitVerdict
     from sysmlc.synthesis.contract_checks import CheckedContract
     from sysmlc.synthesis.decision import Options
     from sysmlc.synthesis.requirement_verdicts import RequirementVerdict
@@ -128,6 +129,9 @@ def _check(
     together = list(
         check_compositions(composites, contract_file.place, contract_file.sink, options)
     )
+    requirements = [
+        item for item in contract_file.requirements if component in ("", item.component)
+    ]
     if output is not None:
         runs = [
             *(contract.witnesses for contract in alone),
@@ -140,12 +144,10 @@ def _check(
         (
             *(line for result in alone for line in _format_result(result, settings.verbose)),
             *(result.text() for result in together),
+            *describe_texts(requirements, contract_file.time_verdicts, settings.verbose),
         ),
         {
-            "requirements": list_verdicts(
-                [item for item in contract_file.requirements if component in ("", item.component)],
-                alone,
-            ),
+            "requirements": list_verdicts(requirements, alone, contract_file.time_verdicts),
             "behaviours": list_behaviours(alone),
         },
     )
@@ -196,6 +198,7 @@ _WORDS = {
     "broken": "broken",
     "not-decided": "not decided",
 }
+_MAX_NAMES = 8
 _NO_BEHAVIOUR = "'{component}' has no behaviour to check"
 
 
@@ -212,10 +215,40 @@ def describe_verdicts(result: "CheckedContract", is_verbose: bool) -> Iterator[s
             yield f"  {name}{_WORDS[verdict.answer]}: {print_temporal(verdict.conjunct)}"
 
 
+def describe_texts(
+    requirements: "Sequence[StatedRequirement]",
+    time_verdicts: "Mapping[str, LimitVerdict]",
+    is_verbose: bool,
+) -> Iterator[str]:
+    """Yield a line that counts the requirements that are only text.
+
+    With *is_verbose* there is a line for each. A line shows a requirement on times that the recipe
+    breaks.
+    """
+    texts = [requirement for requirement in requirements if not requirement.is_formal]
+    for requirement in texts:
+        decided = time_verdicts.get(requirement.constraint)
+        if decided is not None and (is_verbose or decided.verdict == "broken"):
+            verdict = f"{_WORDS[decided.verdict]} by the times of the recipe"
+            yield f"{requirement.name}: only text, {verdict}: {decided.reason}"
+        elif decided is None and is_verbose:
+            yield f"{requirement.name}: only text, not formalised"
+    open_texts = [item for item in texts if item.constraint not in time_verdicts]
+    if open_texts and not is_verbose:
+        names = [requirement.name.rpartition("::")[2] for requirement in open_texts]
+        shown = ", ".join(names[:_MAX_NAMES]) + (", ..." if len(names) > _MAX_NAMES else "")
+        yield f"{len(names)} requirement{'s'[: len(names) > 1]} not formalised: {shown}"
+
+
 def list_verdicts(
-    requirements: "Sequence[StatedRequirement]", results: "Iterable[CheckedContract]"
+    requirements: "Sequence[StatedRequirement]",
+    results: "Iterable[CheckedContract]",
+    time_verdicts: "Mapping[str, LimitVerdict]",
 ) -> list[dict[str, object]]:
-    """Return an entry for each conjunct of each requirement, in the order of the model."""
+    """Return an entry for each conjunct of each requirement, in the order of the model.
+
+    A requirement that is only text may state a time that the recipe decides.
+    """
     verdicts: dict[tuple[str, str], list[RequirementVerdict]] = {}
     for result in results:
         for verdict in result.requirements:
@@ -225,7 +258,9 @@ def list_verdicts(
         entry
         for requirement in requirements
         for entry in _list_entries(
-            requirement, verdicts.get((requirement.component, requirement.constraint), ())
+            requirement,
+            verdicts.get((requirement.component, requirement.constraint), ()),
+            time_verdicts.get(requirement.constraint),
         )
     ]
 
@@ -244,7 +279,9 @@ def list_behaviours(results: "Iterable[CheckedContract]") -> list[dict[str, obje
 
 
 def _list_entries(
-    requirement: "StatedRequirement", verdicts: "Sequence[RequirementVerdict]"
+    requirement: "StatedRequirement",
+    verdicts: "Sequence[RequirementVerdict]",
+    decided: "LimitVerdict | None",
 ) -> Iterator[dict[str, object]]:
     from sysmlc.synthesis.witnesses import print_temporal
 
@@ -261,13 +298,14 @@ def _list_entries(
             "reason": verdict.reason or verdict.vacuity or None,
         }
     if not verdicts:
+        reason = requirement.reason or _NO_BEHAVIOUR.format(component=requirement.component)
         yield {
             "requirement": requirement.name,
             "component": requirement.component or None,
             "formula": requirement.text,
-            "verdict": "not-decided",
+            "verdict": decided.verdict if decided else "not-decided",
             "vacuous": False,
             "needs": [],
             "witness": None,
-            "reason": requirement.reason or _NO_BEHAVIOUR.format(component=requirement.component),
+            "reason": f"{reason}; the recipe decides it: {decided.reason}" if decided else reason,
         }

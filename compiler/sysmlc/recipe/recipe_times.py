@@ -1,7 +1,9 @@
 """The time of a whole recipe, and verdicts on the times that requirements state."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Literal as OneOf
+
+from msgspec import Struct
 
 from sysmlc.diagnostics import Severity, rule
 from sysmlc.ir.algorithms import sort_topologically
@@ -120,6 +122,41 @@ def _is_below(maximum: Number | None, limit: Number) -> bool:
 
 def _is_at_most(maximum: Number | None, limit: Number) -> bool:
     return maximum is not None and maximum <= limit
+
+
+class LimitVerdict(Struct, frozen=True):
+    """Whether all tasks and recipes keep the time that a requirement allows, and by which times."""
+
+    verdict: Verdict
+    reason: str
+
+
+def decide_limits(models: Iterable[Model]) -> dict[str, LimitVerdict]:
+    """Return the verdict on each time that a requirement allows, by the id of the requirement.
+
+    A requirement on several tasks is broken if one of them breaks it.
+    """
+    verdicts: dict[str, LimitVerdict] = {}
+    for model in models:
+        owners: tuple[Recipe | Task, ...] = (model.recipe, *model.recipe.tasks)
+        for owner in owners:
+            for limit in owner.limits:
+                verdict = _explain_limit(owner, limit)
+                previous = verdicts.get(limit.element, verdict)
+                verdicts[limit.element] = max(previous, verdict, key=_rank_verdict)
+    return verdicts
+
+
+def _rank_verdict(verdict: LimitVerdict) -> int:
+    order: tuple[Verdict, ...] = ("holds", "not-decided", "broken")
+    return order.index(verdict.verdict)
+
+
+def _explain_limit(owner: Recipe | Task, limit: TimeLimit) -> LimitVerdict:
+    duration = None if owner.derived is None else find_full_duration(owner.derived)
+    takes = "an unknown time" if duration is None else f"{format_range(duration)} ms"
+    reason = f"'{owner.id}' takes {takes}, and {_format_limit(limit)} is allowed"
+    return LimitVerdict(decide_limit(limit, owner.derived), reason)
 
 
 def check_time_limits(model: Model, tables: Tables) -> Iterator[Finding]:

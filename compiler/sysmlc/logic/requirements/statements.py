@@ -138,12 +138,14 @@ def find_redefining_operation(graph: Graph, subject: Element) -> Element | None:
 # -- stated requirements ---------------------------------------------------------------------------
 
 _NO_SUBJECT = "the requirement has no subject, and no element satisfies it"
+_ONLY_TEXT = "not formalised: the requirement is only text"
 
 
 class StatedRequirement(Struct, frozen=True):
     """A required constraint: its requirement, the component that has to satisfy it, its text.
 
-    ``reason`` tells why the constraint is in no contract; it is empty if it is in one.
+    ``reason`` tells why the constraint is in no contract; it is empty if it is in one. A
+    requirement without constraints has itself as its only constraint.
     """
 
     name: str
@@ -153,6 +155,8 @@ class StatedRequirement(Struct, frozen=True):
     """Id of the constraint."""
     text: str
     reason: str = ""
+    is_formal: bool = True
+    """False for a requirement that is only text."""
 
 
 def list_stated_requirements(
@@ -160,7 +164,8 @@ def list_stated_requirements(
 ) -> Iterator[StatedRequirement]:
     """Yield the required constraints of each subject, then those of requirements without subject.
 
-    *reasons* are messages about constraints, by the id of the constraint.
+    Requirements that are only text follow. *reasons* are messages about constraints, by the id of
+    the constraint.
     """
     origins = {
         conjunct.origin
@@ -182,7 +187,8 @@ def list_stated_requirements(
                 str(constraint.attrs["body"]).strip(),
                 "" if constraint.id in origins else reason,
             )
-    for requirement in filter(query.is_requirement, graph.of_kind(Kind.CLASS)):
+    requirements = [*filter(query.is_requirement, graph.of_kind(Kind.CLASS))]
+    for requirement in requirements:
         for statement in iter_statements(graph, requirement):
             if statement.constraint.id not in listed and not statement.is_assumed:
                 listed.add(statement.constraint.id)
@@ -193,3 +199,35 @@ def list_stated_requirements(
                     str(statement.constraint.attrs["body"]).strip(),
                     _NO_SUBJECT,
                 )
+    for requirement in requirements:
+        if is_only_text(graph, requirement):
+            yield _describe_text(graph, requirement)
+
+
+def is_only_text(graph: Graph, requirement: Element) -> bool:
+    """Whether a requirement of the model has a text and no required constraint."""
+    statements = iter_statements(graph, requirement)
+    return (
+        bool(str(requirement.attrs.get("text", "")).strip())
+        and not requirement.attrs.get("external")
+        and all(statement.is_assumed for statement in statements)
+    )
+
+
+def list_texts_about(graph: Graph, element: Element) -> list[Element]:
+    """Return the requirements that are only text and that an element satisfies or is subject of."""
+    candidates = (*graph.targets(element, Edge.SATISFIES), *graph.sources(element, Edge.SUBJECT))
+    requirements = dict.fromkeys(item.id for item in candidates if query.is_requirement(item))
+    return [graph[id] for id in requirements if is_only_text(graph, graph[id])]
+
+
+def _describe_text(graph: Graph, requirement: Element) -> StatedRequirement:
+    subject = next(_iter_subjects(graph, requirement), None)
+    return StatedRequirement(
+        graph.qualified_name(requirement),
+        "" if subject is None else component_of(graph, subject),
+        requirement.id,
+        str(requirement.attrs["text"]).strip(),
+        _ONLY_TEXT,
+        is_formal=False,
+    )

@@ -190,17 +190,8 @@ class _StoreTracker:
         return self._find_own_refusal(name) is None and self._find_refusal(name) is not None
 
     def _select_tracked(self) -> set[str]:
-        """Return the variables to track: visible ones, and those that guards or values read."""
-        wanted = {name for name in self.writes if self._is_visible(name)} | self._read_by_tokens()
-        # Fixpoint: the values of a tracked variable may read further variables.
-        while True:
-            tracked = {
-                name for name in self.writes if name in wanted and not self._find_refusal(name)
-            }
-            read_by_tracked = self._read_by_values(tracked)
-            if read_by_tracked <= wanted:
-                return tracked
-            wanted |= read_by_tracked
+        """Return the variables to track: finite ones that no other behaviour assigns."""
+        return {name for name in self.writes if not self._find_refusal(name)}
 
     def _read_by_values(self, names: Iterable[str]) -> set[str]:
         writes = [write for name in names for write in self.writes[name]]
