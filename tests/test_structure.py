@@ -91,7 +91,8 @@ def is_lazy_by_design(module: str) -> bool:
     """Whether a module may import modules of sysmlc inside functions."""
     is_command = module.startswith("sysmlc.cli") or module == "sysmlc.__main__"
     # A front end detects files without its reader, which is imported for the first file.
-    return is_command or module in REGISTRIES or module.endswith(".frontend")
+    is_front_end = module.rpartition(".")[0] == "sysmlc.frontends"
+    return is_command or module in REGISTRIES or is_front_end
 
 
 def is_participle(name: str) -> bool:

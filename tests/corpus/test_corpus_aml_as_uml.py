@@ -6,7 +6,7 @@ import pytest
 from plants import list_baygate, list_units, load_unit, refine
 
 from graph_differences import diff
-from sysmlc.backends.uml.backend import write_document
+from sysmlc.backends.uml import write_document
 from sysmlc.diagnostics import Sink
 from sysmlc.frontends.xmi import FRONTEND
 from sysmlc.ir.verify import verify

@@ -10,7 +10,7 @@ from lxml import etree
 from plants import list_baygate, list_units, load_unit, refine
 
 from graph_differences import diff
-from sysmlc.backends.aml.backend import write_files
+from sysmlc.backends.aml import write_files
 from sysmlc.diagnostics import Sink
 from sysmlc.sources import Source, SourceError, load
 

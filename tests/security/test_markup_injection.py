@@ -7,7 +7,7 @@ import pytest
 from machine_samples import arrow, machine
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.contracts import BACKEND
-from sysmlc.backends.reqtable.backend import format_csv
+from sysmlc.backends.reqtable import format_csv
 from sysmlc.backends.reqtable.table import Cell, Table
 from sysmlc.backends.reqtable.table import Row as TableRow
 from sysmlc.diagnostics import Sink

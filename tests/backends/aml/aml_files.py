@@ -3,7 +3,7 @@
 from lxml import etree
 
 from graph_differences import diff
-from sysmlc.backends.aml.backend import write_files
+from sysmlc.backends.aml import write_files
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.caex import FRONTEND
 from sysmlc.ir import Graph, parse_text

@@ -3,8 +3,7 @@
 import pytest
 from diagrams import draw, emit
 
-from sysmlc.backends.plantuml import partitioning
-from sysmlc.backends.plantuml.backend import BAD_TEMPLATE
+from sysmlc.backends.plantuml import BAD_TEMPLATE, partitioning
 from sysmlc.backends.plantuml.partitioning import split_view
 from sysmlc.backends.plantuml.undrawn import OVERTAKEN
 from sysmlc.backends.plantuml.views import GraphView, Line, Node

@@ -8,8 +8,8 @@ import pytest
 from backend_runs import emit
 from examples.compiling import ROOT, compile_example, outputs
 from sysmlc.backends.base import EmitOptions
-from sysmlc.backends.reqtable import BACKEND
-from sysmlc.backends.reqtable.backend import (
+from sysmlc.backends.reqtable import (
+    BACKEND,
     BAD_TEMPLATE,
     UNSATISFIED,
     UNVERIFIED,

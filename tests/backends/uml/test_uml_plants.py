@@ -10,7 +10,7 @@ from uml_files import PASSES, read, refine, round_trip, save
 
 from dialects.papyrus import XMI
 from dialects.random_plants import random_plant
-from sysmlc.backends.uml.backend import write_document
+from sysmlc.backends.uml import write_document
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.caex import FRONTEND
 from sysmlc.frontends.xmi import FRONTEND as XMI_FRONTEND

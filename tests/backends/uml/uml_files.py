@@ -1,7 +1,7 @@
 """Graphs that are saved as UML and read back."""
 
 from graph_differences import diff
-from sysmlc.backends.uml.backend import write_document
+from sysmlc.backends.uml import write_document
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.xmi import FRONTEND
 from sysmlc.ir import Graph, parse_text

@@ -1,5 +1,56 @@
-"""Front end for SysML v2 and KerML: text, XMI and archives become the graph of docs/ir.md."""
+"""Front end for SysML v2 and KerML: text, XMI and archives become the graph of docs/ir.md.
 
-from sysmlc.frontends.sysml.frontend import FRONTEND
+The modules that read are imported when needed.
+"""
 
-__all__ = ["FRONTEND"]
+from collections.abc import Sequence
+from typing import ClassVar
+
+from msgspec import Struct
+
+from sysmlc.diagnostics import Coverage, Sink
+from sysmlc.frontends.base import FileNames
+from sysmlc.frontends.sysml.detection import score_source
+from sysmlc.ir import Graph
+from sysmlc.sources import Source
+from sysmlc.support.interpreter import pause_garbage_collection
+
+
+class SysmlFrontend(Struct, frozen=True):
+    """Reads texts and interchange files; all files of a unit are one model.
+
+    ``library`` is the path of the standard library; if it is empty, the installed one is used.
+    """
+
+    is_folder_unit: ClassVar[bool] = True
+    name: str = "sysml"
+    library: str = ""
+
+    def with_library(self, path: str) -> "SysmlFrontend":
+        """Return the same front end with the standard library of a folder or an archive."""
+        return SysmlFrontend(self.name, path)
+
+    def detect(self, source: Source) -> float:
+        """Return how certain it is, from 0 to 1, that the source is SysML v2 or KerML."""
+        return score_source(source)
+
+    def links(self, source: Source) -> Sequence[str]:
+        """Return nothing: files do not name one another, and a folder is a unit."""
+        return ()
+
+    def read_names(self, source: Source) -> FileNames:
+        """Return the names of the root members, by which files refer to one another."""
+        from sysmlc.frontends.sysml.reading import read_names
+
+        return read_names(source)
+
+    def read(self, sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage) -> None:
+        """Parse, resolve and lower all files of the unit, in the order of their names."""
+        from sysmlc.frontends.sysml.reading import read
+
+        ordered = sorted(sources, key=lambda source: source.name)
+        with pause_garbage_collection():
+            read(ordered, graph, sink, coverage, library=self.library)
+
+
+FRONTEND = SysmlFrontend()
