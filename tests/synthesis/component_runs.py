@@ -158,6 +158,23 @@ def _write_action(step: Step) -> str:
     return f"action {step.name};"
 
 
+def list_actions(block: Block, *, is_elementary: bool = False) -> list[str]:
+    """Return the paths of all actions, or of those that the environment ends."""
+    roots = [*block.do.values(), *filter(None, [block.own])]
+    paths = [] if is_elementary else list(roots)
+    worklist = [(name, step) for name in roots for step in block.activities[name]]
+    while worklist:
+        path, step = worklist.pop(0)
+        inner = f"{path}.{step.name}"
+        if step.kind == "fork":
+            worklist += [(path, branch) for branch in step.branches]
+        elif not is_elementary or step.kind == "elementary":
+            paths.append(inner)
+        if step.kind == "call":
+            worklist += [(inner, content) for content in block.activities[step.called]]
+    return paths
+
+
 # -- activities --------------------------------------------------------------------------------
 
 # A performance is a set of marks. A mark is a position and what is there: a token on the flow into

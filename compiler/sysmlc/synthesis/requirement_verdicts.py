@@ -198,7 +198,7 @@ class BehaviourCheck:
         read = tuple(_widen(variable) for variable in declared if variable.name in names)
         free = Contract("", "", read, (), ())
         new_manager = manager_factory(self._options)
-        return RunSearch((free,), new_manager).find_violation((), conjunct) is None
+        return RunSearch((free,), new_manager).entails((), conjunct)
 
     # -- refutation ------------------------------------------------------------------------------
 
@@ -254,7 +254,7 @@ class BehaviourCheck:
         return self._search.has_runs(self._list_facts(()))
 
     def _entails(self, endings: tuple[Conjunct, ...], conjunct: Conjunct) -> bool:
-        return self._find_violation(endings, conjunct) is None
+        return self._search.entails(self._list_facts(endings), conjunct)
 
     def _find_violation(self, facts: tuple[Conjunct, ...], conjunct: Conjunct) -> Trace | None:
         """Return a run of the behaviour with additional facts that violates the conjunct."""

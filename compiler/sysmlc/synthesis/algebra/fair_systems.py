@@ -169,12 +169,11 @@ class Runs:
 
     def states_reaching(self, within: Node, target: Node) -> Node:
         """Return the states from which steps inside *within* lead to *target*."""
-        reached = target
-        while True:
-            extended = reached | (within & self.predecessors(reached))
-            if extended == reached:
-                return reached
-            reached = extended
+        reached = frontier = target
+        while frontier != self.manager.false:
+            frontier = within & self.predecessors(frontier) & ~reached
+            reached = reached | frontier
+        return reached
 
     def distance_layers(self, within: Node, target: Node) -> list[Node]:
         """Return the states that reach *target* inside *within*, by the least number of steps.

@@ -61,23 +61,38 @@ class Entailment:
         Raises OutsideGr1Error for a conjunct of general LTL.
         """
         violation = ~self._universe.node(conjunct)
-        if violation == self.runs.manager.false:
+        states = _find_violating_states(self.runs, conjunct.class_, violation)
+        if states == self.runs.manager.false:
             return None
-        return _VIOLATION_SEARCHES[conjunct.class_](self.runs, violation)
+        return _TRACE_BUILDERS[conjunct.class_](self.runs, states, violation)
+
+    def entails(self, conjunct: Conjunct) -> bool:
+        """Whether the conjunct holds in all runs. Raises OutsideGr1Error as ``find_violation``."""
+        violation = ~self._universe.node(conjunct)
+        states = _find_violating_states(self.runs, conjunct.class_, violation)
+        return states == self.runs.manager.false
 
 
-def _find_initial_violation(runs: Runs, violation: Node) -> Trace | None:
-    states = runs.system.init & runs.fair & violation
-    if states == runs.manager.false:
-        return None
+def _find_violating_states(runs: Runs, class_: Class, violation: Node) -> Node:
+    """Return the states of fair runs in which a violation is seen, according to the class.
+
+    It is the first state, a state before a violating step, or a state from which on all violate.
+    """
+    if violation == runs.manager.false:
+        return violation
+    if class_ is Class.INIT:
+        return runs.system.init & runs.fair & violation
+    if class_ is Class.SAFETY:
+        return runs.fair & runs.predecessors_by(runs.fair, violation)
+    return runs.fair_within(runs.reachable & violation)
+
+
+def _build_initial_violation(runs: Runs, states: Node, _: Node) -> Trace:
     return build_lasso(runs, [pick_state(runs, states)], runs.fair)
 
 
-def _find_step_violation(runs: Runs, violation: Node) -> Trace | None:
+def _build_step_violation(runs: Runs, states: Node, violation: Node) -> Trace:
     """Return a run through a reachable step that violates the conjunct."""
-    states = runs.fair & runs.predecessors_by(runs.fair, violation)
-    if states == runs.manager.false:
-        return None
     path = shortest_path(runs, states)
     symbols = runs.system.symbols
     # Restrict the successors to those for which the last step violates the conjunct.
@@ -86,18 +101,15 @@ def _find_step_violation(runs: Runs, violation: Node) -> Trace | None:
     return build_lasso(runs, path, runs.fair)
 
 
-def _find_fair_violation(runs: Runs, violation: Node) -> Trace | None:
+def _build_fair_violation(runs: Runs, states: Node, _: Node) -> Trace:
     """Return a fair run that violates the condition forever from some step on."""
-    states = runs.fair_within(runs.reachable & violation)
-    if states == runs.manager.false:
-        return None
     return build_lasso(runs, shortest_path(runs, states), states)
 
 
-_VIOLATION_SEARCHES = {
-    Class.INIT: _find_initial_violation,
-    Class.SAFETY: _find_step_violation,
-    Class.LIVENESS: _find_fair_violation,
+_TRACE_BUILDERS = {
+    Class.INIT: _build_initial_violation,
+    Class.SAFETY: _build_step_violation,
+    Class.LIVENESS: _build_fair_violation,
 }
 
 
@@ -125,18 +137,30 @@ class RunSearch:
 
         Raises DomainError, OutsideGr1Error, NotReducibleError, LimitError.
         """
-        if (conjunct.class_, conjunct.formula) in {(fact.class_, fact.formula) for fact in facts}:
+        if _is_stated(facts, conjunct):
             return None
         if is_gr1(conjunct):
             runs = self._explore(facts)
             with runs.manager.guard():
                 trace = runs.find_violation(conjunct)
         else:
-            negation = Conjunct(f.negate(as_ltl(conjunct)), Class.OTHER, conjunct.origin)
-            runs = self._explore((*facts, negation))
+            runs = self._explore((*facts, _negate(conjunct)))
             with runs.manager.guard():
                 trace = runs.find_example()
         return None if trace is None else self._drop_auxiliary_variables(trace)
+
+    def entails(self, facts: tuple[Conjunct, ...], conjunct: Conjunct) -> bool:
+        """Whether no run satisfies the facts and violates the conjunct. Builds no such run.
+
+        Raises the errors of ``find_violation``.
+        """
+        if _is_stated(facts, conjunct):
+            return True
+        if is_gr1(conjunct):
+            runs = self._explore(facts)
+            with runs.manager.guard():
+                return runs.entails(conjunct)
+        return not self.has_runs((*facts, _negate(conjunct)))
 
     def _explore(self, facts: tuple[Conjunct, ...]) -> Entailment:
         if facts not in self._entailments:
@@ -154,6 +178,16 @@ class RunSearch:
             for values in trace.steps
         )
         return replace(trace, steps=steps)
+
+
+def _is_stated(facts: Iterable[Conjunct], conjunct: Conjunct) -> bool:
+    return any(
+        fact.class_ is conjunct.class_ and fact.formula == conjunct.formula for fact in facts
+    )
+
+
+def _negate(conjunct: Conjunct) -> Conjunct:
+    return Conjunct(f.negate(as_ltl(conjunct)), Class.OTHER, conjunct.origin)
 
 
 class Failure(Struct, frozen=True):
