@@ -319,6 +319,15 @@ def test_long_texts_are_shortened_to_the_difference(workspace):
     assert f"=> {cut}z" in line
 
 
+def test_a_comment_is_shown_with_what_it_is_about(workspace):
+    old = "package P { part def A; part def B; part def C { comment about A, B /* two */ } }"
+    new = old.replace("about A, B", "about A")
+    workspace.write("old.sysml", old)
+    workspace.write("new.sysml", new)
+    lines = workspace.sysmlc("diff", "old.sysml", "new.sysml").stdout.splitlines()
+    assert "  ~ block C: comment: two (about A, B) => two (about A)" in lines
+
+
 def test_folders_with_models_can_be_compared(plants):
     model = random_model(Random(3)).decode()
     plants.write("old/plant.uml", model)

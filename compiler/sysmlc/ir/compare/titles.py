@@ -139,8 +139,11 @@ def format_value_exactly(side: Side, value: object) -> str:
     """Return a value as a text that differs for different values: with types, names in full."""
     if isinstance(value, Element):
         return qualified_title(side, value)
+    if isinstance(value, Kind | Edge):
+        return separate_words(value)
     if isinstance(value, tuple):
-        return "(" + ", ".join(format_value_exactly(side, item) for item in value) + ")"
+        items = [format_value_exactly(side, item) for item in value if item not in ("", ())]
+        return items[0] if len(items) == 1 else f"({', '.join(items)})"
     return repr(value)
 
 
@@ -156,7 +159,8 @@ def format_detail(side: Side, detail: Element) -> str:
     body = detail.attrs.get("body")
     if isinstance(body, str):
         locale = detail.attrs.get("locale")
-        return _join_lines(body) + (f" (locale {locale})" if locale else "")
+        text = _join_lines(body) + (f" (locale {locale})" if locale else "")
+        return f"{text}{_describe_subjects(side, detail)}"
     is_import = detail.kind is Kind.IMPORT
     imported = side.edges.get(detail.id, {}).get(Edge.REFERENCES, ()) if is_import else ()
     texts = [qualified_title(side, element) for element in imported] + [
@@ -165,6 +169,14 @@ def format_detail(side: Side, detail: Element) -> str:
         if name not in NOT_CONTENT
     ]
     return "; ".join(texts) or title(side, detail)
+
+
+def _describe_subjects(side: Side, detail: Element) -> str:
+    """Return what a comment is about, unless that is only its owner."""
+    subjects = side.edges.get(detail.id, {}).get(Edge.REFERENCES, [])
+    if detail.kind is not Kind.COMMENT or all(part.id == detail.owner for part in subjects):
+        return ""
+    return f" (about {_list_names(side, subjects)})"
 
 
 def _format_trigger(side: Side, trigger: Element) -> str:
