@@ -7,7 +7,7 @@ from typing import NamedTuple
 from msgspec import Struct
 from msgspec.structs import replace
 
-from sysmlc.diagnostics.diagnostic import Diagnostic, Subject
+from sysmlc.diagnostics.diagnostic import Diagnostic, Place, Subject
 from sysmlc.diagnostics.rule import Rule, Severity
 
 _MAX_TEXT = 2_000
@@ -38,6 +38,7 @@ class Sink:
         self._file_severities: dict[str, Mapping[str, Severity | None]] = {}
         self._file_wordings: dict[str, Mapping[str, Wording]] = {}
         self._diagnostics: dict[tuple[str, str, Subject], Diagnostic] = {}
+        self._codes_by_place: dict[Place, set[str]] = {}
 
     def set_file_severities(
         self, files: Iterable[str], severities: Mapping[str, Severity | None]
@@ -85,6 +86,15 @@ class Sink:
         short_notes = tuple(_shorten(note, _MAX_TEXT) for note in notes)
         diagnostic = Diagnostic(rule, severity, message, subject, short_notes, advice, cause)
         self._diagnostics.setdefault(_make_key(diagnostic), diagnostic)
+        if subject.place is not None:
+            self._codes_by_place.setdefault(subject.place, set()).add(rule.code)
+
+    def has_reported(self, codes: Iterable[str], place: Place | None) -> bool:
+        """Whether a diagnostic with one of the *codes* was reported at *place*.
+
+        A caller omits what would be another diagnostic about the same fact.
+        """
+        return place is not None and not self._codes_by_place.get(place, set()).isdisjoint(codes)
 
     def subset(self, diagnostics: Iterable[Diagnostic]) -> "Sink":
         """Return a new sink with the same severities that already holds *diagnostics*."""

@@ -257,3 +257,21 @@ def test_a_state_without_entry_transition_is_reported_in_the_words_of_the_langua
     assert list_messages(text, "contracts") == [
         "SM421: state 'light' has substates, but no entry transition to the first of them"
     ]
+
+
+@pytest.mark.parametrize(
+    ("member", "codes"),
+    [
+        ("stray", ["SM195"]),
+        ("part x : state;", ["SM192"]),
+        ("import state::*;", ["SM192", "SM197"]),
+        ("transition first a then a; part a;", ["SM195"]),
+        ("render a; rendering a;", ["SM195", "SM480"]),
+        ("verify a; requirement a;", ["SM195"]),
+        ("part x : Missing;", ["SM205"]),
+        ("stray + missing", ["SM195", "SM205"]),
+    ],
+)
+def test_a_word_in_a_wrong_place_is_one_finding(member, codes):
+    messages = list_messages(f"package P {{ part p {{ {member} }} }}")
+    assert sorted(message.partition(":")[0] for message in messages) == codes

@@ -139,6 +139,14 @@ class Lowering(Verdicts):
             return Subject(name)
         return Subject(name, place=Place(positions.path, positions.ordinal_of(node)))
 
+    def is_misplaced(self, node: Node) -> bool:
+        """Whether the parser reported that the node is not allowed in its owner (SM195)."""
+        positions = self._documents.get(id(node))
+        if positions is None:
+            return False
+        place = Place(positions.path, offset=positions.byte_of(node.start))
+        return self.sink.has_reported(("SM195",), place)
+
     # -- order of work -------------------------------------------------------------------------
 
     def defer_until_elements(self, work: Work) -> None:

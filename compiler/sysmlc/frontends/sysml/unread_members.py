@@ -52,7 +52,11 @@ _END = "EndFeatureMembership"
 def report_losses(lowering: "Lowering") -> None:
     """Report what the graph does not represent, with one diagnostic for each kind of loss."""
     _mark_unread_members(lowering)
-    for construct, approximation, lost in lowering.iter_losses():
+    for construct, approximation, nodes_of_loss in lowering.iter_losses():
+        # A member that is not allowed in its owner is reported already.
+        lost = [node for node in nodes_of_loss if not lowering.is_misplaced(node)]
+        if not lost:
+            continue
         count, subject = len(lost), lowering.subject_of(lost[0])
         if construct:
             loss = describe_loss(construct, approximation)

@@ -161,8 +161,9 @@ def check_member(model: Model, document: Document, node: Node, sink: Sink) -> No
     # One finding for each usage: its type may be right once it has its place.
     if broken is None and node.kind in _WITH_TYPE_CHECKS:
         broken = _find_broken_type(model, node)
-    if broken is not None:
-        place = make_subject(document, node, node.start)
+    place = make_subject(document, node, node.start)
+    # The parser reports a member that no owner of this kind may have (SM195).
+    if broken is not None and not sink.has_reported(("SM195",), place.place):
         name = model.name(node) or node.kind
         sink.report(broken, place, name=name, owner=model.name(owner) or owner.kind)
 

@@ -46,6 +46,8 @@ _MAX_ADVICE_FROM_IMPORTS = 50
 _NOT_GIVEN = "give the file that has it as an input too, or the folder of all files"
 _UNKNOWN = "declare it, import the package that has it, or give its file as an input too"
 _NOT_INHERITED = "only an inherited feature can be redefined: declare it in a general type"
+_SYNTAX_ERRORS = ("SM192", "SM195")
+"""Rules of the parser whose finding about a word includes that the word is no known name."""
 _MAX_LISTED = 7
 """Names of the members of an element that are listed in place of a similar name."""
 _TYPES_OF_LIBRARY = ("ScalarValues", "ISQ")
@@ -332,9 +334,13 @@ def report_unresolved(
         )
         return
     inside = f" in '{container.name}'" if container is not None and container.name else ""
+    subject = make_subject(document, node, _find_link_offset(document, reference, index))
+    # A keyword in place of the name, or a stray word that is read as an expression.
+    if sink.has_reported(_SYNTAX_ERRORS, subject.place):
+        return
     sink.report(
         UNRESOLVED,
-        make_subject(document, node, _find_link_offset(document, reference, index)),
+        subject,
         cause=f"unknown name {name}{inside}",
         name=name,
         inside=inside,
