@@ -96,3 +96,49 @@ SET_Y = "action set { first start then s; action s assign y := true; then done; 
 def test_what_an_entry_performs_may_change_the_initial_value(decide):
     block = FLAGS + SET_Y + "exhibit state M { entry; then S; state S { entry set; } }"
     assert decide(block, "!y", "G (x -> X x)") == ["not-decided", "holds"]
+
+
+# -- what a part performs --------------------------------------------------------------------------
+
+SET_X = "action one { first start then s; action s assign x := true; then done; }"
+SET_BOTH = f"perform {SET_X} perform {SET_Y.replace('action set', 'action two')}"
+
+
+def test_everything_that_a_part_performs_starts_with_it_and_once(decide):
+    formulas = ("F x", "F y", "running(two)", "G F running(two)")
+    assert decide(FLAGS + SET_BOTH, *formulas) == ["holds", "holds", "holds", "broken"]
+    offered = FLAGS + SET_BOTH.replace("perform action two", "action two")
+    assert decide(offered, "F x", "F y") == ["holds", "broken"]
+
+
+def test_a_machine_before_a_performed_action_makes_no_difference(decide):
+    assert decide(FLAGS + MOVE.format("do assign x := true") + SET_BOTH, "F y") == ["holds"]
+
+
+def test_a_part_exhibits_a_machine_that_is_defined_elsewhere(decide):
+    machine = MOVE.format("do assign on := true").removeprefix("exhibit state M {")
+    definition = f"state def M {{ attribute on : Boolean := false; {machine}"
+    formulas = ("G (event=Go & state=S -> X state=T)", "G (state=S)")
+    block = f"{FLAGS} exhibit state m : M;"
+    assert decide(block, *formulas, others=definition) == ["holds", "broken"]
+
+
+@pytest.mark.parametrize("performance", ["perform r.pick;", "perform action p references r.pick;"])
+def test_an_action_of_a_part_is_performed_by_the_part(decide, performance):
+    formulas = ("F r.gripped", "G !(r.gripped)")
+    verdicts = decide(f"part r : Robot; {performance}", *formulas, others=ROBOT)
+    assert verdicts == ["holds", "broken"]
+
+
+@pytest.mark.parametrize(
+    "performance",
+    [
+        "perform r.pick;",
+        "perform action p references r.pick;",
+        "perform action act { first start; then perform r.pick; then done; }",
+    ],
+)
+def test_the_action_of_one_of_two_equal_parts_is_not_decided(decide, performance):
+    parts = "part r : Robot; part q : Robot;"
+    verdicts = decide(f"{parts} {performance}", "F r.gripped", "G !(q.gripped)", others=ROBOT)
+    assert verdicts == ["not-decided", "not-decided"]

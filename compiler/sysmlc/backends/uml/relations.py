@@ -64,6 +64,14 @@ def _write_references(context: Context, element: Element, edge: Edge, targets: _
         context.write_references(element, node, feature, elements, edge.value)
 
 
+def _write_classifier_behavior(context: Context, element: Element, targets: _Targets) -> None:
+    """Write the first behaviour: a classifier of UML has at most one (UML 2.5.1, 10.5.1)."""
+    first, *others = targets
+    _write_references(context, element, Edge.CLASSIFIER_BEHAVIOR, [first])
+    for target in others:
+        context.note_lost_edge(element, Edge.CLASSIFIER_BEHAVIOR.value, target)
+
+
 def _is_group_member(context: Context, comment: Element, target: Element) -> bool:
     """Whether the stereotype of an element group lists the target as a member."""
     if comment.kind is not Kind.COMMENT or comment.role != "element group":
@@ -312,6 +320,7 @@ _WRITERS: dict[Edge, _Writer] = {
     Edge.INCLUDES: _write_includes,
     Edge.REALIZES: _write_realizations,
     Edge.APPLIES: _write_profile_applications,
+    Edge.CLASSIFIER_BEHAVIOR: _write_classifier_behavior,
     Edge.GUARD: _write_guard,
     Edge.ENTRY: _note_foreign_behaviours,
     Edge.DO: _note_foreign_behaviours,

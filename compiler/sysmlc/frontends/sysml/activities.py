@@ -93,8 +93,18 @@ def lower_performance(lowering: "Lowering", node: Node, owner: Element) -> None:
         allocate_steps(lowering, node, owner)
     else:
         activity = lower_activity(lowering, node, owner)
-        if not lowering.graph.targets(owner, Edge.CLASSIFIER_BEHAVIOR):
-            lowering.graph.connect(Edge.CLASSIFIER_BEHAVIOR, owner, activity)
+        lowering.graph.connect(Edge.CLASSIFIER_BEHAVIOR, owner, activity)
+        if performed is not None:
+            lowering.defer_until_elements(
+                lambda: _connect_referenced(lowering, activity, performed.target)
+            )
+
+
+def _connect_referenced(lowering: "Lowering", activity: Element, target: Node | None) -> None:
+    """Make an activity a special case of the one that it references: it has the same steps."""
+    referenced = lowering.element_of(target)
+    if referenced is not None and referenced.kind is Kind.ACTIVITY:
+        lowering.connect_node(Edge.SPECIALIZES, activity, target)
 
 
 def _has_only_redefinitions(node: Node) -> bool:

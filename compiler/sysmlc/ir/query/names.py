@@ -42,7 +42,8 @@ def _behavior_name(graph: Graph, behavior: Element) -> str:
     if owner is None or owner.kind in (Kind.PACKAGE, Kind.PROFILE):
         return _readable_name(graph, behavior)
     owner_name = component_name(graph, owner)
-    if behavior in graph.targets(owner, Edge.CLASSIFIER_BEHAVIOR):
+    # SysML v2 may perform several; the others are components of their own.
+    if behavior is graph.target(owner, Edge.CLASSIFIER_BEHAVIOR):
         return owner_name
     roles = (edge for edge in _PARTS_OF_MACHINES if behavior in graph.targets(owner, edge))
     return f"{owner_name}.{behavior.name or next(roles, behavior.kind.lower())}"

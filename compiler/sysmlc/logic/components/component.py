@@ -16,6 +16,7 @@ from sysmlc.logic.components.machines import PlacedMachine, find_machines, place
 from sysmlc.logic.components.objects import ComponentError, ComponentObject, ObjectTree
 from sysmlc.logic.components.performances import ActionPath, Caller, Performances
 from sysmlc.logic.components.signals import check_signal_names
+from sysmlc.logic.composition.structure import find_drawn_activity
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Owner, Source, Variable
 from sysmlc.logic.expressions.context import context_of
 from sysmlc.logic.expressions.expression import ExpressionError, last_name, name_of
@@ -211,7 +212,14 @@ class Component:
                 )
                 prefix = "" if is_main else _join_names(object_.path, activity.name)
                 run = self.names.new(_join_names(object_.path, f"run_{activity.name or 'it'}"))
-                id = self.performances.add(activity, Caller(object_, names, prefix), run)
+                drawn = find_drawn_activity(self.graph, activity)
+                performer = self.tree.find_performer(object_, drawn)
+                if performer is None:
+                    reason = f"it is not known which part performs '{drawn.name}'"
+                    self.performances.gaps[run] = reason
+                caller = Caller(performer or object_, names, prefix)
+                id = self.performances.add(activity, caller, run)
+                self.performances.performed.add((object_.path, activity.id))
                 self.roots.append(Root(id, f.FALSE, f.FALSE, f.TRUE))
 
     def _add_services(self, object_: ComponentObject) -> None:

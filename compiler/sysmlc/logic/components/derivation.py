@@ -17,7 +17,11 @@ from sysmlc.logic.activities.step_formulas import PerformanceFormulas
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.components.arguments import derive_arguments, equals
 from sysmlc.logic.components.component import Component, finish_name
-from sysmlc.logic.components.machines import MachineWrite, PlacedMachine
+from sysmlc.logic.components.machines import (
+    MachineWrite,
+    PlacedMachine,
+    find_unassigned_features,
+)
 from sysmlc.logic.components.objects import Slot
 from sysmlc.logic.components.signals import derive_events
 from sysmlc.logic.composition.structure import join_path
@@ -285,7 +289,7 @@ class _Description:
         described = bound | {write.origin for write in self.performances.writes}
         described |= {id for machine in self.machines for id in machine.written}
         described -= self.component.released
-        gaps: dict[str, str] = {}
+        gaps = find_unassigned_features(self.graph, self.machines, self.component.writers)
         for slot, feature in self.tree.used_slots.items():
             name = feature.variable.name
             others = (

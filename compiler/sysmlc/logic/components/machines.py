@@ -1,12 +1,12 @@
 """State machines of the objects of a component: moves, writes of features, and do behaviours."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.diagnostics import Sink
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic import formula as f
 from sysmlc.logic.components.objects import (
     ComponentError,
@@ -17,6 +17,7 @@ from sysmlc.logic.components.objects import (
 )
 from sysmlc.logic.composition.naming import rename_variables
 from sysmlc.logic.contract import Class, Conjunct, EnumerationDomain, Variable
+from sysmlc.logic.feature_writes import WriterIndex
 from sysmlc.logic.formula import Const, Formula, Literal
 from sysmlc.logic.machines.derivation import (
     describe_exploration,
@@ -31,6 +32,7 @@ from sysmlc.logic.machines.moves import (
     is_chosen_formula,
 )
 from sysmlc.logic.machines.reader import MachineOptions, read_machine
+from sysmlc.logic.machines.symbolic_path import Path
 
 EVENT = "event"
 """The variable of a machine that names the event which occurs."""
@@ -97,24 +99,36 @@ class PlacedMachine(Struct, frozen=True):
                 yield replace(conjunct, formula=self.rename(conjunct.formula))
 
     def list_start_writes(self) -> list[str]:
-        """List the machine's own variables that its start sets to other values than the default."""
+        """List the variables that the start of the machine decides.
+
+        It sets a feature to another value than the default, or the machine itself has the feature.
+        """
         initial: Mapping[str, Literal] = self.machine.initial
         return [
             name
             for name in self.machine.assigned
-            if name in initial
-            and any(
-                path.values.get(name) != Const(initial[name]) for path in self.exploration.starts
+            if name not in self.slots
+            or (
+                name in initial
+                and any(
+                    path.values.get(name) != Const(initial[name])
+                    for path in self.exploration.starts
+                )
             )
         ]
 
     def _drop_features(self) -> Exploration:
         moves = tuple(
-            replace(move, paths=tuple(replace(path, values={}) for path in move.paths))
+            replace(move, paths=tuple(map(self._drop_slots, move.paths)))
             for move in self.exploration.moves
         )
-        machine = replace(self.machine, assigned=())
+        own = tuple(name for name in self.machine.assigned if name not in self.slots)
+        machine = replace(self.machine, assigned=own)
         return replace(self.exploration, moves=moves, machine=machine)
+
+    def _drop_slots(self, path: Path) -> Path:
+        values = {name: path.values[name] for name in path.values if name not in self.slots}
+        return replace(path, values=values)
 
     def iter_writes(self) -> Iterator[MachineWrite]:
         """Yield the writes of features by the transitions of the machine."""
@@ -126,6 +140,8 @@ class PlacedMachine(Struct, frozen=True):
                 )
                 condition = self.rename(f.both(move.fires, path.when, *choices))
                 for name, value in path.values.items():
+                    if name not in self.slots:
+                        continue
                     yield MachineWrite(self.slots[name], condition, self.rename(value))
 
     # -- states ------------------------------------------------------------------------------------
@@ -168,7 +184,7 @@ class PlacedMachine(Struct, frozen=True):
 
 
 def find_machines(tree: ObjectTree, object_: ComponentObject) -> list[Element]:
-    """Return the state machines of an object, which its type has or inherits.
+    """Return the state machines of an object, which its type has, exhibits or inherits.
 
     Raises ComponentError if a type has machines and inherits others.
     """
@@ -176,7 +192,12 @@ def find_machines(tree: ObjectTree, object_: ComponentObject) -> list[Element]:
     for classifier in object_.list_family(tree.graph):
         machines = [
             element
-            for element in tree.graph.owned(classifier)
+            for element in dict.fromkeys(
+                (
+                    *tree.graph.owned(classifier),
+                    *tree.graph.targets(classifier, Edge.CLASSIFIER_BEHAVIOR),
+                )
+            )
             if element.kind is Kind.STATE_MACHINE
             and element.subkind != "protocol"
             and any(region.kind is Kind.REGION for region in tree.graph.owned(element))
@@ -222,6 +243,27 @@ def place_machine(
     return PlacedMachine(
         object_, element, exploration, variables, slots, frozenset(_list_written_ids(machine))
     )
+
+
+def find_unassigned_features(
+    graph: Graph, machines: Iterable[PlacedMachine], index: WriterIndex
+) -> dict[str, str]:
+    """Return the features of machines that the machines read but do not assign, with a reason.
+
+    Raises ComponentError if something else assigns a feature of a machine.
+    """
+    reasons: dict[str, str] = {}
+    for machine in machines:
+        for variable in machine.list_variables():
+            element = graph.get(variable.origin)
+            if element is None or element.kind is not Kind.PROPERTY:
+                continue
+            writers = [*index.iter_writers(element), *index.iter_unclear_writers(element)]
+            if any(writer.id not in machine.written for writer in writers):
+                raise ComponentError(f"'{variable.name}' is not assigned by its machine alone")
+            if not writers:
+                reasons[variable.name] = f"nothing assigns '{variable.name}'"
+    return reasons
 
 
 def _find_slot(

@@ -132,20 +132,24 @@ class ObjectTree:
         """Return the object that performs an activity which an object calls.
 
         It is the object itself or one around it that has the activity, or else the only part that
-        has it. An activity of no classifier is performed by the caller.
+        has it; None if several may be meant. An activity of no classifier is performed by the
+        caller.
         """
         owner = self.graph.owner(activity)
         if owner is None or owner.kind is Kind.PACKAGE:
             return start
+        holders = [object_ for object_ in self.objects if owner in object_.list_family(self.graph)]
         object_: ComponentObject | None = start
         while object_ is not None:
-            if owner in object_.list_family(self.graph) or owner in self.graph.ancestors(
-                object_.type_
-            ):
+            if owner in self.graph.ancestors(object_.type_):
                 return object_
+            if object_ in holders:
+                # The call may name a part of that object, which has the activity, too.
+                inner = [part for part in holders if part.path.startswith(f"{object_.path}.")]
+                inner = inner if object_.path else holders[1:]
+                return None if inner else object_
             object_ = object_.owner
-        parts = [part for part in self.objects if owner in part.list_family(self.graph)]
-        return parts[0] if len(parts) == 1 else None
+        return holders[0] if len(holders) == 1 else None
 
     def context(self, object_: ComponentObject) -> Context:
         """Return what names mean inside an object."""

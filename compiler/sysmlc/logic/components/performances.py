@@ -179,7 +179,8 @@ class Performances:
     ) -> None:
         copy = Copy(root, activity, caller)
         self.copies[root] = copy
-        self.performed.add((caller.owner.path, activity.id))
+        drawn = find_drawn_activity(self._graph, activity)
+        self.performed |= {(caller.owner.path, activity.id), (caller.owner.path, drawn.id)}
         ids = {node.id: f"{root}{_COPY_SEPARATOR}{node.id}" for node in tokens.nodes}
         regions = {**ids, ACTIVITY_REGION: root}
         self._name_variables(tokens, copy)
@@ -319,6 +320,8 @@ class Performances:
         reason = ""
         if node.duration is not Duration.TIMED:
             reason = f"'{node.label}' does not wait for its end"
+        elif object_ is None and tokens is not None:
+            reason = f"it is not known which part performs what {node.label} calls"
         elif activity is None or tokens is None or object_ is None:
             reason = f"the check does not know when {node.label} ends, which has steps of its own"
         elif activity.id in around:
