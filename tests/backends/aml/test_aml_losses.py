@@ -1,5 +1,7 @@
 """Losses: what CAEX cannot express, or expresses in another form than the graph."""
 
+import re
+
 import pytest
 from aml_files import refine, save
 
@@ -42,3 +44,41 @@ def test_an_interface_that_contains_itself_is_written_once():
     )
     (text,) = texts.values()
     assert [text.count(f'<ExternalInterface Name="{name}"') for name in "ab"] == [1, 1]
+
+
+UNITS = """\
+Package p "Plant"
+  Class tank "Tank" role="block"
+    Property mass "mass" role="value" default=500 default_unit="SI::kg"
+    Property level "level" role="value" unit="mm" default=3 default_unit="SI::m"
+    Property flow "flow" role="value" unit="l" default=2 default_unit="SI::kg"
+    Constraint k "k" body="flow <= 5" language="sysmlc"
+      -> references flow
+  Package h "Site" subkind="instance-hierarchy"
+    Instance t1 "T1"
+      -> instance-of tank
+      Slot s1 value=20{unit}
+        -> instance-of mass
+"""
+
+
+def list_units(unit):
+    texts, losses = save(refine(UNITS.format(unit=unit)))
+    text = "".join(texts.values())
+    names_and_units = re.findall(r'<Attribute Name="(\w+)"(?: Unit="(\w+)")?', text)
+    return names_and_units, [loss for loss in losses if "_unit" in loss]
+
+
+def test_the_unit_of_a_value_is_written_unless_bounds_have_another_one():
+    units, losses = list_units(' value_unit="SI::g"')
+    assert units[-3:] == [("mass", "kg"), ("level", "m"), ("flow", "l")]
+    assert ("mass", "g") in units
+    assert losses == [
+        "SM742 AutomationML cannot express 'default_unit' of Property (value) "
+        "(1 omitted from the saved plant)"
+    ]
+
+
+def test_a_value_without_a_unit_has_not_the_unit_of_the_default_value():
+    units, _ = list_units("")
+    assert ("mass", "") in units

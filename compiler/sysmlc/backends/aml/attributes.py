@@ -17,7 +17,7 @@ from sysmlc.backends.aml.context import Context, File, find_unresolved
 from sysmlc.backends.aml.header import write_header, write_semantics
 from sysmlc.backends.aml.node import Node, format_value
 from sysmlc.ir import Edge, Element, Kind
-from sysmlc.ir.query.classifiers import unit_of
+from sysmlc.ir.query.classifiers import name_value_unit, unit_of
 
 _LISTS = ("ListType", "OrderedListType")
 """Semantics of unordered and ordered lists (AutomationML Part 1)."""
@@ -143,6 +143,20 @@ def _find_base_primitive(context: Context, type_: Element) -> str:
 
 
 def _find_unit(context: Context, element: Element) -> str:
+    """Return the unit of the default value, else the declared unit.
+
+    The declared unit is also that of the bounds in constraints. A default value in another unit
+    then has no place for its unit, which is a loss.
+    """
+    declared = find_declared_unit(context, element)
+    unit = name_value_unit(context.graph, element, "default")
+    sources = context.graph.sources(element, Edge.REFERENCES)
+    has_bounds = any(source.kind is Kind.CONSTRAINT for source in sources)
+    return declared if declared and has_bounds else unit or declared
+
+
+def find_declared_unit(context: Context, element: Element) -> str:
+    """Return the unit that an attribute or its type states, without regard to its value."""
     text = element.attrs.get("unit")
     if text or context.ids.is_from_caex(element):
         return str(text or "")

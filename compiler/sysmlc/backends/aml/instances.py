@@ -7,13 +7,18 @@ attributes of its class.
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from sysmlc.backends.aml.attributes import is_attribute, write_attribute_type
+from sysmlc.backends.aml.attributes import (
+    find_declared_unit,
+    is_attribute,
+    write_attribute_type,
+)
 from sysmlc.backends.aml.class_kinds import ClassKind, is_inline
 from sysmlc.backends.aml.context import Context, File
 from sysmlc.backends.aml.header import add_description, write_header
 from sysmlc.backends.aml.interfaces import find_or_repeat, write_port_attributes
 from sysmlc.backends.aml.node import Node, format_value
 from sysmlc.ir import Edge, Element, Kind, list_items
+from sysmlc.ir.query.classifiers import name_value_unit
 
 _COPIED = frozenset({"DefaultValue", "Value", "RefSemantic", "Constraint", "Attribute"})
 """Children of an attribute that its copy repeats."""
@@ -80,10 +85,22 @@ def write_slot(context: Context, unit: SystemUnit, slot: Element) -> None:
     else:
         node = _find_or_repeat_attribute(context, unit, [*path, feature])
         has_value = any(child.tag == "Value" for child in node.children)
-        if slot.attrs.get("value") is not None or not has_value:
-            node.add_text("Value", format_value(slot.attrs.get("value", "")))
+        value = slot.attrs.get("value")
+        if value is not None or not has_value:
+            node.add_text("Value", format_value("" if value is None else value))
+        if "value_unit" in slot.attrs or "default_unit" in feature.attrs:
+            _write_value_unit(context, slot, feature, node)
     context.register(slot, node)
     write_header(context, slot, node)
+
+
+def _write_value_unit(context: Context, slot: Element, feature: Element, node: Node) -> None:
+    """Write the unit of a value, which may differ from that of the default value."""
+    unit = name_value_unit(context.graph, slot, "value") or find_declared_unit(context, feature)
+    if unit:
+        node.attributes["Unit"] = unit
+    else:
+        node.attributes.pop("Unit", None)
 
 
 def _list_path(context: Context, element: Element) -> list[Element]:

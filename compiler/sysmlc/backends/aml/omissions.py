@@ -4,6 +4,7 @@ from sysmlc.backends.aml.class_kinds import is_hierarchy, is_measured_type
 from sysmlc.backends.aml.context import Context
 from sysmlc.backends.aml.rules import UNSUPPORTED_ATTRIBUTE, UNSUPPORTED_EDGE, UNSUPPORTED_KIND
 from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir.query.classifiers import name_value_unit
 
 _COVERED_ATTRIBUTES = frozenset(
     {
@@ -129,9 +130,21 @@ def _note_attributes(context: Context, element: Element) -> None:
     for name in element.attrs:
         if name in _COVERED_ATTRIBUTES or name in written or name.startswith("value."):
             continue
-        if not _is_attribute_expressed(context, element, name):
+        if not (
+            _is_unit_written(context, element, name)
+            or _is_attribute_expressed(context, element, name)
+        ):
             kind = _describe_kind(element)
             context.losses.record(UNSUPPORTED_ATTRIBUTE, element, attribute=name, kind=kind)
+
+
+def _is_unit_written(context: Context, element: Element, name: str) -> bool:
+    """Whether an attribute is the unit of a value, and the CAEX attribute of the value has it."""
+    node = context.nodes.get(element.id)
+    if name not in ("default_unit", "value_unit") or node is None:
+        return False
+    unit = name_value_unit(context.graph, element, name.removesuffix("_unit"))
+    return node.attributes.get("Unit") == unit
 
 
 def _is_attribute_expressed(context: Context, element: Element, name: str) -> bool:
