@@ -2,6 +2,8 @@
 
 import gc
 import signal
+import subprocess
+import sys
 import time
 import weakref
 from collections.abc import Iterator
@@ -92,6 +94,27 @@ def test_a_game_shorter_than_the_first_clock_check_obeys_the_limit_of_nodes(
 
     assert (few.exit_code, "the limit of 1 nodes was reached" in few.output) == (2, True)
     assert many.exit_code == 0, many.output
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux enforces memory limits")
+def test_without_memory_diagrams_fail_and_the_process_goes_on() -> None:
+    code = f"""
+import resource
+from sysmlc.diagnostics import Sink
+from sysmlc.logic import formats
+from sysmlc.synthesis import LimitError, Manager, make_game
+
+(contract,) = formats.read({RUNAWAY!r}, "runaway.gr1.json", Sink())
+resource.setrlimit(resource.RLIMIT_DATA, (100 << 20, 100 << 20))
+manager = Manager("cudd")
+try:
+    with manager.guard():
+        make_game(contract, manager)
+except LimitError as problem:
+    print(problem)
+"""
+    process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert (process.stdout, process.stderr) == ("the limit of 8 GiB of memory was reached\n", "")
 
 
 def test_refinement_obeys_limits() -> None:

@@ -11,6 +11,7 @@ import click
 from msgspec import Struct
 
 from sysmlc.cli import options, terminal
+from sysmlc.cli.limits import LIMITS
 
 if TYPE_CHECKING:
     from sysmlc.cli.contract_files import ContractFile
@@ -169,7 +170,7 @@ def _find_failures(
         check_owners(concrete.contract, abstract.contract)
         pair = align_domains(concrete.contract, abstract.contract)
         for failure in find_refinement_failures(
-            *pair, lambda: Manager(limits=Limits(0, 0, seconds))
+            *pair, lambda: Manager(limits=Limits(0, LIMITS.memory, seconds))
         ):
             failures.append(failure)
             owner = concrete if failure.is_assumption else abstract
@@ -260,7 +261,7 @@ def _operate(
 
     contracts = (operand.contract for operand in operands)
     try:
-        return operation(*contracts, lambda: Manager(limits=Limits(0, 0, seconds)))
+        return operation(*contracts, lambda: Manager(limits=Limits(0, LIMITS.memory, seconds)))
     except OBSTACLES as problem:
         _report_obstacle(problem, participle, *operands)
         return None

@@ -9,6 +9,7 @@ from msgspec.structs import replace
 
 from sysmlc.cli import options
 from sysmlc.cli.contract_operations import COMMANDS
+from sysmlc.cli.limits import LIMITS
 from sysmlc.cli.recorded_runs import accept_command
 
 if TYPE_CHECKING:
@@ -80,7 +81,7 @@ def check_command(
     config = session.load_config((file,), settings)
     progress = Progress(settings.verbose)
     contract_file = read_contracts(file, language, config, settings)
-    limits = Limits(seconds=seconds)
+    limits = Limits(memory=LIMITS.memory, seconds=seconds)
     try:
         ctx.exit(
             _check(contract_file, component, settings, Options("", limits, progress.note), output)

@@ -20,7 +20,7 @@ DEFAULT_SECONDS = 300.0
 # As much as CUDD had by default (decision 41).
 DEFAULT_GIBIBYTES = 8.0
 _GIBIBYTE = 1 << 30
-_OWN_MEMORY = 256 << 20
+_OWN_MEMORY = 64 << 20
 """Bytes that the interpreter and libraries need in any command; the limit excludes them."""
 _MAX_AMOUNT = 1_000_000_000
 _MIN_SECONDS = 0.001
@@ -42,6 +42,11 @@ class Limits:
     def is_enforced(self) -> bool:
         """Whether a parent process enforces the limits and reports that one was reached."""
         return self._shared is not None
+
+    @property
+    def memory(self) -> int:
+        """The memory limit in bytes; 0 is no limit."""
+        return int(self.gibibytes * _GIBIBYTE)
 
     def enforce(self, shared: SharedState) -> None:
         """Enforce the limits in this process from now on; the parent process reads *shared*."""
@@ -110,7 +115,7 @@ class Limits:
         remaining = max(seconds - (time.monotonic() - self._start), _MIN_SECONDS)
         is_limited = self._is_timed and seconds
         signal.setitimer(signal.ITIMER_REAL, remaining if is_limited else 0)
-        _set_memory_limit(int(gibibytes * _GIBIBYTE) + _OWN_MEMORY if gibibytes else None)
+        _set_memory_limit(self.memory + _OWN_MEMORY if gibibytes else None)
 
     def release_memory(self) -> None:
         """End the memory limit, so that a diagnostic about it can be printed."""

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from sysmlc.cli import options, terminal
+from sysmlc.cli.limits import LIMITS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -68,7 +69,9 @@ def command(
     config = session.load_config(models, settings)
     compilation = session.compile_unit(models, config, settings)
     progress = Progress(settings.verbose)
-    decision_options = Options("", Limits(seconds=seconds), progress.note, is_explained=True)
+    decision_options = Options(
+        "", Limits(memory=LIMITS.memory, seconds=seconds), progress.note, is_explained=True
+    )
     try:
         crew_cache = _open_crew_cache(models, config) if settings.has_cache else None
         ctx.exit(

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from sysmlc.synthesis.controller_synthesis import Synthesis
     from sysmlc.synthesis.decision import Deadline, Options, Verdict
 
-_GIBIBYTE = 1 << 30
-
 
 @click.command(
     "synth",
@@ -114,7 +112,7 @@ def command(
     settings = session.Settings(**setting_values)
     config = session.load_config((file,), settings)
     progress = Progress(settings.verbose)
-    limits = Limits(nodes, int(LIMITS.gibibytes * _GIBIBYTE), seconds or LIMITS.seconds)
+    limits = Limits(nodes, LIMITS.memory, seconds or LIMITS.seconds)
     contract_file = read_contracts(file, language, config, settings)
     contract_file = replace(
         contract_file, contracts=tuple(map(rename_ambiguous_literals, contract_file.contracts))

@@ -136,11 +136,25 @@ def install_termination_callback(
         return None
     if manager is None:
         return None
+    _survive_failing_allocations(cudd, manager)
     count_nodes.restype = ctypes.c_long
     key = next(_callback_keys)
     _stoppables[key] = stoppable
     register(ctypes.c_void_p(manager), _TERMINATION_CALLBACK, ctypes.c_void_p(key))
     return partial(count_nodes, ctypes.c_void_p(manager))
+
+
+def _survive_failing_allocations(cudd: ctypes.CDLL, manager: int) -> None:
+    """Let operations of CUDD fail when the process has no more memory.
+
+    Otherwise CUDD prints a message and ends the process with exit code 1.
+    """
+    try:
+        ignore_failure = ctypes.cast(cudd.Cudd_OutOfMemSilent, ctypes.c_void_p)
+        cudd.Cudd_InstallOutOfMemoryHandler(ignore_failure)
+        cudd.Cudd_RegisterOutOfMemoryCallback(ctypes.c_void_p(manager), ignore_failure)
+    except AttributeError:
+        return
 
 
 def _find_manager_address(bdd: object) -> int | None:
