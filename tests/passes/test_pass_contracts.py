@@ -149,6 +149,23 @@ def test_only_the_transitions_that_compete_are_listed():
     )
 
 
+@pytest.mark.parametrize(
+    ("left", "right", "codes"),
+    [
+        ("heat < 2.5", "heat >= 2.5", []),
+        ("hot(level) && level > 2", "!hot(level)", []),
+        ("heat < 2.5", "heat >= 3.5", ["SM422"]),
+        ("heat < 2.5", "heat < 2.5", ["SM422"]),
+        ("heat < 2.5", "", ["SM422"]),
+    ],
+)
+def test_guards_that_a_contract_cannot_express_may_exclude_each_other(left, right, codes):
+    text = machine(arrow("a", "b", "start", left), arrow("a", "a", "start", right))
+    _, (contract,), sink = derive_contracts(text)
+    assert [code for code in list_codes(sink) if code == "SM422"] == codes
+    assert "taken_A" in [variable.name for variable in contract.variables]
+
+
 def test_a_guard_that_does_not_parse_is_an_input():
     _, (contract,), sink = derive_contracts(machine(arrow("a", "b", "start", "bay is free")))
     assert list_codes(sink) == ["SM411"]

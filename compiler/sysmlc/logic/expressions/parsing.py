@@ -1,6 +1,7 @@
 """Parser of expressions and effects, memoised by text: Lark runs ``grammars/expression.lark``."""
 
 import re
+from collections.abc import Iterator
 from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -211,3 +212,40 @@ def _normalise(operator: str) -> str:
 def unquote(text: str) -> str:
     """Return the text between quotation marks, without escapes."""
     return re.sub(r"\\(.)", lambda match: _ESCAPE.get(match[1], match[1]), text[1:-1])
+
+
+# -- guards that exclude each other -------------------------------------------------------------
+
+_COMPLEMENTS = {"<": ">=", ">=": "<", ">": "<=", "<=": ">", "==": "!=", "!=": "=="}
+
+
+def are_complementary(left: str, right: str) -> bool:
+    """Whether two guards exclude each other by their form, such as ``a < b`` and ``c and a >= b``.
+
+    The operands may have any type, also one whose values are not finite.
+    """
+    try:
+        left_terms, right_terms = (set(_iter_terms(parse_expression(t))) for t in (left, right))
+    except ExpressionError:
+        return False
+    negated_left, negated_right = map(_negate, left_terms), map(_negate, right_terms)
+    return not (right_terms.isdisjoint(negated_left) and left_terms.isdisjoint(negated_right))
+
+
+def _iter_terms(expression: Expression) -> Iterator[Expression]:
+    """Yield the operands of a conjunction."""
+    worklist = [expression]
+    while worklist:
+        part = worklist.pop()
+        if isinstance(part, Binary) and part.op == "and":
+            worklist += [part.left, part.right]
+        else:
+            yield part
+
+
+def _negate(term: Expression) -> Expression:
+    if isinstance(term, Binary) and term.op in _COMPLEMENTS:
+        return Binary(_COMPLEMENTS[term.op], term.left, term.right)
+    if isinstance(term, Unary) and term.op == "not":
+        return term.operand
+    return Unary("not", term)

@@ -8,7 +8,7 @@ satisfy both guards. There are three kinds of conflict:
 - a transition is nested in the source of the other, so that it preempts the other.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import combinations
 
 from sysmlc.diagnostics import Severity, Sink, rule
@@ -19,6 +19,7 @@ from sysmlc.logic.contract import Domain
 from sysmlc.logic.evaluate import compile_evaluation
 from sysmlc.logic.expressions.elaboration import Scope, elaborate_condition
 from sysmlc.logic.expressions.expression import Expression, name_of, walk_expression
+from sysmlc.logic.expressions.parsing import are_complementary
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines.machine import (
     Action,
@@ -102,17 +103,22 @@ def list_competing(
     vertex: Vertex,
     comparison: GuardComparison,
     *,
+    texts: Mapping[str, str],
     by_one_occurrence: bool,
 ) -> list[Transition]:
     """Return the *outgoing* transitions that can be enabled together with another of them.
 
-    With *by_one_occurrence*, the same occurrence of a trigger has to enable both.
+    With *by_one_occurrence*, the same occurrence of a trigger has to enable both. *texts* are the
+    guards as written, by transition: the contract may treat each of them as an input.
     """
     is_state = vertex.kind == "state"
     can_meet = _have_equal_trigger if by_one_occurrence else _can_coincide
     competing: dict[str, Transition] = {}
     for left, right in combinations(outgoing, 2):
-        if (not is_state or can_meet(left, right)) and comparison.are_compatible(left, right):
+        are_excluded = is_state and not can_meet(left, right)
+        if are_excluded or are_complementary(texts[left.id], texts[right.id]):
+            continue
+        if comparison.are_compatible(left, right):
             competing |= {left.id: left, right.id: right}
     return [transition for transition in outgoing if transition.id in competing]
 

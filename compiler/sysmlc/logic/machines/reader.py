@@ -181,14 +181,17 @@ def _add_choice_variable(
     literals = tuple(transition.literal for transition in outgoing)
     domain = EnumerationDomain((NO_EVENT, *literals))
     pick = reading.variable_for(f"pick {id}", f"taken_{name}", Owner.SYSTEM, domain, element_id(id))
-    vertex, rule = draft.vertices[id], NONDETERMINISTIC
-    competing = list_competing(outgoing, vertex, comparison, by_one_occurrence=True)
-    if not competing:
-        rule = COINCIDING
-        competing = list_competing(outgoing, vertex, comparison, by_one_occurrence=False)
-    names = ", ".join(f"'{transition.words}'" for transition in competing)
-    subject = reading.graph.subject(draft.element(id))
-    reading.sink.report(rule, subject, transitions=names, vertex=name, pick=pick)
+    vertex = draft.vertices[id]
+    texts = {t.id: str(draft.element(t.id).attrs.get("guard", "")) for t in outgoing}
+    for finding, by_one_occurrence in ((NONDETERMINISTIC, True), (COINCIDING, False)):
+        competing = list_competing(
+            outgoing, vertex, comparison, texts=texts, by_one_occurrence=by_one_occurrence
+        )
+        if competing:
+            names = ", ".join(f"'{transition.words}'" for transition in competing)
+            subject = reading.graph.subject(draft.element(id))
+            reading.sink.report(finding, subject, transitions=names, vertex=name)
+            break
     return pick
 
 
