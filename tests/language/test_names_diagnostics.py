@@ -109,7 +109,7 @@ def test_the_advice_about_a_member_of_another_element_names_that_element():
         "5: unknown name 'levelFill': did you mean 'fillLevel'?",
         "5: unknown name 'volume': only an inherited feature can be redefined: "
         "declare it in a general type",
-        "6: unknown name 'fault2' in 'tank': declare it in 'tank', which has: fault1, fillLevel",
+        "6: unknown name 'fault2' in 'tank': declare it in 'Tank', which has: fault1, fillLevel",
         "7: unknown name 'Colour::blue': declare it in 'Colour', which has: green, red",
         "8: unknown name 'SI::tonneForce': 'SI' of the library has no such name",
         f"9: unknown name 'Pumps::Pump': {DECLARE_OR_IMPORT}",

@@ -53,6 +53,7 @@ _MAX_LISTED = 7
 _TYPES_OF_LIBRARY = ("ScalarValues", "ISQ")
 _UNITS_OF_LIBRARY = ("SI",)
 _CLASSIFIERS = kinds_of("Classifier")
+_FEATURES = kinds_of("Feature")
 _OPERATORS = frozenset({"OperatorExpression"})
 _MEMBERSHIP_IMPORTS = kinds_of("MembershipImport")
 
@@ -132,9 +133,13 @@ def _advise_declaration(model: Model, container: Node, known_names: list[str]) -
     """Return what to do about a name that is unknown in an element and like none of its names."""
     if model.document(container) not in model.documents:
         return f"'{container.name}' of the library has no such name"
+    # A feature usually has its members from its type.
+    types = model.types(container) if container.kind in _FEATURES else []
+    own_types = (type_ for type_ in types if model.document(type_) in model.documents)
+    place = next(own_types, container)
     listed = sorted(set(known_names))
     others = f", which has: {', '.join(listed)}" if 0 < len(listed) <= _MAX_LISTED else ""
-    return f"declare it in '{container.name}'{others}"
+    return f"declare it in '{place.name or container.name}'{others}"
 
 
 def _find_unimported_package(
