@@ -1,7 +1,7 @@
 """Players: activities and state machines that can be simulated, behind one interface."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Protocol, TypeVar
+from collections.abc import Mapping
+from typing import Protocol
 
 from msgspec import Struct
 
@@ -10,7 +10,7 @@ from sysmlc.ir import Element, Graph, Kind, query
 from sysmlc.logic import evaluate
 from sysmlc.logic.activities import derivation as activity_contract
 from sysmlc.logic.activities import interpreter as token_game
-from sysmlc.logic.activities.token_graph import TokenGraph, TokenNode
+from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.contract import (
     BooleanDomain,
     Domain,
@@ -24,8 +24,8 @@ from sysmlc.logic.machines import interpreter as machine_interpreter
 from sysmlc.logic.machines.interpreter import Valuation
 from sysmlc.logic.machines.machine import Machine
 from sysmlc.logic.machines.reader import read_machine
+from sysmlc.simulation.components import open_component
 
-_T = TypeVar("_T")
 _LASTING_KINDS = (Kind.PROPERTY, Kind.PORT, Kind.FLOW_PROPERTY)
 """Kinds of inputs whose value lasts until it is set again; other inputs are events."""
 
@@ -70,6 +70,23 @@ def find_players(graph: Graph) -> dict[str, Player]:
             name = query.component_name(graph, element)
             players_by_name.setdefault(name, MachinePlayer(graph, machine, name))
     return players_by_name
+
+
+def find_component_player(graph: Graph, name: str) -> Player | None:
+    """Return the player of a block that does more than one behaviour alone describes, or None.
+
+    Such a block performs activities, has several state machines, or has parts with behaviours.
+    *name* is its qualified name, or its plain name if no other block has it.
+    """
+    blocks = list(graph.of_kind(Kind.CLASS, Kind.COMPONENT))
+    matches = [block for block in blocks if query.component_name(graph, block) == name]
+    matches = matches or [block for block in blocks if block.name == name]
+    player = open_component(graph, matches[0]) if len(matches) == 1 else None
+    if player is None:
+        return None
+    has_parts = any(machine.owner.path for machine in player.parts.machines)
+    is_composed = bool(player.parts.performances.nodes) or len(player.parts.machines) > 1
+    return player if is_composed or has_parts else None
 
 
 def find_resting_value(graph: Graph, variable: Variable) -> Literal:
@@ -132,37 +149,13 @@ class ActivityPlayer(Struct, frozen=True, dict=True):
         states: dict[token_game.State, None] = {}
         worklist: list[list[int]] = [[]]
         while worklist:
-            plan = _BranchPlan(worklist.pop())
+            plan = token_game.BranchPlan(worklist.pop())
             successor = token_game.next_state(
                 self.tokens, state, now, evaluate.is_true, plan.choose
             )
             states[successor] = None
             worklist += plan.list_alternatives()
         return [{**inputs, **token_game.values_of(self.tokens, after)} for after in states]
-
-
-class _BranchPlan:
-    """A choice function for one replay of a step: backtracking without copies of the state.
-
-    It takes the *planned* branches, and then the first branch of each further choice. It counts the
-    options of every choice, so that ``list_alternatives`` can plan the branches not taken.
-    """
-
-    def __init__(self, planned: list[int]) -> None:
-        self._planned = planned
-        self._counts: list[int] = []
-
-    def choose(self, _node: TokenNode, options: Sequence[_T]) -> _T:
-        self._counts.append(len(options))
-        position = len(self._counts) - 1
-        return options[self._planned[position] if position < len(self._planned) else 0]
-
-    def list_alternatives(self) -> Iterator[list[int]]:
-        """Yield a plan for each other branch of the choices that were not planned."""
-        branches = [*self._planned, *[0] * (len(self._counts) - len(self._planned))]
-        for position in range(len(self._planned), len(self._counts)):
-            for branch in range(1, self._counts[position]):
-                yield [*branches[:position], branch]
 
 
 class MachinePlayer(Struct, frozen=True, dict=True):

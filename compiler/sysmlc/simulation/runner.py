@@ -8,7 +8,12 @@ from sysmlc.logic.contract import Owner, Variable
 from sysmlc.logic.domains import contains, describe
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.machines.interpreter import Valuation
-from sysmlc.simulation.players import Player, find_players, find_resting_value
+from sysmlc.simulation.players import (
+    Player,
+    find_component_player,
+    find_players,
+    find_resting_value,
+)
 from sysmlc.simulation.report import Difference, Report, Result, show_value
 from sysmlc.simulation.scenario import (
     COMPONENT,
@@ -42,7 +47,7 @@ def run_scenarios(graph: Graph, scenario_source: Source, sink: Sink) -> Report:
 def _play_scenario(
     graph: Graph, scenario: Scenario, players_by_name: Mapping[str, Player], sink: Sink
 ) -> Result:
-    player = _find_player(scenario, players_by_name, sink)
+    player = _find_player(graph, scenario, players_by_name, sink)
     if player is None or not _has_valid_entries(scenario, player, sink):
         return Result(scenario.name, scenario.component, scenario.location.line, is_valid=False)
     resting_values = {
@@ -57,14 +62,16 @@ def _play_scenario(
 
 
 def _find_player(
-    scenario: Scenario, players_by_name: Mapping[str, Player], sink: Sink
+    graph: Graph, scenario: Scenario, players_by_name: Mapping[str, Player], sink: Sink
 ) -> Player | None:
-    player = players_by_name.get(scenario.component)
+    """Return the player of the component: of the whole block, or else of its only behaviour."""
+    name = scenario.component
+    matches = [known for known in players_by_name if _short_name(known) == name]
+    if name not in players_by_name and len(matches) == 1:
+        name = matches[0]
+    player = find_component_player(graph, name) or players_by_name.get(name)
     if player is not None:
         return player
-    matches = [name for name in players_by_name if _short_name(name) == scenario.component]
-    if len(matches) == 1:
-        return players_by_name[matches[0]]
     names = ", ".join(sorted(matches or players_by_name)) or "none"
     sink.report(
         COMPONENT, scenario.subject(scenario.location), name=scenario.component, known=names

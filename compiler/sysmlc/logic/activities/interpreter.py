@@ -106,7 +106,7 @@ def next_state(
 
     Raises NotSafeError if the graph is not 1-safe.
     """
-    return _Step(graph, state, inputs, holds, choose).compute_next()
+    return TokenStep(graph, state, inputs, holds, choose).compute_next()
 
 
 def is_finished(graph: TokenGraph, state: State) -> bool:
@@ -143,7 +143,32 @@ def _marked_edges(graph: TokenGraph, region: str) -> list[str]:
     return [edge.id for edge in graph.edges if edge.marked and edge.region == region]
 
 
-class _Step:
+class BranchPlan:
+    """A choice function for one replay of a step: backtracking without copies of the state.
+
+    It takes the *planned* branches, and then the first branch of each further choice. It counts the
+    options of every choice, so that ``list_alternatives`` can plan the branches not taken.
+    """
+
+    def __init__(self, planned: list[int]) -> None:
+        self._planned = planned
+        self._counts: list[int] = []
+
+    def choose(self, _node: TokenNode, options: Sequence[_T]) -> _T:
+        """Return the planned option, or the first one."""
+        self._counts.append(len(options))
+        position = len(self._counts) - 1
+        return options[self._planned[position] if position < len(self._planned) else 0]
+
+    def list_alternatives(self) -> Iterator[list[int]]:
+        """Yield a plan for each other branch of the choices that were not planned."""
+        branches = [*self._planned, *[0] * (len(self._counts) - len(self._planned))]
+        for position in range(len(self._planned), len(self._counts)):
+            for branch in range(1, self._counts[position]):
+                yield [*branches[:position], branch]
+
+
+class TokenStep:
     """One step of all nodes at once: it reads the state ``old`` and changes copies of its sets."""
 
     def __init__(
@@ -152,7 +177,7 @@ class _Step:
         old: State,
         inputs: Inputs,
         holds: Callable[[Formula, Inputs], bool],
-        choose: Choose,
+        choose: Choose = _choose_first,
     ) -> None:
         self.graph = graph
         self.old = old
@@ -168,8 +193,14 @@ class _Step:
         self.taken: set[str] = set()
 
     def compute_next(self) -> State:
+        """Return the next state; an activity that is complete starts again."""
         if is_finished(self.graph, self.old):
             return _restarted_state(self.graph, self.old)
+        self.move_tokens()
+        return State(frozenset(self.tokens), frozenset(self.running), tuple(self._stored_values()))
+
+    def move_tokens(self) -> None:
+        """Move all tokens that can move, and end and start regions."""
         self.ended = [node for node in self.graph.workers() if self._ends(node)]
         alive = [node for node in self.graph.nodes if self._is_alive(node)]
         # Taking comes before giving: a token may arrive where another has just left.
@@ -180,12 +211,11 @@ class _Step:
             if edge.listens and self._is_listening_triggered(edge):
                 self._give_token(edge)
         for node in self.ended:
-            self._clear_region(node.id)
+            self.clear_region(node.id)
         for region in self.interrupted:
             self._interrupt(region)
         for node in self.started:
-            self._start_region(node)
-        return State(frozenset(self.tokens), frozenset(self.running), tuple(self._stored_values()))
+            self.start_region(node)
 
     def _is_listening_triggered(self, edge: TokenEdge) -> bool:
         """Whether a listening edge gets a token.
@@ -215,7 +245,11 @@ class _Step:
 
     def _ends(self, node: TokenNode) -> bool:
         is_running = node.kind is NodeKind.STRUCTURED and node.id in self.old.running
-        return is_running and is_complete(self.graph, self.old, node.id)
+        return is_running and self.is_complete(node.id)
+
+    def is_complete(self, region: str) -> bool:
+        """Whether a region is complete in this step."""
+        return is_complete(self.graph, self.old, region)
 
     def _is_alive(self, node: TokenNode) -> bool:
         """Whether all regions around the node run and none of them ends in this step."""
@@ -254,7 +288,7 @@ class _Step:
     def _take_branch(
         self, node: TokenNode, ready: list[TokenEdge], outgoing: list[TokenEdge]
     ) -> Sequence[TokenEdge]:
-        branches = self._open_branches(outgoing)
+        branches = self.list_open_branches(outgoing)
         if outgoing and not branches:
             return ()
         self._take_tokens(ready)
@@ -262,12 +296,14 @@ class _Step:
             return ()
         return (branches[0] if len(branches) == 1 else self.choose(node, branches),)
 
-    def _open_branches(self, outgoing: list[TokenEdge]) -> list[TokenEdge]:
+    def list_open_branches(self, outgoing: list[TokenEdge]) -> list[TokenEdge]:
+        """Return the branches of a decision that a token may take."""
         guarded = [edge for edge in outgoing if not edge.is_else]
-        open_edges = [edge for edge in guarded if self._is_open(edge)]
+        open_edges = [edge for edge in guarded if self.is_open(edge)]
         return open_edges or [edge for edge in outgoing if edge.is_else]
 
-    def _is_open(self, edge: TokenEdge) -> bool:
+    def is_open(self, edge: TokenEdge) -> bool:
+        """Whether the guard of an edge is true; that of an else edge always is."""
         guard = edge.guard
         return guard is None or guard.condition is None or self.holds(guard.condition, self.inputs)
 
@@ -286,13 +322,14 @@ class _Step:
             self._take_tokens(ready)
             self.running.add(node.id)
             self.started.append(node)
-        if not is_running or not self._is_done(node):
+        if not is_running or not self.is_done(node):
             return ()
         self.running.discard(node.id)
         self.finished.add(node.id)
         return outgoing
 
-    def _is_done(self, node: TokenNode) -> bool:
+    def is_done(self, node: TokenNode) -> bool:
+        """Whether a running node is done in this step."""
         if node.kind is NodeKind.STRUCTURED:
             return node in self.ended
         if node.duration is Duration.PULSE or node.done is None:
@@ -311,11 +348,13 @@ class _Step:
         if edge.interrupts:
             self.interrupted.append(edge.interrupts)
 
-    def _start_region(self, node: TokenNode) -> None:
+    def start_region(self, node: TokenNode) -> None:
+        """Put tokens on the marked edges of a structured node that runs."""
         if node.kind is NodeKind.STRUCTURED and node.id in self.running:
             self.tokens.update(_marked_edges(self.graph, node.id))
 
-    def _clear_region(self, region: str) -> None:
+    def clear_region(self, region: str) -> None:
+        """Remove all tokens in a region and stop all nodes in it."""
         edges, nodes = self.graph.inside(region)
         self.tokens.difference_update(edge.id for edge in edges)
         self._stop_nodes(nodes)
@@ -332,4 +371,4 @@ class _Step:
         for node in nodes:
             self.running.discard(node.id)
             if node.kind is NodeKind.STRUCTURED:
-                self._clear_region(node.id)
+                self.clear_region(node.id)

@@ -37,6 +37,12 @@ class Root:
     stop: Formula
     first: Formula
     machine: PlacedMachine | None = None
+    state: Vertex | None = None
+    """The state whose do behaviour it is."""
+    service: str = ""
+    """The input with which the environment starts it."""
+    over: str = ""
+    """The variable that its state uses to remember its end."""
 
 
 class Component:
@@ -137,10 +143,11 @@ class Component:
         self.performances.paths.append(ActionPath(place, id))
         is_first = machine.active_formula(state)
         entered, left = machine.entered_formula(state), machine.left_formula(state)
-        self.roots.append(Root(id, entered, left, is_first, machine))
+        root = Root(id, entered, left, is_first, machine, state)
+        self.roots.append(root)
         if state.done:
             self.end_aliases[_join_names(prefix, state.done)] = id
-            self._remember_end(machine, state, id, entered, left)
+            root.over = self._remember_end(machine, state, id, entered, left)
 
     def _release_instant_behaviours(self, machine: PlacedMachine) -> None:
         """Record the writers in activities that entries, exits and effects perform.
@@ -162,8 +169,11 @@ class Component:
 
     def _remember_end(
         self, machine: PlacedMachine, state: Vertex, id: str, entered: Formula, left: Formula
-    ) -> None:
-        """Define when a state's do behaviour has ended: now, or in an earlier step of the state."""
+    ) -> str:
+        """Define when a state's do behaviour has ended: now, or in an earlier step of the state.
+
+        Return the variable that remembers the end.
+        """
         name = self.names.new(f"over_{machine.variables[state.do]}")
         self.variables.append(Variable(name, Owner.SYSTEM, BooleanDomain(), state.id))
         self.ends[machine.variables[state.done]] = f.either(f.var(name), finish_variable(id))
@@ -171,6 +181,7 @@ class Component:
         remains = f.both(is_over, f.negate(left), f.negate(entered))
         self.add(f.negate(f.var(name)), Class.INIT, state.id)
         self.add(f.fold_iff(f.prime(f.var(name)), remains), Class.SAFETY, state.id)
+        return name
 
     def _find_performed(
         self, object_: ComponentObject, behaviour: Element
@@ -274,7 +285,7 @@ class Component:
         may_start = f.both(f.var(start), f.either(f.negate(f.var(run)), finish_variable(id)))
         # Where nothing says so, the environment may have started it before the first step.
         first = f.TRUE if is_started else f.var(run)
-        self.roots.append(Root(id, may_start, f.FALSE, first))
+        self.roots.append(Root(id, may_start, f.FALSE, first, service=start))
 
     def add(self, formula: Formula, class_: Class, origin: str) -> None:
         """Add a fact about all runs."""

@@ -70,26 +70,26 @@ def initial_steps(machine: Machine, inputs: Mapping[str, Literal]) -> list[Valua
 
     A property without a default starts with any value of its domain.
     """
-    valuations: list[Valuation] = []
-    for start in _initial_valuations(machine, inputs):
-        before = _inactive_regions(machine) | start
-        runs = [Reaction(before)]
-        for region in machine.top:
-            started = [
-                after
-                for reaction in runs
-                for after in start_region(machine, reaction, None, region)
-            ]
-            runs = [
-                after
-                for reaction in started
-                for after in start_open_regions(machine, reaction, None)
-            ]
-        valuations += [
-            _complete_valuation(machine, before, reaction, inputs, is_first=True)
-            for reaction in runs
-        ]
+    valuations = [
+        complete_valuation(machine, start, reaction, inputs, is_first=True)
+        for start in _initial_valuations(machine, inputs)
+        for reaction in list_first_reactions(machine, start)
+    ]
     return _drop_duplicates(valuations)
+
+
+def list_first_reactions(machine: Machine, values: Mapping[str, Literal]) -> list[Reaction]:
+    """Return the ways to enter the initial states; *values* are those of the properties."""
+    inactive = {region.variable: INACTIVE for region in machine.regions.values()}
+    runs = [Reaction({**inactive, **values})]
+    for region in machine.top:
+        started = [
+            after for reaction in runs for after in start_region(machine, reaction, None, region)
+        ]
+        runs = [
+            after for reaction in started for after in start_open_regions(machine, reaction, None)
+        ]
+    return runs
 
 
 def next_steps(
@@ -97,8 +97,8 @@ def next_steps(
 ) -> list[Valuation]:
     """Return all steps that may follow *now* if the next step has the given inputs."""
     valuations = [
-        _complete_valuation(machine, now, reaction, inputs, is_first=False)
-        for reaction in _list_reactions(machine, now)
+        complete_valuation(machine, now, reaction, inputs, is_first=False)
+        for reaction in list_reactions(machine, now, {})
     ]
     return _drop_duplicates(valuations)
 
@@ -113,11 +113,7 @@ def _initial_valuations(machine: Machine, inputs: Mapping[str, Literal]) -> Iter
         yield {**inputs, **machine.initial, **dict(zip(unset_names, row, strict=True))}
 
 
-def _inactive_regions(machine: Machine) -> Valuation:
-    return {region.variable: INACTIVE for region in machine.regions.values()}
-
-
-def _complete_valuation(
+def complete_valuation(
     machine: Machine,
     now: Mapping[str, Literal],
     reaction: Reaction,
@@ -173,29 +169,34 @@ def _drop_duplicates(valuations: list[Valuation]) -> list[Valuation]:
 # -- which transitions -------------------------------------------------------------------------
 
 
-def _list_reactions(machine: Machine, now: Mapping[str, Literal]) -> list[Reaction]:
+def list_reactions(
+    machine: Machine, now: Mapping[str, Literal], written: Mapping[str, Literal]
+) -> list[Reaction]:
     """Return all combinations of the reactions of active states.
 
     Orthogonal regions react in the same step, so each combination has one reaction of each.
+    *written* are the values that do behaviours assign in this step: effects read them, guards do
+    not.
     """
     enabled = {
         state.id: options
         for state in machine.list_states()
         if is_active(machine, now, state.id)
-        for options in [_list_options(machine, now, state)]
+        for options in [_list_options(machine, now, state, written)]
         if options
     }
-    _apply_joins(machine, now, enabled)
+    _apply_joins(machine, now, enabled, written)
     # Inner transitions go before outer ones (UML 2.5.1, 14.2.3.9).
     sources = [
         source
         for source in enabled
         if not any(machine.contains(source, outer) for outer in enabled)
     ]
-    combined = [Reaction(now)]
+    before = {**now, **written}
+    combined = [Reaction(before)]
     for source in sources:
         combined = [
-            _merge_reactions(now, reaction, option)
+            _merge_reactions(before, reaction, option)
             for reaction in combined
             for option in enabled[source]
         ]
@@ -203,7 +204,10 @@ def _list_reactions(machine: Machine, now: Mapping[str, Literal]) -> list[Reacti
 
 
 def _apply_joins(
-    machine: Machine, now: Mapping[str, Literal], enabled: dict[str, list[Reaction]]
+    machine: Machine,
+    now: Mapping[str, Literal],
+    enabled: dict[str, list[Reaction]],
+    written: Mapping[str, Literal],
 ) -> None:
     """Add the enabled joins to *enabled*.
 
@@ -220,7 +224,9 @@ def _apply_joins(
         inner_sources = [
             inner for inner in enabled for state in states if machine.contains(state.id, inner)
         ]
-        options = take_transition(machine, now, join) if is_ready and not inner_sources else []
+        options = (
+            take_transition(machine, now, join, written) if is_ready and not inner_sources else []
+        )
         if options:
             overridden = {
                 state_id
@@ -241,10 +247,14 @@ def _merge_reactions(before: Mapping[str, Literal], left: Reaction, right: React
         left.raised | right.raised,
         {**left.picked, **right.picked},
         left.left_states | right.left_states,
+        (*left.opened, *right.opened),
+        assigned=left.assigned | right.assigned,
     )
 
 
-def _list_options(machine: Machine, now: Mapping[str, Literal], state: Vertex) -> list[Reaction]:
+def _list_options(
+    machine: Machine, now: Mapping[str, Literal], state: Vertex, written: Mapping[str, Literal]
+) -> list[Reaction]:
     """Return all ways to take a transition that leaves the state."""
     outgoing = [
         transition
@@ -254,7 +264,9 @@ def _list_options(machine: Machine, now: Mapping[str, Literal], state: Vertex) -
     completing = [transition for transition in outgoing if not transition.occurrences]
     if _is_complete(machine, now, state):
         runs = [
-            run for transition in completing for run in take_transition(machine, now, transition)
+            run
+            for transition in completing
+            for run in take_transition(machine, now, transition, written)
         ]
         if runs:
             return runs
@@ -263,7 +275,11 @@ def _list_options(machine: Machine, now: Mapping[str, Literal], state: Vertex) -
         for transition in outgoing
         if _has_occurrence(machine, now, state, transition.occurrences)
     ]
-    return [run for transition in triggered for run in take_transition(machine, now, transition)]
+    return [
+        run
+        for transition in triggered
+        for run in take_transition(machine, now, transition, written)
+    ]
 
 
 def _is_complete(machine: Machine, now: Mapping[str, Literal], state: Vertex) -> bool:

@@ -112,6 +112,8 @@ class Reaction(Struct, frozen=True):
     """Entered states, outermost first; some of their regions may not have started yet."""
     guard_values: Mapping[str, Literal] = field(default_factory=dict)
     """The values that guards read."""
+    assigned: frozenset[str] = frozenset()
+    """The variables to which an effect, entry or exit has assigned a value, the same or another."""
 
     def with_value(self, name: str, value: Literal) -> "Reaction":
         """Return the reaction with a new value."""
@@ -123,13 +125,17 @@ class Reaction(Struct, frozen=True):
 
 
 def take_transition(
-    machine: Machine, now: Mapping[str, Literal], first: Transition
+    machine: Machine,
+    now: Mapping[str, Literal],
+    first: Transition,
+    written: Mapping[str, Literal],
 ) -> list[Reaction]:
     """Return the possible reactions of a transition that leaves a state.
 
-    There are none if a guard is false, and several if the path leads through open choices.
+    There are none if a guard is false, and several if the path leads through open choices. Effects
+    read the values in *written*, which actions that end in this step have assigned.
     """
-    start = replace(Reaction(now), guard_values=now)
+    start = replace(Reaction({**now, **written}), guard_values=now)
     runs = _follow(machine, start, now, first)
     return [after for run in runs for after in start_open_regions(machine, run, now)]
 
@@ -294,6 +300,7 @@ def _run_actions(machine: Machine, run: Reaction, actions: tuple[Action, ...]) -
                 if isinstance(domain, IntegerDomain):
                     value = clamp(int(value), domain)
                 run = run.with_value(variable, value)
+                run = replace(run, assigned=run.assigned | {variable})
     return run
 
 

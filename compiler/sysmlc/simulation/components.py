@@ -1,0 +1,378 @@
+"""Player of a component: its state machines, and everything that they and it perform and call.
+
+All behaviours react to the same step, and the reactions are visible in the next one. Actions that
+end in a step write first; the effects of a machine read what its do behaviours write and override
+it. Of several values that different behaviours write, any may result. A do behaviour starts when
+its state is entered and stops when the state is left; a completion transition waits for its end.
+What a component performs by itself runs once.
+
+The player executes the diagrams with the reference interpreters of state machines and activities;
+it reads no formula of the contract that ``logic.components`` derives, so that tests can compare
+the two.
+"""
+
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+from itertools import islice, product
+
+from msgspec import Struct
+from msgspec.structs import replace
+
+from sysmlc.ir import Element, Graph, query
+from sysmlc.logic import evaluate
+from sysmlc.logic.activities import interpreter as token_game
+from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.components.component import Component, Root
+from sysmlc.logic.components.derivation import ComponentBehaviour, describe_component
+from sysmlc.logic.components.machines import EVENT, PlacedMachine
+from sysmlc.logic.components.objects import ComponentError
+from sysmlc.logic.components.performances import PlacedWrite
+from sysmlc.logic.components.signals import derive_events
+from sysmlc.logic.contract import Conjunct, Owner, Variable
+from sysmlc.logic.domains import values
+from sysmlc.logic.formula import TRUE, Apply, Const, Literal, Op, Var
+from sysmlc.logic.machines import interpreter as machine_interpreter
+from sysmlc.logic.machines.interpreter import Valuation
+from sysmlc.logic.machines.machine import Vertex
+from sysmlc.logic.machines.reaction import Reaction, is_active
+from sysmlc.logic.machines.reader import MachineOptions
+from sysmlc.simulation.performances import PerformanceStep
+
+_MAX_FIRST_VALUES = 10_000
+"""Most combinations of the values of features without an initial value."""
+_Options = dict[str, list[Literal]]
+"""The values that a feature may get in a step, by its variable."""
+
+
+class _MachineReaction(Struct, frozen=True):
+    """How a machine reacts, and which performances it starts and stops."""
+
+    machine: PlacedMachine
+    reaction: Reaction
+    options: _Options
+    """What the machine and its do behaviours write."""
+
+    def enters(self, state: Vertex) -> bool:
+        """Whether the state is active from the next step on, and was not or was left."""
+        return state.id in self.reaction.opened
+
+    def leaves(self, state: Vertex) -> bool:
+        """Whether the state is left."""
+        return state.id in self.reaction.left_states
+
+
+class ComponentPlayer(Struct, frozen=True, dict=True):
+    """Player of a component with everything that it performs, calls and contains."""
+
+    graph: Graph
+    parts: Component
+    behaviour: ComponentBehaviour
+    component: str
+    messages: Mapping[str, tuple[str, str]]
+    """The event and its literal for each variable that tells whether a message is received."""
+
+    @cached_property
+    def variables(self) -> tuple[Variable, ...]:
+        return tuple(
+            replace(variable, owner=Owner.SYSTEM) if variable.name in self.messages else variable
+            for variable in self.behaviour.contract.variables
+        )
+
+    @cached_property
+    def pulses(self) -> frozenset[str]:
+        lasting = {slot.variable.name for slot in self.parts.tree.used_slots.values()}
+        inputs = (v.name for v in self.variables if v.owner is Owner.ENVIRONMENT)
+        return frozenset(name for name in inputs if name not in lasting)
+
+    @cached_property
+    def _tokens(self) -> TokenGraph:
+        return self.parts.performances.build(self.component, self.parts.subject.id, iter(()))
+
+    @cached_property
+    def _features(self) -> dict[str, Variable]:
+        """The features that the component decides, by their variables."""
+        slots = self.parts.tree.used_slots.values()
+        return {slot.variable.name: slot.variable for slot in slots if not slot.is_input}
+
+    # -- first step --------------------------------------------------------------------------------
+
+    def initial(self, inputs: Mapping[str, Literal]) -> list[Valuation]:
+        valuations: list[Valuation] = []
+        for features in self._list_first_values():
+            before = {**inputs, **features}
+            reactions = (
+                [
+                    self._make_reaction(machine, reaction, {})
+                    for reaction in machine_interpreter.list_first_reactions(
+                        machine.machine, _select(machine, before)
+                    )
+                ]
+                for machine in self.parts.machines
+            )
+            for combination in product(*reactions):
+                for written in _choose_values(_merge_options(combination)):
+                    after = {**before, **written}
+                    for state in self._list_first_states(combination):
+                        valuations.append(
+                            self._complete(after, after, inputs, combination, state, is_first=True)
+                        )
+        return _drop_duplicates(valuations)
+
+    def _list_first_values(self) -> Iterator[Valuation]:
+        slots = [slot for slot in self.parts.tree.used_slots.values() if not slot.is_input]
+        choices = (
+            values(slot.variable.domain) if slot.default is None else [slot.default]
+            for slot in slots
+        )
+        names = [slot.variable.name for slot in slots]
+        for row in islice(product(*choices), _MAX_FIRST_VALUES):
+            yield dict(zip(names, row, strict=True))
+
+    def _list_first_states(
+        self, reactions: tuple[_MachineReaction, ...]
+    ) -> Iterator[token_game.State]:
+        """Yield the first states of the performances: those of services may already run."""
+        by_machine = {id(reaction.machine): reaction for reaction in reactions}
+        running: list[set[str]] = [set()]
+        for root in self.parts.roots:
+            if root.machine is not None and root.state is not None:
+                reaction = by_machine[id(root.machine)]
+                machine = root.machine.machine
+                is_running = is_active(machine, reaction.reaction.store, root.state.id)
+                options = [is_running]
+            else:
+                options = [True] if root.first == TRUE else [False, True]
+            running = [
+                ids | ({root.id} if is_running else set())
+                for ids in running
+                for is_running in options
+            ]
+        nothing = token_game.State(frozenset(), frozenset())
+        for ids in running:
+            step = PerformanceStep(self._tokens, nothing, {}, evaluate.is_true)
+            yield step.start_and_stop(ids, set())
+
+    # -- next steps --------------------------------------------------------------------------------
+
+    def successors(
+        self, now: Mapping[str, Literal], inputs: Mapping[str, Literal]
+    ) -> list[Valuation]:
+        state = token_game.state_of(self._tokens, now)
+        step = PerformanceStep(self._tokens, state, now, evaluate.is_true)
+        finished = step.list_finished()
+        writes = list(self._list_writes(finished, now))
+        own_options: _Options = {}
+        for write, value in writes:
+            if self._root_of(write).machine is None:
+                own_options.setdefault(self._name(write), []).append(value)
+        alternatives = [
+            list(self._list_reactions(machine, now, finished, writes))
+            for machine in self.parts.machines
+        ]
+        valuations: list[Valuation] = []
+        for combination in product(*alternatives):
+            options = _merge_options(combination)
+            for name, choices in own_options.items():
+                options[name] = [*options.get(name, []), *choices]
+            states = list(self._list_states(state, now, finished, combination))
+            for written in _choose_values(options):
+                kept = {name: now[name] for name in self._features}
+                after = {**inputs, **kept, **written}
+                for following in states:
+                    valuations.append(
+                        self._complete(
+                            now, after, inputs, combination, following, finished=finished
+                        )
+                    )
+        return _drop_duplicates(valuations)
+
+    def _list_writes(
+        self, finished: set[str], now: Mapping[str, Literal]
+    ) -> Iterator[tuple[PlacedWrite, Literal]]:
+        for write in self.parts.performances.writes:
+            if write.node in finished:
+                for condition, value in write.values:
+                    if evaluate.is_true(condition, now):
+                        yield write, evaluate.value_of(value, now)
+                        break
+
+    def _root_of(self, write: PlacedWrite) -> Root:
+        return next(root for root in self.parts.roots if root.id == write.root)
+
+    def _name(self, write: PlacedWrite) -> str:
+        return self.parts.tree.read_slot(write.slot).variable.name
+
+    def _list_reactions(
+        self,
+        machine: PlacedMachine,
+        now: Mapping[str, Literal],
+        finished: set[str],
+        writes: list[tuple[PlacedWrite, Literal]],
+    ) -> Iterator[_MachineReaction]:
+        """Yield the reactions of a machine after what its do behaviours write in this step."""
+        own_values = _select(machine, now)
+        done_options: _Options = {}
+        for write, value in writes:
+            if self._root_of(write).machine is machine:
+                done_options.setdefault(self._name(write), []).append(value)
+        for root in self.parts.roots:
+            if root.machine is machine and root.state is not None and root.state.done:
+                is_over = bool(now[root.over]) or root.id in finished
+                own_values[root.state.done] = is_over
+        names = {variable: own for own, variable in machine.variables.items()}
+        for seen in _choose_values(done_options):
+            written = {names[name]: value for name, value in seen.items() if name in names}
+            for reaction in machine_interpreter.list_reactions(
+                machine.machine, own_values, written
+            ):
+                yield self._make_reaction(machine, reaction, done_options)
+
+    def _make_reaction(
+        self, machine: PlacedMachine, reaction: Reaction, done_options: _Options
+    ) -> _MachineReaction:
+        assigned = {
+            machine.variables[name]: [reaction.store[name]]
+            for name in reaction.assigned
+            if name in machine.slots
+        }
+        return _MachineReaction(machine, reaction, {**done_options, **assigned})
+
+    def _list_states(
+        self,
+        state: token_game.State,
+        now: Mapping[str, Literal],
+        finished: set[str],
+        reactions: tuple[_MachineReaction, ...],
+    ) -> Iterator[token_game.State]:
+        """Yield the states of the performances after one step with these reactions."""
+        by_machine = {id(reaction.machine): reaction for reaction in reactions}
+        starts: set[str] = set()
+        stops: set[str] = set()
+        for root in self.parts.roots:
+            if root.machine is not None and root.state is not None:
+                reaction = by_machine[id(root.machine)]
+                starts |= {root.id} if reaction.enters(root.state) else set()
+                stops |= {root.id} if reaction.leaves(root.state) else set()
+            elif root.service and now[root.service]:
+                is_free = root.id not in state.running or root.id in finished
+                starts |= {root.id} if is_free else set()
+        worklist: list[list[int]] = [[]]
+        states: dict[token_game.State, None] = {}
+        while worklist:
+            plan = token_game.BranchPlan(worklist.pop())
+            step = PerformanceStep(self._tokens, state, now, evaluate.is_true, plan.choose)
+            states[step.start_and_stop(starts, stops)] = None
+            worklist += plan.list_alternatives()
+        yield from states
+
+    def _complete(
+        self,
+        now: Mapping[str, Literal],
+        after: Mapping[str, Literal],
+        inputs: Mapping[str, Literal],
+        reactions: tuple[_MachineReaction, ...],
+        state: token_game.State,
+        *,
+        finished: set[str] | None = None,
+        is_first: bool = False,
+    ) -> Valuation:
+        """Return the valuation of all variables; *after* has the inputs and the features."""
+        valuation: Valuation = {**inputs, **after, **token_game.values_of(self._tokens, state)}
+        for entry in reactions:
+            machine = entry.machine
+            names = machine.variables
+            features = {name: after[names[name]] for name in machine.slots}
+            reaction = entry.reaction
+            store = {**reaction.store, **features}
+            own = machine_interpreter.complete_valuation(
+                machine.machine,
+                _select(machine, now),
+                Reaction(store, reaction.raised, reaction.picked, reaction.left_states),
+                {**_select(machine, after), **features},
+                is_first,
+            )
+            ends = {vertex.done for vertex in machine.machine.list_states() if vertex.done}
+            valuation |= {
+                names[name]: value
+                for name, value in own.items()
+                if name in names and name not in ends and name != EVENT
+            }
+            for root in self.parts.roots:
+                if root.machine is machine and root.state is not None and root.over:
+                    is_over = not is_first and (
+                        bool(now[root.over]) or root.id in (finished or set())
+                    )
+                    is_moved = entry.enters(root.state) or entry.leaves(root.state)
+                    valuation[root.over] = is_over and not is_moved
+        return self._receive(valuation)
+
+    def _receive(self, valuation: Valuation) -> Valuation:
+        """Return the valuation with the messages that are received in the step."""
+        received = {
+            name: valuation[event] == literal for name, (event, literal) in self.messages.items()
+        }
+        return {**valuation, **received}
+
+
+def open_component(graph: Graph, subject: Element) -> ComponentPlayer | None:
+    """Return the player of a block; None if not all that it does is known.
+
+    Parameters of calls and signals between parts are not played yet.
+    """
+    name = query.component_name(graph, subject)
+    try:
+        component = Component(graph, subject, MachineOptions())
+        for object_ in component.tree.objects:
+            for label, feature in component.tree.context(object_).features.items():
+                # Of features without an initial value, those that behaviours name are enough.
+                if feature.default is not None and not feature.is_constant:
+                    component.tree.read_slot(component.tree.slot_of(object_.path, label))
+        behaviour = describe_component(component, name)
+        wiring = derive_events(component)
+    except ComponentError:
+        return None
+    messages = dict(filter(None, map(_read_message, wiring.conjuncts)))
+    has_parameters = component.performances.locals or any(
+        copy.parameters for copy in component.performances.copies.values()
+    )
+    is_unclear = behaviour.gaps or has_parameters or component.performances.quiets
+    if is_unclear or len(messages) < len(wiring.conjuncts):
+        return None
+    return ComponentPlayer(graph, component, behaviour, name, messages)
+
+
+def _read_message(conjunct: Conjunct) -> tuple[str, tuple[str, str]] | None:
+    """Return a variable of an acceptance, and the event and the literal that it stands for."""
+    match conjunct.formula:
+        case Apply(Op.IFF, (Var(name), Apply(Op.EQ, (Var(event), Const(literal))))):
+            return name, (event, str(literal))
+        case _:
+            return None
+
+
+def _select(machine: PlacedMachine, valuation: Mapping[str, Literal]) -> Valuation:
+    """Return the values of the machine's own variables."""
+    return {
+        own: valuation[variable]
+        for own, variable in machine.variables.items()
+        if variable in valuation
+    }
+
+
+def _merge_options(reactions: tuple[_MachineReaction, ...]) -> _Options:
+    options: _Options = {}
+    for reaction in reactions:
+        for name, choices in reaction.options.items():
+            options[name] = [*options.get(name, []), *choices]
+    return options
+
+
+def _choose_values(options: _Options) -> Iterator[Valuation]:
+    """Yield each choice of one value for each feature."""
+    for row in product(*(dict.fromkeys(choices) for choices in options.values())):
+        yield dict(zip(options, row, strict=True))
+
+
+def _drop_duplicates(valuations: list[Valuation]) -> list[Valuation]:
+    distinct = {frozenset(valuation.items()): valuation for valuation in valuations}
+    return list(distinct.values())

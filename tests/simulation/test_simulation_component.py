@@ -1,0 +1,160 @@
+"""Scenarios of blocks with everything that they perform, call and contain."""
+
+from random import Random
+
+import pytest
+
+from contract_oracle import list_models
+from sysmlc import compile_model
+from sysmlc.diagnostics import Sink
+from sysmlc.logic import evaluate
+from sysmlc.logic.contract import Class, Owner
+from sysmlc.logic.domains import values
+from sysmlc.simulation import run_scenarios
+from sysmlc.simulation.components import open_component
+from sysmlc.sources import Source
+
+CELL = """package P {
+private import ScalarValues::*;
+item def Go; item def Halt;
+part def Cell {
+    attribute gripped : Boolean := false;
+    attribute held : Boolean := false;
+    action pick {
+        first start then close;
+        action close;
+        then grip;
+        action grip assign gripped := true;
+        then done;
+    }
+    exhibit state M {
+        entry; then Idle;
+        state Idle;
+        transition first Idle accept Go then Busy;
+        state Busy { do pick; }
+        transition first Busy accept Halt then Idle;
+        transition first Busy if gripped do assign held := gripped then Full;
+        transition first Busy then Idle;
+        state Full;
+    }
+}
+}
+"""
+
+
+@pytest.fixture
+def play(tmp_path):
+    """Return a function that plays a scenario of a model and returns the result."""
+
+    def run(model, scenario):
+        path = tmp_path / "model.sysml"
+        path.write_text(model, "utf-8")
+        sink = Sink()
+        source = Source("s.yaml", scenario.encode())
+        report = run_scenarios(compile_model(path).graph, source, sink)
+        assert list(sink) == []
+        return report
+
+    return run
+
+
+def test_a_state_waits_for_the_end_of_the_activity_that_it_performs(play):
+    scenario = """component: P::Cell
+steps:
+  - inputs: {event: Go}
+    expect: {state: Idle, run_pick: false}
+  - expect: {state: Busy, run_pick: true, pick_run_close: false}
+  - inputs: {pick_done_close: true}
+    expect: {pick_run_close: true}
+  - expect: {pick_run_close: false, gripped: false}
+  - expect: {pick_run_grip: true, run_pick: true, state: Busy}
+  - expect: {state: Full, gripped: true, held: true, run_pick: false}
+"""
+    # The guard reads the value before the last assignment, so that this completion loses.
+    assert not play(CELL, scenario).passed
+    lost = scenario.replace("state: Full, gripped: true, held: true", "state: Idle, gripped: true")
+    assert play(CELL, lost).passed
+
+
+def test_an_effect_reads_what_the_do_behaviour_assigns_in_its_last_step(play):
+    model = CELL.replace("if gripped do", "do").replace("transition first Busy then Idle;", "")
+    scenario = """component: Cell
+steps:
+  - inputs: {event: Go}
+  - {}
+  - inputs: {pick_done_close: true}
+  - {}
+  - expect: {pick_run_grip: true, held: false}
+  - expect: {state: Full, gripped: true, held: true}
+"""
+    assert play(model, scenario).passed
+
+
+def test_leaving_a_state_stops_what_it_performs(play):
+    scenario = """component: Cell
+steps:
+  - inputs: {event: Go}
+  - expect: {run_pick: true}
+  - inputs: {event: Halt}
+    expect: {pick_run_close: true}
+  - inputs: {pick_done_close: true}
+    expect: {state: Idle, run_pick: false, pick_run_close: false}
+  - repeat: 3
+    expect: {pick_run_grip: false, gripped: false}
+"""
+    assert play(CELL, scenario).passed
+
+
+def test_what_a_part_performs_runs_once(play):
+    model = """package P {
+private import ScalarValues::*;
+part def Line {
+    attribute x : Boolean := false;
+    perform action one { first start; then action set assign x := true; then done; }
+    perform action two { first start; then action wait; then done; }
+}
+}
+"""
+    scenario = """component: Line
+steps:
+  - expect: {run_one: true, run_two: true}
+  - inputs: {two_done_wait: true}
+    expect: {run_set: true, two_run_wait: true}
+  - repeat: 4
+    expect: {x: true, run_one: false, run_two: false}
+"""
+    assert play(model, scenario).passed
+
+
+# -- against the derivation ------------------------------------------------------------------------
+
+MODELS = list_models()
+NOT_PLAYED = {"call_parameters", "signals_parts"}
+"""Models with parameters of calls, and with signals between parts."""
+
+
+@pytest.mark.skipif(not MODELS, reason="SYSMLC_CORPUS names no folder")
+@pytest.mark.parametrize("model", MODELS, ids=lambda model: model.path.stem)
+def test_every_step_of_the_player_is_a_step_of_the_derived_relation(model):
+    graph = compile_model(model.path).graph
+    block = next(element for element in graph if graph.qualified_name(element) == model.component)
+    player = open_component(graph, block)
+    assert (player is None) == (model.path.stem in NOT_PLAYED)
+    if player is None:
+        return
+    random = Random(0)
+    inputs = [variable for variable in player.variables if variable.owner is Owner.ENVIRONMENT]
+    guarantees = player.behaviour.contract.guarantees
+    starts = [item.formula for item in guarantees if item.class_ is Class.INIT]
+    steps = [item.formula for item in guarantees if item.class_ is Class.SAFETY]
+
+    def draw():
+        return {variable.name: random.choice(values(variable.domain)) for variable in inputs}
+
+    for _ in range(5):
+        now = random.choice(player.initial(draw()))
+        assert all(evaluate.is_true(formula, now) for formula in starts)
+        for _ in range(12):
+            following = random.choice(player.successors(now, draw()))
+            assert all(evaluate.is_true(formula, now, following) for formula in steps)
+            now = following
