@@ -6,7 +6,8 @@ models explains the atoms.
 
 import json
 import os
-from collections.abc import Mapping
+import re
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from msgspec import Struct
@@ -62,13 +63,30 @@ def _read_model(path: Path) -> OracleModel:
     )
 
 
-def require(model: OracleModel, formulas: Mapping[str, str]) -> str:
-    """Return the text of the model with one requirement for each named formula."""
+def require(model: OracleModel) -> str:
+    """Return the text of the model with a requirement about its component for each property."""
+    subject = f"subject it : {model.component.partition('::')[2]};"
+    return _add_members(model.text, _write_requirements(model, "requirement def", subject))
+
+
+def satisfy(model: OracleModel) -> str:
+    """Return the text of the model with a requirement for each property, which it satisfies.
+
+    SysML v1 states the subject of a requirement in this way.
+    """
     subject = model.component.partition("::")[2]
-    lines = (
-        f"    requirement def R_{name} {{ subject it : {subject}; require constraint {name} "
-        f'{{ language "ltl" /* {formula} */ }} }}'
-        for name, formula in formulas.items()
-    )
-    head, _, _ = model.text.rstrip().rpartition("}")
+    names = " ".join(f"satisfy R_{item.name};" for item in model.properties)
+    text, count = re.subn(rf"def {subject}\b[^{{]*{{", rf"\g<0> {names}", model.text, count=1)
+    assert count == 1
+    return _add_members(text, _write_requirements(model, "requirement", ""))
+
+
+def _write_requirements(model: OracleModel, keyword: str, subject: str) -> Iterator[str]:
+    for item in model.properties:
+        constraint = f'require constraint {item.name} {{ language "ltl" /* {item.ltl} */ }}'
+        yield f"    {keyword} R_{item.name} {{ {subject} {constraint} }}"
+
+
+def _add_members(text: str, lines: Iterable[str]) -> str:
+    head, _, _ = text.rstrip().rpartition("}")
     return "\n".join((head.rstrip(), *lines, "}", ""))
