@@ -62,10 +62,24 @@ def write_attributes(context: Context, element: Element) -> None:
             _write_feature(context, element, key, value)
         elif key in _STORED and round_trip is not None:
             round_trip.store_attribute(element, key)
+    if _is_bound_pin(element):
+        context.losses.record_attribute(element, "value_kind")
     language = element.attrs.get("language")
     if language and "body" not in element.attrs and element.kind is not Kind.CONSTRAINT:
         # An opaque element without a body.
         context.find_node(element).add(Node("language", text=format_value(language)))
+
+
+def _is_bound_pin(element: Element) -> bool:
+    """Whether a pin equals a value that may change, which UML evaluates only at the start."""
+    attrs = element.attrs
+    return (
+        element.kind is Kind.PIN
+        and "value" in attrs
+        and "value_kind" not in attrs
+        and not isinstance(attrs["value"], bool | int | float)
+        and "value_literal" not in attrs
+    )
 
 
 def _is_expressed_otherwise(context: Context, element: Element, key: str) -> bool:
@@ -76,6 +90,9 @@ def _is_expressed_otherwise(context: Context, element: Element, key: str) -> boo
         return True
     if key == "unit" and element.role == "value type":
         return True
+    if key == "value_kind" and element.kind is Kind.PIN:
+        # The value of a ValuePin is evaluated when the action starts.
+        return element.attrs[key] == "initial"
     return key in _FROM_TAGS and _has_tags(context, element, key)
 
 

@@ -79,6 +79,9 @@ def _imply_attributes(
     elif kind is Kind.PIN:
         attributes["direction"] = v.PIN_DIRECTIONS[type_name]
         attributes["subkind"] = metaclasses.to_kebab_case(feature)
+        if type_name == "ValuePin":
+            # Its value is evaluated when the action starts (UML 2.5.1, 16.2.3.3), not bound to it.
+            attributes["value_kind"] = "initial"
     elif kind is Kind.PSEUDOSTATE and type_name == "Pseudostate":
         attributes["subkind"] = "initial"
     elif kind is Kind.STRUCTURED and subkind == "expansion":
