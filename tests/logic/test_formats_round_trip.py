@@ -4,6 +4,7 @@ import json
 import re
 
 import jsonschema
+import msgspec
 import pytest
 import spot
 from hypothesis import given, settings
@@ -12,6 +13,7 @@ from random_contracts import canonicalise, contracts
 from long_runs import examples
 from sysmlc.diagnostics import Sink
 from sysmlc.logic import formats
+from sysmlc.logic.contract import Class, mark_derived
 from sysmlc.logic.formats import NotExpressibleError
 from sysmlc.support import resources
 
@@ -48,6 +50,23 @@ def test_a_formula_of_spin_is_read_again_except_for_ranges(contract):
     lines = [file.splitlines()[0] for file in (text, formats.write(again, "spin"))]
     formulas = [re.sub(r"\{(.*?)\}", r'"\1"', line) for line in lines]
     assert spot.are_equivalent(*map(spot.formula, formulas))
+
+
+@given(contract=contracts)
+@settings(max_examples=examples(40), deadline=None)
+def test_the_model_in_an_smv_file_is_read_as_derived_steps(contract):
+    derived = mark_derived(contract)
+    text = formats.write(derived, "smv")
+    sink = Sink()
+    (again,) = formats.read(text, "Gate.smv", sink)
+    assert [diagnostic.message for diagnostic in sink] == []
+    lowered = formats.lower(derived, "smv")
+    if "LTLSPEC" not in text:  # assumptions for no requirement are a comment
+        recurring = [item for item in lowered.assumptions if item.class_ is Class.LIVENESS]
+        lowered = msgspec.structs.replace(lowered, assumptions=tuple(recurring))
+    assert canonicalise(again) == canonicalise(lowered)
+    steps = [item for item in again.guarantees if item.class_ in (Class.INIT, Class.SAFETY)]
+    assert all(item.is_derived for item in steps)
 
 
 SCHEMAS = {"neutral": "neutral-contract", "chasejson": "chase-contract"}

@@ -1,19 +1,25 @@
 """Back ends that write contracts in the formats of other tools (``logic.formats``).
 
-``chase``, ``gr1c``, ``slugs``, ``smv``, ``spot`` and ``tlsf`` are the targets of ``--emit``.
+``chase``, ``gr1c``, ``promela``, ``slugs``, ``smv``, ``spot`` and ``tlsf`` are the targets of
+``--emit``. ``promela`` and ``smv`` describe the behaviour as a model and check the requirements on
+it; the other formats have the contract as a formula.
 """
 
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Mapping
 
 from msgspec import Struct
+from msgspec.structs import replace
 
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.contracts import list_traced_elements
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.ir import Graph
 from sysmlc.logic import formats
-from sysmlc.logic.contract import Contract
+from sysmlc.logic.components.derivation import ComponentBehaviour
+from sysmlc.logic.contract import Class, Contract
 from sysmlc.logic.formats import NotExpressibleError
+from sysmlc.logic.formula import variables
 from sysmlc.logic.printing import print_formula
 from sysmlc.support.output import Output, assign_file_names
 
@@ -27,6 +33,10 @@ NOT_EXPRESSIBLE = rule(
     "requirement as a property pattern",
 )
 
+_SUFFIX = ".requirements"
+"""End of the name of a contract whose requirements a behaviour has to satisfy."""
+_NOT_IN_COMMENTS = re.compile(r"[^ \w.,:;!=<>()&|'+-]")
+
 
 class ContractFormatBackend(Struct, frozen=True):
     """Writes every contract in one or more formats of one tool."""
@@ -37,14 +47,26 @@ class ContractFormatBackend(Struct, frozen=True):
     """Name of each format, and the suffix of its files."""
     split: Callable[[str], dict[str, str]] | None = None
     """Distributes the text of a format to several files, which are returned by suffix."""
+    comment: str = ""
+    """Spelling of a comment with text ``{}``, for formats that describe the behaviour itself."""
     is_default: bool = False
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add the files of each contract; report contracts that a format cannot express."""
         contracts = graph.derived(Contract)
         names = assign_file_names(contract.component for contract in contracts)
+        behaviours = {
+            behaviour.contract.component: behaviour
+            for behaviour in graph.derived(ComponentBehaviour)
+            if self.comment
+        }
         for contract in contracts:
             trace = tuple(list_traced_elements(graph, contract))
+            notes = ""
+            behaviour = _find_behaviour(contract, behaviours)
+            if behaviour is not None:
+                notes = "".join(map(self._print_gap, behaviour.gaps.values()))
+                contract = add_behaviour(contract, behaviour)
             for format_name, suffix in self.formats:
                 try:
                     text = formats.write(contract, format_name)
@@ -54,7 +76,51 @@ class ContractFormatBackend(Struct, frozen=True):
                 texts = self.split(text) if self.split else {suffix: text}
                 for file_suffix, file_text in texts.items():
                     path = f"contracts/{names[contract.component]}{file_suffix}"
-                    output.add(path, file_text, trace, self.name)
+                    output.add(path, notes + file_text, trace, self.name)
+
+    def _print_gap(self, reason: str) -> str:
+        text = _NOT_IN_COMMENTS.sub(
+            "_", f"not described, so that a violation may be none: {reason}"
+        )
+        return f"{self.comment.format(text)}\n"
+
+
+def _find_behaviour(
+    contract: Contract, behaviours: Mapping[str, ComponentBehaviour]
+) -> ComponentBehaviour | None:
+    """Return the behaviour that has to satisfy a contract of requirements, or None."""
+    component = contract.component.removesuffix(_SUFFIX)
+    behaviour = behaviours.get(component)
+    is_of_requirements = component != contract.component or (
+        behaviour is not None and behaviour.is_of_parts
+    )
+    return behaviour if is_of_requirements else None
+
+
+def add_behaviour(requirements: Contract, behaviour: ComponentBehaviour) -> Contract:
+    """Return the steps of a behaviour, its recurring assumptions, and the requirements on it."""
+    contract = behaviour.contract
+    names = {variable.name for variable in contract.variables}
+    added = (variable for variable in requirements.variables if variable.name not in names)
+    assumed = (
+        conjunct
+        for conjunct in requirements.assumptions
+        # Something that is not described decides the initial value of such a variable.
+        if not conjunct.is_derived
+        or behaviour.gaps.keys().isdisjoint(v.name for v in variables(conjunct.formula))
+    )
+    steps = (
+        conjunct
+        for conjunct in contract.guarantees
+        if conjunct.is_derived and conjunct.class_ in (Class.INIT, Class.SAFETY)
+    )
+    endings = (conjunct for conjunct in contract.assumptions if conjunct.is_derived)
+    return replace(
+        requirements,
+        variables=(*contract.variables, *added),
+        assumptions=(*endings, *assumed),
+        guarantees=(*steps, *requirements.guarantees),
+    )
 
 
 def _report_not_expressible(
@@ -91,7 +157,18 @@ SLUGS = ContractFormatBackend(
     "contracts for slugs (.structuredslugs, .slugsin)",
     (("structured", ".structuredslugs"), ("slugsin", ".slugsin")),
 )
-SMV = ContractFormatBackend("smv", "contracts for NuSMV and nuXmv (.smv)", (("smv", ".smv"),))
+PROMELA = ContractFormatBackend(
+    "promela",
+    "behaviours with their requirements for SPIN (.pml)",
+    (("promela", ".pml"),),
+    comment="/* {} */",
+)
+SMV = ContractFormatBackend(
+    "smv",
+    "behaviours with their requirements for NuSMV and nuXmv (.smv)",
+    (("smv", ".smv"),),
+    comment="-- {}",
+)
 SPOT = ContractFormatBackend(
     "spot", "contracts for Spot (.spot.ltl, .spot.part)", (("spot", ".spot.ltl"),), _split_spot
 )

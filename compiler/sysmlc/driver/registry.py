@@ -51,6 +51,7 @@ _BACKENDS = {
     "smv": "sysmlc.backends.contract_formats:SMV",
     "chase": "sysmlc.backends.contract_formats:CHASE",
     "spot": "sysmlc.backends.contract_formats:SPOT",
+    "promela": "sysmlc.backends.contract_formats:PROMELA",
 }
 """Module and variable of each shipped back end, by name."""
 _DEFAULT = frozenset({"contracts", "recipe", "platform", "plantuml"})

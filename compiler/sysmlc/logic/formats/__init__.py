@@ -54,6 +54,7 @@ FORMATS = {
     "tlsf": Format("tlsf", (".tlsf",), r"^\s*INFO\s*\{"),
     "gr1c": Format("gr1c", (".spc",), r"^\s*(ENV|SYS)\s*:"),
     "spectra": Format("spectra", (".spectra",), r"^\s*(module|spec)\s+\w+\s", is_written=False),
+    "promela": Format("promela", (".pml",), is_read=False),
     "spin": Format("spin", (".spin.ltl",), r"^[^\n]*(\[\]|<>)"),
 }
 """The formats by name, in the order of detection: an earlier signature wins."""

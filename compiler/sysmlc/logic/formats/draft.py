@@ -17,7 +17,7 @@ from msgspec.structs import replace
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.logic import formula as f
 from sysmlc.logic.classification import classify, convert_to_class
-from sysmlc.logic.contract import Class, Conjunct, Contract, Domain, Owner, Variable
+from sysmlc.logic.contract import Class, Conjunct, Contract, Domain, Owner, Source, Variable
 from sysmlc.logic.formats import rules
 from sysmlc.logic.formula import Formula, Op
 from sysmlc.logic.infix import FormulaReader
@@ -144,7 +144,13 @@ class ContractDraft:
         return True
 
     def add(
-        self, owner: Owner, class_: Class, formula: Formula, offset: int, text: str = ""
+        self,
+        owner: Owner,
+        class_: Class,
+        formula: Formula,
+        offset: int,
+        text: str = "",
+        source: Source = Source.AUTHOR,
     ) -> None:
         """Add a conjunct whose section determines its class; report one that cannot have it."""
         step = convert_to_class(formula, class_)
@@ -155,7 +161,7 @@ class ContractDraft:
             self._report_wrong_class(owner, class_, formula, offset, reason)
         elif step != f.TRUE:
             origin = self.file.origin_at(offset)
-            self._conjuncts[owner].append(Conjunct(step, class_, origin, text))
+            self._conjuncts[owner].append(Conjunct(step, class_, origin, text, source=source))
 
     def add_classified(self, owner: Owner, class_: Class, formula: Formula, offset: int) -> None:
         """Add the conjuncts of a formula in LTL; report those that are not of the class."""

@@ -266,3 +266,23 @@ def _build_at_most(bits: list[Var], value: int) -> Formula:
         is_off = f.negate(bit)
         at_most = f.either(is_off, at_most) if value >> index & 1 else f.both(is_off, at_most)
     return at_most
+
+
+# -- sizes of numbers ------------------------------------------------------------------------------
+
+
+def measure_numbers(formula: Formula, variable_domains: Domains) -> int:
+    """Return a bound for the absolute values of all numbers in a formula."""
+    match formula:
+        case Const(int(value)) if not isinstance(value, bool):
+            return abs(value)
+        case Var(name):
+            domain = variable_domains[name]
+            return max(-domain.low, domain.high) if isinstance(domain, IntegerDomain) else 0
+        case Apply(op, args):
+            bounds = [measure_numbers(arg, variable_domains) for arg in args]
+            if op is Op.MUL:
+                return max(*bounds, bounds[0] * bounds[1])
+            return sum(bounds) if op in (Op.ADD, Op.SUB) else max(bounds)
+        case _:
+            return 0

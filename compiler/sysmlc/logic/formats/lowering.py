@@ -126,7 +126,7 @@ def rename_reserved(contract: Contract, reserved: Iterable[str]) -> Contract:
     words = frozenset(reserved)
     names = _assign_names([variable.name for variable in contract.variables], words)
     taken = words | {*names, *names.values()}
-    literals = _assign_names(_list_literals(contract), taken)
+    literals = _assign_names(list_literals(contract), taken)
     variables = [
         replace(
             variable,
@@ -146,18 +146,14 @@ def rename_ambiguous_literals(contract: Contract) -> Contract:
     In ``state=red``, ``red`` could otherwise be the literal or the variable.
     """
     names = {variable.name for variable in contract.variables}
-    is_ambiguous = not names.isdisjoint(_list_literals(contract))
+    is_ambiguous = not names.isdisjoint(list_literals(contract))
     return rename_reserved(contract, ()) if is_ambiguous else contract
 
 
-def _list_literals(contract: Contract) -> Iterable[str]:
+def list_literals(contract: Contract) -> list[str]:
     """Return the literals of all enumerations; a literal of two enumerations occurs once."""
-    return dict.fromkeys(
-        literal
-        for variable in contract.variables
-        if isinstance(variable.domain, EnumerationDomain)
-        for literal in variable.domain.literals
-    )
+    enumerations = [v.domain for v in contract.variables if isinstance(v.domain, EnumerationDomain)]
+    return list(dict.fromkeys(literal for domain in enumerations for literal in domain.literals))
 
 
 def _assign_names(names: Iterable[str], words: frozenset[str]) -> dict[str, str]:
@@ -356,6 +352,19 @@ def _fold_unreachable(comparison: Formula, variable_domains: Domains) -> Formula
             return _fold_unreachable(mirrored, variable_domains)
         case _:
             return comparison
+
+
+def has_partial_division(formula: Formula) -> bool:
+    """Whether it divides by something that can be 0, for which other languages have no value."""
+    match formula:
+        case Apply(Op.DIV | Op.MOD, (_, divisor)) if (
+            not isinstance(divisor, Const) or divisor.value == 0
+        ):
+            return True
+        case Apply(_, args):
+            return any(map(has_partial_division, args))
+        case _:
+            return False
 
 
 def _build_equality(variable: Var, value: Literal) -> Formula:

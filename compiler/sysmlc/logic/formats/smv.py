@@ -1,26 +1,35 @@
-"""SMV (NuSMV, nuXmv): variables with types, and the contract as one LTLSPEC.
+"""SMV (NuSMV, nuXmv): the behaviour as a model, and the requirements as LTLSPEC.
 
-A comment behind a variable, ``-- input`` or ``-- output``, names its owner. NuSMV's LTL does not
-allow a next value inside a comparison, so a comparison of a current with a next value is expanded.
+INIT, INVAR and TRANS are the steps that the compiler derives from the model, JUSTICE the recurring
+assumptions. A comment behind a variable, ``-- input`` or ``-- output``, names its owner. NuSMV's
+LTL does not allow a next value inside a comparison, so that in LTLSPEC a comparison of a current
+with a next value becomes cases.
 """
 
 import re
 from pathlib import PurePath
 
+from msgspec.structs import replace
+
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import (
     BooleanDomain,
     Class,
+    Conjunct,
     Contract,
     Domain,
     EnumerationDomain,
     IntegerDomain,
     Owner,
+    Source,
     Variable,
+    drop_trivial,
 )
 from sysmlc.logic.formats.draft import ContractDraft, SpecificationFile
 from sysmlc.logic.formats.lowering import (
     eliminate_weak_until,
+    expand_comparison,
+    has_partial_division,
     index_domains,
     rename_reserved,
     rewrite_conjuncts,
@@ -34,8 +43,13 @@ from sysmlc.logic.formats.writing import (
     add_next_operator,
     apply_lowering,
     convert_to_word,
+    is_recurring,
+    is_step,
+    print_ltl_conjunct,
+    remove_primes,
 )
 from sysmlc.logic.formula import Apply, Formula, Op, Var
+from sysmlc.logic.identifiers import Names
 from sysmlc.logic.infix import FormulaReader, Term
 from sysmlc.logic.syntax import (
     ARITHMETIC_SIGNS,
@@ -69,7 +83,14 @@ SYNTAX = Syntax(
 )
 _OWNERS = {"input": Owner.ENVIRONMENT, "output": Owner.SYSTEM}
 _OWNER_COMMENT = re.compile(r"[^\n]*?--\s*(input|output)\b")
-_SECTIONS = ("MODULE", "VAR", "IVAR", "LTLSPEC")
+_CONDITIONS = {
+    "INIT": (Owner.SYSTEM, Class.INIT),
+    "INVAR": (Owner.SYSTEM, Class.SAFETY),
+    "TRANS": (Owner.SYSTEM, Class.SAFETY),
+    "JUSTICE": (Owner.ENVIRONMENT, Class.LIVENESS),
+}
+"""Sections with a condition, each with the owner and class of the conjunct that it states."""
+_SECTIONS = ("MODULE", "VAR", "IVAR", "LTLSPEC", *_CONDITIONS)
 _KEYWORDS = frozenset(
     re.findall(
         r"\w+",
@@ -90,17 +111,18 @@ _RESERVED = _KEYWORDS | {*SYNTAX.prefix, *SYNTAX.infix, *BOOLEANS}
 def read(file: SpecificationFile) -> tuple[Contract, ...]:
     """Return the contract of the file's main module, or nothing if a fault was reported.
 
-    The name of the last LTLSPEC, else of the file, is the name of the contract.
+    The name of the only LTLSPEC, else of the file, is the name of the contract.
     """
     draft = ContractDraft(file, "SMV")
     cursor = Cursor(tokenize(file.text, SYNTAX))
-    names = [PurePath(file.path).stem]
+    specifications: dict[str, Formula] = {}
     while not cursor.is_at_end:
-        draft.read_statement(cursor, lambda: _read_section(draft, cursor, names), ";")
-    return draft.build(names[-1])
+        draft.read_statement(cursor, lambda: _read_section(draft, cursor, specifications), ";")
+    only_name = "".join(specifications) if len(specifications) == 1 else ""
+    return draft.build(only_name or PurePath(file.path).stem)
 
 
-def _read_section(draft: ContractDraft, cursor: Cursor, names: list[str]) -> None:
+def _read_section(draft: ContractDraft, cursor: Cursor, specifications: dict[str, Formula]) -> None:
     title = cursor.expect_kind("name", "a section")
     if title.text == "MODULE":
         cursor.expect_kind("name", "a name")
@@ -108,7 +130,9 @@ def _read_section(draft: ContractDraft, cursor: Cursor, names: list[str]) -> Non
         while cursor.next.kind == "name" and cursor.after_next.text == ":":
             _read_declaration(draft, cursor)
     elif title.text == "LTLSPEC":
-        _read_specification(draft, cursor, names)
+        _read_specification(draft, cursor, specifications)
+    elif title.text in _CONDITIONS:
+        _read_condition(draft, cursor, *_CONDITIONS[title.text])
     else:
         draft.report_outside(title.offset, f"'{title.text}'")
         cursor.skip_to(*_SECTIONS)
@@ -147,19 +171,41 @@ def _read_type(cursor: Cursor) -> Domain:
     return IntegerDomain(low, high)
 
 
-def _read_specification(draft: ContractDraft, cursor: Cursor, names: list[str]) -> None:
+def _read_condition(draft: ContractDraft, cursor: Cursor, owner: Owner, class_: Class) -> None:
+    def read() -> None:
+        offset = cursor.next.offset
+        formula = _SmvReader(cursor, SYNTAX, draft.domains).read_formula()
+        _expect_end(cursor)
+        draft.add(owner, class_, formula, offset, source=Source.DERIVED)
+
+    if not draft.read_formula(owner, class_, read):
+        cursor.skip_to(";")
+    cursor.accept(";")
+
+
+def _read_specification(
+    draft: ContractDraft, cursor: Cursor, specifications: dict[str, Formula]
+) -> None:
+    """Read a requirement, and record its assumptions under its name."""
+    name = f"{len(specifications) + 1}" if specifications else ""
     if cursor.accept("NAME"):
-        names.append(cursor.expect_kind("name", "a name").text)
+        name = cursor.expect_kind("name", "a name").text
         cursor.expect(":=")
 
     def read() -> None:
-        read_sides(draft, _SmvReader(cursor, SYNTAX, draft.domains))
-        if not cursor.is_next(";") and not cursor.is_at_end:
-            cursor.fail("';' is expected")
+        assumed = next(iter(specifications.values()), None)
+        reader = _SmvReader(cursor, SYNTAX, draft.domains)
+        specifications[name] = read_sides(draft, reader, assumed)
+        _expect_end(cursor)
 
     if not draft.read_formula(Owner.SYSTEM, Class.OTHER, read):
         cursor.skip_to(";")
     cursor.accept(";")
+
+
+def _expect_end(cursor: Cursor) -> None:
+    if not cursor.is_next(";") and not cursor.is_at_end:
+        cursor.fail("';' is expected")
 
 
 class _SmvReader(FormulaReader):
@@ -177,31 +223,64 @@ class _SmvReader(FormulaReader):
 
 
 def lower(contract: Contract, format_name: str) -> Contract:
-    """Return the contract without weak until and without comparisons across a step.
+    """Return the contract without weak until and, outside TRANS, comparisons across a step.
 
     Raises NotExpressibleError.
     """
-    lowered = rewrite_conjuncts(rename_reserved(contract, _RESERVED), eliminate_weak_until)
-    return apply_lowering(lowered, format_name, _separate_steps)
+    renamed = rename_reserved(contract, _RESERVED)
+    lowered = rewrite_conjuncts(renamed, eliminate_weak_until)
+    return apply_lowering(lowered, format_name, _lower_atoms)
 
 
-def _separate_steps(contract: Contract) -> Contract:
+def _lower_atoms(contract: Contract) -> Contract:
     domains = index_domains(contract)
-    return rewrite_contract_atoms(contract, lambda atom: separate_steps(atom, domains))
+    divided = rewrite_contract_atoms(
+        contract,
+        lambda atom: expand_comparison(atom, domains) if has_partial_division(atom) else atom,
+    )
+    separate = rewrite_contract_atoms(divided, lambda atom: separate_steps(atom, domains))
+    pairs = zip(divided.guarantees, separate.guarantees, strict=True)
+    guarantees = tuple(whole if is_step(whole) else cases for whole, cases in pairs)
+    return replace(separate, guarantees=guarantees)
 
 
 def write(contract: Contract, format_name: str) -> str:
-    """Return a module whose LTLSPEC is that the assumptions imply the guarantees."""
+    """Return a module with the behaviour and, for each requirement on it, an LTLSPEC.
+
+    A contract without behaviour is one LTLSPEC: the assumptions imply the guarantees.
+    """
     lowered = lower(contract, format_name)
-    specification = print_implication(lowered, _NOTATION, format_name)
-    name = convert_to_word(contract.component)
+    steps = [item for item in drop_trivial(lowered.guarantees) if is_step(item)]
+    claims = tuple(item for item in lowered.guarantees if not is_step(item))
+    justice = [item for item in lowered.assumptions if is_recurring(item) and item.is_derived]
+    assumed = tuple(item for item in lowered.assumptions if item not in justice)
     lines = [
         "MODULE main",
         "VAR",
         *map(_print_declaration, lowered.variables),
-        f"LTLSPEC NAME {name} := {specification};",
+        *(f"{_name_section(item)} {_MODEL.print(item.formula)};" for item in steps),
+        *(f"JUSTICE {_MODEL.print(item.formula)};" for item in justice),
     ]
+    name = convert_to_word(contract.component)
+    names = Names(*index_domains(lowered), *_RESERVED, name)
+    groups: list[tuple[str, tuple[Conjunct, ...]]] = [
+        (names.new(item.viewpoint or name), (item,)) for item in claims
+    ]
+    if not steps or len(claims) == 1:
+        groups = [(name, claims)]
+    if not groups:
+        lines += (f"-- assumed: {print_ltl_conjunct(format_name, _NOTATION, a)}" for a in assumed)
+    for title, group in groups:
+        formula = replace(lowered, assumptions=assumed, guarantees=group)
+        specification = print_implication(formula, _NOTATION, format_name)
+        lines.append(f"LTLSPEC NAME {title} := {specification};")
     return "\n".join([*lines, ""])
+
+
+def _name_section(conjunct: Conjunct) -> str:
+    if conjunct.class_ is Class.INIT:
+        return "INIT"
+    return "TRANS" if f.has_primes(conjunct.formula) else "INVAR"
 
 
 def _print_declaration(variable: Variable) -> str:
@@ -223,7 +302,7 @@ class _SmvNotation(Notation, frozen=True):
         is_primed = any(variable.primed for variable in f.variables(formula))
         if not is_primed or not _is_atom(formula):
             return super().print(formula)
-        text = super().print(_remove_primes(formula))
+        text = super().print(remove_primes(formula))
         return f"X {text}" if isinstance(formula, Var) else f"X ({text})"
 
 
@@ -232,14 +311,5 @@ def _is_atom(formula: Formula) -> bool:
     return is_comparison or isinstance(formula, Var)
 
 
-def _remove_primes(formula: Formula) -> Formula:
-    match formula:
-        case Var(name):
-            return Var(name)
-        case Apply(op, args):
-            return Apply(op, tuple(map(_remove_primes, args)))
-        case _:
-            return formula
-
-
 _NOTATION = _SmvNotation({**LTL_WORDS, Op.RELEASE: "V"}, add_next_operator)
+_MODEL = Notation(LTL_WORDS, lambda name: f"next({name})")

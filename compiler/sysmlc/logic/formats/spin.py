@@ -6,7 +6,7 @@ without them every variable is read as an output, which is reported.
 """
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache
 from pathlib import PurePath
 
@@ -28,6 +28,7 @@ from sysmlc.logic.formats.draft import ContractDraft, SpecificationFile
 from sysmlc.logic.formats.lowering import (
     TooManyValuesError,
     expand_comparison,
+    has_partial_division,
     index_domains,
     rename_ambiguous_literals,
     rewrite_contract_atoms,
@@ -274,24 +275,11 @@ def _separate(comparison: Formula, pairs: tuple[tuple[str, Domain], ...]) -> For
     """Return a comparison as propositions about one step each. Raises TooLargeError."""
     variable_domains = dict(pairs)
     try:
-        if _has_partial_division(comparison):
+        if has_partial_division(comparison):
             return expand_comparison(comparison, variable_domains, MAX_PROPOSITIONS)
         return separate_steps(comparison, variable_domains, MAX_PROPOSITIONS)
     except TooManyValuesError:
         raise TooLargeError from None
-
-
-def _has_partial_division(formula: Formula) -> bool:
-    """Whether the formula divides by something that can be 0, where C and SPIN have no value."""
-    match formula:
-        case Apply(Op.DIV | Op.MOD, (_, divisor)) if (
-            not isinstance(divisor, Const) or divisor.value == 0
-        ):
-            return True
-        case Apply(_, args):
-            return any(map(_has_partial_division, args))
-        case _:
-            return False
 
 
 def _print_comparison(comparison: Formula) -> str:
@@ -315,3 +303,66 @@ def _print_variable(variable: Var) -> str:
     is_name = _SPIN_NAME.fullmatch(variable.name)
     text = variable.name if is_name else f"{{{variable.name}==1}}"
     return f"X {text}" if variable.primed else text
+
+
+# -- claims about a model ------------------------------------------------------------------------
+
+KEYWORDS = frozenset(
+    re.findall(
+        r"\w+",
+        # Promela.
+        "active assert atomic bit bool break byte chan c_code c_decl c_expr c_state c_track "
+        "d_proctype d_step do else empty enabled end eval false fi for full get_priority goto "
+        "hidden if in init inline int len local ltl mtype nempty never nfull notrace np_ od "
+        "of pc_value pid print printf printm priority proctype provided return run select "
+        "set_priority short show skip timeout trace true typedef unless unsigned xr xs always "
+        "eventually until weakuntil stronguntil release implies equivalent next _ _last "
+        "_nr_pr _pid _priority "
+        # C, because the verifier has a structure with the variables, and its macros.
+        "auto case char const continue default double enum extern float long register "
+        "restrict signed sizeof static struct switch union void volatile while inline asm "
+        "typeof linux unix i386 final getframe iam_alive max maxseq0 maxseq1 maxseq2 minseq0 "
+        "minseq1 minseq2 mix onstack_put onstack_zap pthread_equal q_sz rand rot ulong ushort "
+        "wasnew uchar uint errno stdin stdout stderr",
+    )
+)
+"""Words that cannot be names of variables in Promela, and so in its verifier, a program in C."""
+_SAMPLED = {
+    Op.NOT: "(!{})",
+    Op.ALWAYS: "([] (step -> {}))",
+    Op.EVENTUALLY: "(<> (step && {}))",
+    Op.UNTIL: "((step -> {}) U (step && {}))",
+    Op.WEAK_UNTIL: "((step -> {}) W (step && {}))",
+    Op.RELEASE: "((step && {}) V (step -> {}))",
+}
+"""Operators about the states in which ``step`` is true."""
+
+
+def sample_start(formula: Formula, print_condition: Callable[[Formula], str]) -> str:
+    """Return a formula about the next step as one about the states of a model of ``promela``.
+
+    ``step`` is true once in each round of the model, and false in the state where the result holds,
+    such as the first one. *print_condition* prints formulas about one step and the next.
+    """
+    match formula:
+        case Apply(Op.IMPLIES | Op.IFF | Op.AND | Op.OR as op, args) if f.has_future(formula):
+            texts = (sample_start(arg, print_condition) for arg in args)
+            return f"({f' {_INFIX[op]} '.join(texts)})"
+        case Apply(Op.NOT, (operand,)) if f.has_future(formula):
+            return f"(!{sample_start(operand, print_condition)})"
+        case Apply(op) if op in _SAMPLED and f.has_future(formula):
+            # No state before the step matters to these operators.
+            return _sample(formula, print_condition)
+        case _:
+            return f"((!step) U (step && {_sample(formula, print_condition)}))"
+
+
+def _sample(formula: Formula, print_condition: Callable[[Formula], str]) -> str:
+    """Return a formula about steps, for a state in which ``step`` is true."""
+    if not isinstance(formula, Apply) or not f.has_future(formula):
+        return f"({print_condition(formula)})"
+    if formula.op is Op.NEXT:
+        return f"(step U (!step && {sample_start(formula.args[0], print_condition)}))"
+    texts = [_sample(arg, print_condition) for arg in formula.args]
+    template = _SAMPLED.get(formula.op)
+    return template.format(*texts) if template else f"({f' {_INFIX[formula.op]} '.join(texts)})"

@@ -20,7 +20,7 @@ from sysmlc.logic.formats.writing import (
     apply_lowering,
     print_ltl_conjunct,
 )
-from sysmlc.logic.formula import Op, Var
+from sysmlc.logic.formula import Formula, Op, Var
 from sysmlc.logic.infix import BOOLEAN, FormulaReader, Term
 from sysmlc.logic.syntax import (
     CONNECTIVE_SIGNS,
@@ -102,21 +102,27 @@ def read_implication(
     draft.read_formula(Owner.SYSTEM, Class.OTHER, read)
 
 
-def read_sides(draft: ContractDraft, reader: FormulaReader) -> None:
+def read_sides(
+    draft: ContractDraft, reader: FormulaReader, assumed: Formula | None = None
+) -> Formula:
     """Read ``assumptions -> guarantees``, or guarantees alone, and add them to the draft.
 
-    Raises FormulaError.
+    Return the assumptions. *assumed* are those of an earlier formula of the same contract; they are
+    not added again. Raises FormulaError, also for other assumptions than these.
     """
     # The formula is not read whole, because folding would drop a side if the other is constant.
-    offset = reader.cursor.next.offset
-    left = reader.read_formula(PRECEDENCE[Op.IMPLIES] + 1)
-    if not reader.cursor.accept("->"):
-        draft.add_ltl(Owner.SYSTEM, left, offset)
-        return
-    right_offset = reader.cursor.next.offset
-    right = reader.read_formula()
-    draft.add_ltl(Owner.ENVIRONMENT, left, offset)
+    offset = right_offset = reader.cursor.next.offset
+    left: Formula = f.TRUE
+    right = reader.read_formula(PRECEDENCE[Op.IMPLIES] + 1)
+    if reader.cursor.accept("->"):
+        right_offset = reader.cursor.next.offset
+        left, right = right, reader.read_formula()
+    if assumed is None:
+        draft.add_ltl(Owner.ENVIRONMENT, left, offset)
+    elif left != assumed:
+        raise FormulaError("it has other assumptions than the formula before", offset)
     draft.add_ltl(Owner.SYSTEM, right, right_offset)
+    return left
 
 
 class _SpotReader(FormulaReader):

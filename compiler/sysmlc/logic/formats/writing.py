@@ -7,7 +7,7 @@ from msgspec import Struct
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.formats.draft import SIDES
 from sysmlc.logic.formats.lowering import TooManyValuesError
-from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var, variables
+from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var, has_primes, variables
 from sysmlc.logic.printing import print_formula, print_literal
 from sysmlc.logic.reduction.contract_reduction import is_gr1, reduce_contract
 from sysmlc.logic.syntax import ARITHMETIC, COMPARISONS
@@ -102,10 +102,31 @@ def print_ltl_conjunct(format_name: str, notation: Notation, conjunct: Conjunct)
     )
 
 
+def remove_primes(formula: Formula) -> Formula:
+    """Return the formula with current values in place of next values."""
+    match formula:
+        case Var(name):
+            return Var(name)
+        case Apply(op, args):
+            return Apply(op, tuple(map(remove_primes, args)))
+        case _:
+            return formula
+
+
 def convert_to_word(name: str) -> str:
     """Return a qualified name as one word of ASCII letters, digits and underscores."""
     word = "".join(char if char.isascii() and char.isalnum() else "_" for char in name)
     return word if word and not word[0].isdigit() else f"_{word}"
+
+
+def is_step(conjunct: Conjunct) -> bool:
+    """Whether a guarantee is part of the step relation, and no requirement on it."""
+    return conjunct.is_derived and conjunct.class_ in (Class.INIT, Class.SAFETY)
+
+
+def is_recurring(conjunct: Conjunct) -> bool:
+    """Whether an assumption is that a condition on one step holds again and again."""
+    return conjunct.class_ is Class.LIVENESS and not has_primes(conjunct.formula)
 
 
 def conjuncts_of(contract: Contract, owner: Owner, class_: Class) -> Iterator[Conjunct]:
