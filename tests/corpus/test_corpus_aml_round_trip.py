@@ -18,13 +18,11 @@ pytestmark = pytest.mark.corpus
 
 IGNORED = {"id", "source", "trace"}
 NEW_VERSION = "the file is CAEX 3.0 now"
-WRONG_ATTRIBUTE = "the class stands in a wrong attribute (SM633), which is not written"
 WRITER = "CAEX 3.0 requires the writer of the file (SM746)"
 REASONS = {
     ("attribute", "version: '2.15' -> '3.0'"): NEW_VERSION,
     ("attribute", "version: None -> '3.0'"): NEW_VERSION,
     ("added", "Metadata SourceDocumentInformation"): WRITER,
-    ("attribute", "unresolved: ('typed-by',) -> None"): WRONG_ATTRIBUTE,
 }
 
 

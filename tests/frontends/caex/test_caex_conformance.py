@@ -37,14 +37,18 @@ def test_an_unknown_attribute_is_reported_once(body, message):
     assert reading.findings == [f"SM633: {message}"]
 
 
-def test_an_interface_with_its_class_in_a_wrong_attribute_has_an_unresolved_type():
+def test_the_class_of_an_interface_is_read_from_a_wrong_attribute_too():
     wrong = '<ExternalInterface Name="p" ID="2" RefBaseSystemUnitPath="Interfaces/Power"/>'
     reading = Read(interfaces('<InterfaceClass Name="Power"/>') + element_with(wrong))
-    assert reading.find("Plant::i::p").attrs["unresolved"] == ("typed-by",)
+    assert reading.targets("Plant::i::p", "typed-by") == ["Interfaces::Power"]
+    assert reading.findings == [
+        "SM633: 'Plant::i::p' has an attribute 'RefBaseSystemUnitPath', which CAEX does not define "
+        "for 'ExternalInterface'; it is read as 'RefBaseClassPath'"
+    ]
     right = wrong.replace("RefBaseSystemUnitPath", "RefBaseClassPath")
     reading = Read(interfaces('<InterfaceClass Name="Power"/>') + element_with(right))
     assert reading.targets("Plant::i::p", "typed-by") == ["Interfaces::Power"]
-    assert "unresolved" not in reading.find("Plant::i::p").attrs
+    assert reading.findings == []
 
 
 def test_an_element_with_an_unknown_attribute_is_approximated():

@@ -12,7 +12,6 @@ from sysmlc.frontends.caex import rules
 from sysmlc.frontends.caex.context import Context, qualified_name
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.vocabulary import CLASS_TAGS, LIBRARIES
-from sysmlc.ir import Edge
 from sysmlc.sources import Source
 from sysmlc.sources.caex_vocabulary import ATTRIBUTES, ORDER, TEXTS
 from sysmlc.sources.xml import SEPARATOR, make_parser, parse
@@ -40,6 +39,8 @@ REPEATED_NAME = rule(
     help="rename or remove one of them",
 )
 
+_MISPLACED_CLASS = ("ExternalInterface", "RefBaseSystemUnitPath")
+"""An attribute for internal elements that some tools write for interfaces (``document.py``)."""
 _Shape = tuple[str, tuple[str, ...]]
 """Tag and names of the XML attributes of an element."""
 
@@ -79,25 +80,21 @@ def _report_unknown_attributes(context: Context, document: Document) -> None:
             for name in unknown[tag, tuple(document.attributes[row])]:
                 if not _is_unchecked(document, row):
                     rows_by_attribute.setdefault((tag, name), []).append(row)
+    for row in document.misplaced_classes:
+        if not _is_unchecked(document, row):
+            rows_by_attribute.setdefault(_MISPLACED_CLASS, []).append(row)
     for (tag, name), rows in rows_by_attribute.items():
         for row in rows:
             if document.verdicts[row] is Verdict.MAPPED:
                 document.verdicts[row] = Verdict.APPROXIMATED
-            if (tag, name) == ("ExternalInterface", "RefBaseSystemUnitPath"):
-                _mark_misplaced_class(context, document, row)
         node = document.node(rows[0])
         count = f" ({len(rows)} elements)" if len(rows) > 1 else ""
         facts = {"tag": tag, "attribute": name, "more": count}
         facts["hint"] = did_you_mean(name, ATTRIBUTES[tag] or ())
+        if (tag, name) == _MISPLACED_CLASS and rows[0] in document.misplaced_classes:
+            facts["hint"] = "it is read as 'RefBaseClassPath'"
         element = _quote_name(node, document)
         context.report(UNKNOWN_ATTRIBUTE, document, node, element=element, **facts)
-
-
-def _mark_misplaced_class(context: Context, document: Document, row: int) -> None:
-    """Record that an interface names its class in a wrong attribute: no other rule reports it."""
-    port = context.graph.get(document.element_ids[row])
-    if port is not None and context.graph.target(port, Edge.TYPED_BY) is None:
-        context.graph.set(port, unresolved=(Edge.TYPED_BY.value,))
 
 
 def _iter_shapes(document: Document) -> Iterator[_Shape]:

@@ -131,6 +131,7 @@ class Document:
         "has_stray_text",
         "ids",
         "is_built_in",
+        "misplaced_classes",
         "name",
         "ordinals",
         "parents",
@@ -157,6 +158,8 @@ class Document:
         """Positions among all elements of the file; folded elements have positions but no rows."""
         self.texts: dict[str, dict[int, str]] = {tag: {} for tag in ("", *FOLDED_TAGS)}
         """Texts of folded children by tag and row, and under the empty name the row's own text."""
+        self.misplaced_classes: list[int] = []
+        """Rows of interfaces whose class was in RefBaseSystemUnitPath, and is read all the same."""
         self.has_stray_text = False
         """Whether text may stand where CAEX has none."""
         self.verdicts: list[Verdict | None] = []
@@ -267,8 +270,9 @@ class _ColumnReader:
         document.tags = [local_names[tag] for tag in document.tags]
         if document.tags[0] != "CAEXFile":
             raise SourceError("its root element is not CAEXFile", self._source.name, 0)
-        document.ids = [attributes.get("ID", "") for attributes in document.attributes]
         document.tag_codes = bytes(map(TAG_CODES.__getitem__, document.tags))
+        _move_misplaced_classes(document)
+        document.ids = [attributes.get("ID", "") for attributes in document.attributes]
         document.verdicts = list[Verdict | None]([None]) * len(document.tags)
         document.element_ids = [""] * len(document.tags)
 
@@ -331,3 +335,12 @@ class _ColumnReader:
         expat.StartElementHandler = start_element
         expat.EndElementHandler = end_element
         expat.CharacterDataHandler = self._stray_texts.add
+
+
+def _move_misplaced_classes(document: Document) -> None:
+    """Give interfaces that name their class like internal elements the right attribute (SM633)."""
+    for row in document.iter_rows("ExternalInterface", 0, len(document.tags)):
+        attributes = document.attributes[row]
+        if "RefBaseSystemUnitPath" in attributes and "RefBaseClassPath" not in attributes:
+            attributes["RefBaseClassPath"] = attributes.pop("RefBaseSystemUnitPath")
+            document.misplaced_classes.append(row)
