@@ -142,3 +142,39 @@ def test_the_action_of_one_of_two_equal_parts_is_not_decided(decide, performance
     parts = "part r : Robot; part q : Robot;"
     verdicts = decide(f"{parts} {performance}", "F r.gripped", "G !(q.gripped)", others=ROBOT)
     assert verdicts == ["not-decided", "not-decided"]
+
+
+# -- outputs of calls ----------------------------------------------------------------------------
+
+CHECK = (
+    "action def Check { out attribute ok : Boolean; first start then inspect; action inspect;"
+    " then done; }"
+)
+SORT = """attribute accepted : Boolean := false;
+    perform action sort {{
+        {} first start then check; action check : Check {{ {} }}
+        then d; decide d; if {} then keep; else drop;
+        action keep; then done; action drop; then done;
+    }}"""
+
+
+@pytest.mark.parametrize(
+    ("attribute", "output", "guard"),
+    [
+        ("", "out attribute :>> ok = accepted;", "accepted"),
+        ("", "out ok = B::accepted;", "accepted"),
+        ("attribute ok : Boolean := false;", "out attribute :>> ok;", "ok"),
+    ],
+)
+def test_an_output_that_nothing_assigns_has_an_unknown_value(decide, attribute, output, guard):
+    """Without a value, an output sets the attribute of the activity that has its name."""
+    block = SORT.format(attribute, output, guard)
+    assert decide(block, "G !running(keep)", "G !running(drop)", others=CHECK) == ["broken"] * 2
+
+
+def test_an_output_without_attribute_changes_no_other_feature(decide):
+    block = SORT.format("", "out attribute :>> ok;", "accepted")
+    assert decide(block, "G !running(keep)", "G !running(drop)", others=CHECK) == [
+        "holds",
+        "broken",
+    ]

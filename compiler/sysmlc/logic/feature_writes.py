@@ -94,10 +94,23 @@ def _iter_bound_names(graph: Graph, action: Element) -> Iterator[str]:
         return
     for pin in graph.owned(action):
         if pin.attrs.get("direction") in ("out", "inout", "return"):
-            text = pin.attrs.get("value")
-            name = _parse_name(text) if isinstance(text, str) else None
+            name = find_bound_name(graph, action, pin)
             if name:
                 yield name
+
+
+def find_bound_name(graph: Graph, action: Element, pin: Element) -> str | None:
+    """Return the path of the feature that an output pin of an action sets, or None.
+
+    A pin without a value sets the attribute of its activity that has its name, as in recipes.
+    """
+    text = pin.attrs.get("value")
+    if isinstance(text, str):
+        return _parse_name(text)
+    activity = next((item for item in graph.ancestors(action) if item.kind is Kind.ACTIVITY), None)
+    attributes = () if activity is None else graph.owned(activity)
+    is_own = any(item.kind is Kind.PROPERTY and item.name == pin.name for item in attributes)
+    return pin.name if is_own and pin.name else None
 
 
 def _parse_name(text: str) -> str | None:

@@ -94,7 +94,7 @@ def _lower_pin(lowering: "Lowering", node: Node, action: Element) -> Element:
         lowering.graph.set(pin, unique=False)
     lowering.defer_until_elements(lambda: connect_types(lowering, node, pin))
     value = nodes.value_of(node)
-    if value is not None and direction == "out":
+    if value is not None and direction == "out" and action.subkind not in _CALLS:
         quantities.set_kind(lowering, pin, "value", value)
         lowering.defer_until_elements(lambda: _set_output(lowering, action, value))
     elif value is not None:

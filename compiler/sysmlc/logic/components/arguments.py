@@ -31,6 +31,7 @@ from sysmlc.logic.expressions.elaboration import (
 )
 from sysmlc.logic.expressions.expression import ExpressionError, name_of
 from sysmlc.logic.expressions.parsing import parse_expression
+from sysmlc.logic.feature_writes import find_bound_name
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines.symbolic_path import split_by_range
 
@@ -96,7 +97,27 @@ def derive_arguments(tree: ObjectTree, performances: Performances) -> Arguments:
         pins = {pin.name: pin for pin in tree.graph.owned(copy.caller.call) if pin.kind is Kind.PIN}
         for name, variable in copy.parameters.items():
             _read_parameter(tree, performances, arguments, copy, pins.get(name), variable)
+        for name, pin in pins.items():
+            if name not in copy.parameters and pin.attrs.get("direction") == "out":
+                _write_unknown_value(tree, performances, arguments, copy, pin)
     return arguments
+
+
+def _write_unknown_value(
+    tree: ObjectTree, performances: Performances, arguments: Arguments, copy: Copy, pin: Element
+) -> None:
+    """Write the value of an ``out`` parameter that the called action never assigns."""
+    call = copy.caller.call
+    assert call is not None
+    path = find_bound_name(tree.graph, call, pin)
+    slot = None if path is None else _find_slot(tree, copy, path)
+    if slot is None:
+        return
+    name = performances.name_variable(pin.name, copy.caller.prefix)
+    value = replace(tree.read_slot(slot).variable, name=name, owner=Owner.ENVIRONMENT)
+    performances.inputs[name] = value
+    arguments.writes.append((slot, copy.id, f.var(name)))
+    arguments.origins.add(call.id)
 
 
 def _read_parameter(
@@ -113,8 +134,9 @@ def _read_parameter(
     call = copy.caller.call
     assert call is not None
     if direction == "out":
-        slot = None if text is None else _find_slot(tree, copy, str(text))
-        if slot is not None and variable.owner is Owner.SYSTEM:
+        path = None if pin is None else find_bound_name(tree.graph, call, pin)
+        slot = None if path is None else _find_slot(tree, copy, path)
+        if slot is not None:
             arguments.writes.append((slot, copy.id, f.var(variable.name)))
             arguments.origins.add(call.id)
         return
@@ -139,10 +161,11 @@ def _find_slot(tree: ObjectTree, copy: Copy, text: str) -> Slot | None:
         return None
     if name in copy.caller.parent.parameters:
         return None
+    type_name, _, own_name = name.rpartition("::")
     while object_ is not None:
-        feature = tree.context(object_).features.get(name)
-        if feature is not None:
-            return tree.slot_of(object_.path, name)
+        is_of_object = not type_name or object_.type_.name == type_name.rpartition("::")[2]
+        if is_of_object and own_name in tree.context(object_).features:
+            return tree.slot_of(object_.path, own_name)
         object_ = object_.owner
     return None
 
