@@ -88,6 +88,30 @@ def test_a_guard_reads_a_feature_of_a_part(decide):
     assert decide(block, "G !y", others=CELL.replace("attribute", "in attribute")) == ["broken"]
 
 
+@pytest.mark.parametrize("parts", ["part c : Cell[2];", "ref part c : Cell;"])
+def test_a_guard_about_an_unknown_object_is_not_decided(decide, parts):
+    block = parts + "attribute y : Boolean := false;" + MOVE.format("if c.full do assign y := true")
+    assert decide(block, "G !y", others=CELL) == ["not-decided"]
+
+
+# -- what the environment may be expected to do ----------------------------------------------------
+
+ACCEPT = """perform action act {{
+    first start; then action wait accept when {}; then action s assign y := true; then done;
+}}"""
+
+
+def test_a_condition_about_features_that_never_change_is_not_expected(decide):
+    assert decide(FLAGS + ACCEPT.format("x"), "F y", "G !y") == ["broken", "holds"]
+
+
+def test_a_condition_about_an_input_is_expected(decide):
+    block = FLAGS + "in attribute ok : Boolean;"
+    assert decide(block + ACCEPT.format("ok"), "F y") == ["holds-if-actions-end"]
+    assert decide(block + ACCEPT.format("ok or x"), "F y") == ["holds-if-actions-end"]
+    assert decide(block + ACCEPT.format("ok and x"), "F y", "G !y") == ["broken", "holds"]
+
+
 # -- behaviours of states --------------------------------------------------------------------------
 
 SET_Y = "action set { first start then s; action s assign y := true; then done; }"

@@ -86,7 +86,7 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
 
     @cached_property
     def _tokens(self) -> TokenGraph:
-        return self.parts.performances.build(self.component, self.parts.subject.id, iter(()))
+        return self.parts.performances.build(self.component, self.parts.subject.id, (), ())
 
     @cached_property
     def _features(self) -> dict[str, Variable]:

@@ -6,6 +6,8 @@ the guard could be true only while the token is elsewhere in the loop (docs/deci
 """
 
 from collections.abc import Collection, Iterator
+from itertools import product
+from math import prod
 
 from msgspec import Struct
 
@@ -22,7 +24,12 @@ from sysmlc.logic.activities.token_graph import (
     TokenNode,
 )
 from sysmlc.logic.contract import Class, Conjunct
-from sysmlc.logic.formula import Const
+from sysmlc.logic.domains import values
+from sysmlc.logic.formula import Const, Formula
+from sysmlc.logic.simplification import is_satisfiable, substitute
+
+_MAX_CHOICES = 256
+"""Most combinations of inputs that are tried; nothing is assumed of a condition with more."""
 
 
 class Loop(Struct, frozen=True):
@@ -137,13 +144,36 @@ def derive_assumptions(formulas: StepFormulas) -> Iterator[Conjunct]:
             # The contract cannot assume anything of variables that the activity itself assigns.
             if formulas.graph.is_decided_inside(node.done):
                 continue
-            ended = f.either(f.negate(f.var(node.run)), node.done)
+            ended = f.either(f.negate(f.var(node.run)), _open_if_possible(formulas, node.done))
             text = f"Whenever {node.label} runs, the environment ends it sooner or later."
             yield Conjunct(ended, Class.LIVENESS, node.origin, text)
     for node in formulas.graph.nodes:
         yield from _decision_assumption(formulas, node)
     for loop in _find_loops(formulas.graph):
         yield from _loop_assumption(formulas, loop)
+
+
+def _open_if_possible(formulas: StepFormulas, condition: Formula) -> Formula:
+    """Return that a condition holds, or that no input makes it true in this step.
+
+    The environment cannot open a guard that a variable of the activity keeps closed.
+    """
+    names = {variable.name for variable in f.variables(condition)}
+    inside = formulas.graph.written_variables & names
+    inputs = {variable.name: variable for variable in formulas.graph.inputs}
+    if not inside or not names - inside <= inputs.keys():
+        return condition
+    free = sorted(names - inside)
+    choices = [[f.const(value) for value in values(inputs[name].domain)] for name in free]
+    if prod(map(len, choices)) > _MAX_CHOICES:
+        return f.TRUE
+    possible = f.either(
+        *(substitute(condition, dict(zip(free, row, strict=True))) for row in product(*choices))
+    )
+    domains = {store.variable.name: store.variable.domain for store in formulas.graph.stores}
+    if not is_satisfiable(f.negate(possible), domains):
+        return condition
+    return f.either(condition, f.negate(possible))
 
 
 def _decision_assumption(formulas: StepFormulas, node: TokenNode) -> Iterator[Conjunct]:
@@ -157,7 +187,7 @@ def _decision_assumption(formulas: StepFormulas, node: TokenNode) -> Iterator[Co
     opened = f.either(*map(formulas.guard_formula, branches))
     if formulas.graph.is_decided_inside(opened):
         return
-    answer = f.either(f.negate(formulas.waiting_formula(node)), opened)
+    answer = f.either(f.negate(formulas.waiting_formula(node)), _open_if_possible(formulas, opened))
     text = f"Whenever a token waits at {node.label}, one of its guards holds sooner or later."
     yield Conjunct(answer, Class.LIVENESS, node.origin, text)
 
@@ -167,7 +197,10 @@ def _loop_assumption(formulas: StepFormulas, loop: Loop) -> Iterator[Conjunct]:
     graph = formulas.graph
     exit = f.either(
         *(
-            f.both(formulas.waiting_formula(graph.node(edge.source)), formulas.guard_formula(edge))
+            f.both(
+                formulas.waiting_formula(graph.node(edge.source)),
+                _open_if_possible(formulas, formulas.guard_formula(edge)),
+            )
             for edge in loop.exits
         )
     )

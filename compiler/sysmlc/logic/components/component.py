@@ -95,7 +95,7 @@ class Component:
     @cached_property
     def formulas(self) -> PerformanceFormulas:
         """The formulas of all performances."""
-        tokens = self.performances.build("", self.subject.id, iter(()))
+        tokens = self.performances.build("", self.subject.id, (), ())
         starts = {root.id: root.start for root in self.roots}
         return PerformanceFormulas(tokens, starts, {root.id: root.stop for root in self.roots})
 

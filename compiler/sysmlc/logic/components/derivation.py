@@ -20,7 +20,7 @@ from sysmlc.logic.components.component import Component, finish_name
 from sysmlc.logic.components.machines import (
     MachineWrite,
     PlacedMachine,
-    find_unassigned_features,
+    find_unread_features,
 )
 from sysmlc.logic.components.objects import Slot
 from sysmlc.logic.components.signals import derive_events
@@ -109,8 +109,10 @@ class _Description:
         written = {write.slot for _, write in machine_writes}
         written |= {write.slot for write in performances.writes}
         written |= {slot for slot, *_ in outputs.writes}
-        variables = [tree.read_slot(slot).variable for slot in written]
-        tokens = performances.build(name, self.component.subject.id, iter(variables))
+        slots = tree.used_slots
+        decided = [slots[slot].variable for slot in slots if self._is_decided(slot, written)]
+        given = [slots[slot].variable for slot in slots if not self._is_decided(slot, written)]
+        tokens = performances.build(name, self.component.subject.id, decided, given)
         starts = {root.id: root.start for root in self._roots}
         stops = {root.id: root.stop for root in self._roots}
         formulas = PerformanceFormulas(tokens, starts, stops)
@@ -169,6 +171,10 @@ class _Description:
             shared,
             tuple(self._list_places(tokens)),
         )
+
+    def _is_decided(self, slot: Slot, written: set[Slot]) -> bool:
+        """Whether the component decides the value of a feature."""
+        return slot in written or not self.tree.used_slots[slot].is_input
 
     def _list_places(self, tokens: TokenGraph) -> Iterator[PlaceInBehaviour]:
         for machine in self.machines:
@@ -289,7 +295,7 @@ class _Description:
         described = bound | {write.origin for write in self.performances.writes}
         described |= {id for machine in self.machines for id in machine.written}
         described -= self.component.released
-        gaps = find_unassigned_features(self.graph, self.machines, self.component.writers)
+        gaps = find_unread_features(self.tree, self.machines, self.component.writers)
         for slot, feature in self.tree.used_slots.items():
             name = feature.variable.name
             others = (
@@ -333,8 +339,7 @@ class _Description:
     ) -> dict[str, Variable]:
         variables = [*events, *self.component.variables, *arguments]
         for slot, feature in self.tree.used_slots.items():
-            is_decided = slot in written or not feature.is_input
-            owner = Owner.SYSTEM if is_decided else Owner.ENVIRONMENT
+            owner = Owner.SYSTEM if self._is_decided(slot, written) else Owner.ENVIRONMENT
             variables.append(replace(feature.variable, owner=owner))
         for machine in self.machines:
             variables += (

@@ -6,7 +6,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.diagnostics import Sink
-from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir import Edge, Element, Kind
 from sysmlc.logic import formula as f
 from sysmlc.logic.components.objects import (
     ComponentError,
@@ -16,7 +16,7 @@ from sysmlc.logic.components.objects import (
     is_value,
 )
 from sysmlc.logic.composition.naming import rename_variables
-from sysmlc.logic.contract import Class, Conjunct, EnumerationDomain, Variable
+from sysmlc.logic.contract import Class, Conjunct, EnumerationDomain, Owner, Variable
 from sysmlc.logic.feature_writes import WriterIndex
 from sysmlc.logic.formula import Const, Formula, Literal
 from sysmlc.logic.machines.derivation import (
@@ -245,17 +245,23 @@ def place_machine(
     )
 
 
-def find_unassigned_features(
-    graph: Graph, machines: Iterable[PlacedMachine], index: WriterIndex
+def find_unread_features(
+    tree: ObjectTree, machines: Iterable[PlacedMachine], index: WriterIndex
 ) -> dict[str, str]:
-    """Return the features of machines that the machines read but do not assign, with a reason.
+    """Return the inputs of machines that the model decides in a way that is not read.
+
+    They stand for features of the machines that nothing assigns, and for conditions about other
+    objects. Each has a reason.
 
     Raises ComponentError if something else assigns a feature of a machine.
     """
     reasons: dict[str, str] = {}
     for machine in machines:
         for variable in machine.list_variables():
-            element = graph.get(variable.origin)
+            element = tree.graph.get(variable.origin)
+            path = "" if element is None else tree.find_unread_name(machine.element, element)
+            if path and variable.owner is Owner.ENVIRONMENT:
+                reasons[variable.name] = f"it is not known whose feature '{path}' is"
             if element is None or element.kind is not Kind.PROPERTY:
                 continue
             writers = [*index.iter_writers(element), *index.iter_unclear_writers(element)]

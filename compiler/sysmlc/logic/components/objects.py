@@ -4,6 +4,7 @@ A feature belongs to the object that owns it, whichever behaviour writes it. Con
 make features of several objects equal.
 """
 
+import re
 from collections.abc import Iterator
 
 from msgspec import Struct
@@ -13,13 +14,15 @@ from sysmlc.logic.composition.structure import End, iter_links, iter_usages, joi
 from sysmlc.logic.contract import Domain, Owner, Variable
 from sysmlc.logic.expressions.context import Context, context_of
 from sysmlc.logic.expressions.features import Feature
-from sysmlc.logic.expressions.named_elements import VALUE_KINDS
+from sysmlc.logic.expressions.named_elements import VALUE_KINDS, find_feature_elsewhere
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.identifiers import Names
 from sysmlc.support.disjoint_sets import DisjointSets
 
 Slot = tuple[str, str]
 """The path of an object, and the name of one of its features."""
+_PATH = re.compile(r"[^\W\d]\w*(?:\s*(?:\.|::)\s*[^\W\d]\w*)+")
+"""Plain names that are joined by dots or double colons."""
 _MAX_OBJECTS = 200
 
 
@@ -183,6 +186,21 @@ class ObjectTree:
                     return self.slot_of(object_.path, name)
         holder = self.find_holder(object_, element)
         return None if holder is None else self.slot_of(holder.path, self._find_name(element))
+
+    def find_unread_name(self, behaviour: Element, element: Element) -> str:
+        """Return a path in a condition that leads to a feature of another object, or "".
+
+        The condition is an input of the behaviour, although the model decides the feature.
+        """
+        for key in ("guard", "condition"):
+            paths: list[str] = _PATH.findall(str(element.attrs.get(key, "")))
+            for path in ("".join(path.split()) for path in paths):
+                feature = find_feature_elsewhere(self.graph, behaviour, element, path)
+                owner = None if feature is None else self.graph.owner(feature)
+                # The environment decides the values that a message brings.
+                if owner is not None and owner.kind not in (Kind.SIGNAL, Kind.OPERATION):
+                    return path
+        return ""
 
     def _context_in(self, object_: ComponentObject, behaviour: Element) -> Context:
         """Return what names mean in a behaviour of an object."""

@@ -6,7 +6,7 @@ structured node too, with a copy of the token game of the called activity as its
 creates an execution for each call). All performances of a component are one token graph.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from msgspec import Struct
@@ -135,20 +135,25 @@ class Performances:
             self._expand(tokens, activity, caller, id, (activity.id,))
         return id
 
-    def build(self, component: str, origin: str, written: Iterator[Variable]) -> TokenGraph:
-        """Return the token graph; *written* are the variables that the component writes."""
+    def build(
+        self, component: str, origin: str, decided: Iterable[Variable], given: Iterable[Variable]
+    ) -> TokenGraph:
+        """Return the token graph.
+
+        The component decides the features in *decided*, and the environment those in *given*.
+        """
         return TokenGraph(
             activity=origin,
             component=component,
             label="the component",
             nodes=tuple(self.nodes),
             edges=tuple(self.edges),
-            inputs=tuple(self.inputs.values()),
+            inputs=(*self.inputs.values(), *given),
             interruptibles=tuple(self.interruptibles),
             rests=frozenset(self.rests),
             quiets=tuple(self.quiets),
             stores=(
-                *(Store(variable, ()) for variable in written),
+                *(Store(variable, ()) for variable in decided),
                 *(store for store, _ in self.locals),
             ),
         )
@@ -245,6 +250,9 @@ class Performances:
             elif not is_own and self._is_of_object(element):
                 self.gaps[variable.name] = f"it is not known whose feature '{variable.name}' is"
         name = self.name_variable(variable.name, copy.caller.prefix)
+        path = "" if element is None else self._tree.find_unread_name(copy.activity, element)
+        if path and variable.name not in tokens.pulses:
+            self.gaps[name] = f"it is not known whose feature '{path}' is"
         self.inputs[name] = replace(variable, name=name, owner=Owner.ENVIRONMENT)
         if is_own and element is not None and is_value(element):
             copy.parameters[element.name] = self.inputs[name]

@@ -77,7 +77,7 @@ def find_part_values(graph: Graph, classifier: Element, names: Iterable[str]) ->
             is_part = part is not None and part.role == "part" and is_single
             owner = query.type_of(graph, part) if part is not None and is_part else None
         value = None if owner is None else find_named_values(graph, owner).get(last)
-        if path and value is not None and value.kind is Kind.PROPERTY and value.role == "value":
+        if path and value is not None and value.role in ("value", "flow property"):
             values[name] = value
     return values
 
