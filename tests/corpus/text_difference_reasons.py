@@ -161,6 +161,24 @@ def _is_second_parameter_node(difference: Difference) -> bool:
     return sum(node.kind is Kind.ACTIVITY_PARAMETER for node in nodes) > 1
 
 
+def _is_second_start(difference: Difference) -> bool:
+    """Whether a behaviour has several initial nodes, of which the text knows one."""
+    old, graph = difference.old, difference.trip.old
+    if old is None or (difference.change.aspect and not difference.is_about("ends", "name")):
+        return False
+    source = graph.target(old, Edge.FLOW_SOURCE)
+    start = old if source is None else source
+    if start.kind not in (Kind.CONTROL, Kind.PSEUDOSTATE) or start.subkind != "initial":
+        return False
+    owner = graph.owner(start)
+    if owner is not None and owner.kind is Kind.REGION:
+        owner = graph.owner(owner)
+    members = [] if owner is None else graph.owned(owner)
+    regions = [member for member in members if member.kind is Kind.REGION]
+    nodes = [*members, *(node for region in regions for node in graph.owned(region))]
+    return sum((n.kind, n.subkind) == (start.kind, "initial") for n in nodes) > 1
+
+
 # -- moved and omitted elements --------------------------------------------------------------------
 
 
@@ -225,6 +243,56 @@ def _is_represented(difference: Difference) -> bool:
     old, graph = difference.old, difference.trip.old
     lifelines = [] if old is None else graph.sources(old, Edge.REPRESENTS)
     return any(lifeline.kind is Kind.LIFELINE for lifeline in lifelines)
+
+
+def _has_inherited_type(difference: Difference) -> bool:
+    """Whether an untyped feature has the type or direction of the feature that it subsets."""
+    old, new = difference.old, difference.new
+    if old is None or new is None or not difference.is_about("type", "direction"):
+        return False
+    graph = difference.trip.new
+    types = [
+        type_
+        for edge in (Edge.SUBSETS, Edge.REDEFINES)
+        for general in graph.targets(new, edge)
+        for type_ in graph.targets(general, Edge.TYPED_BY)
+    ]
+    is_untyped = not difference.trip.old.targets(old, Edge.TYPED_BY)
+    return is_untyped and bool(types) and graph.targets(new, Edge.TYPED_BY) == types
+
+
+def _is_about_element_groups(difference: Difference) -> bool:
+    groups = set(difference.change.before.split(", "))
+    return difference.is_about("comment") and groups == {"role: element group"}
+
+
+def _has_qualified_stereotype(difference: Difference) -> bool:
+    """Whether the name of an applied stereotype is the end of its definition's name."""
+    graph = difference.trip.old
+    if not re.match("stereotype|«", difference.change.aspect):
+        return False
+    return any(
+        definition.name.endswith(f"::{application.attrs.get('stereotype')}")
+        for application in _list_stereotypes(graph, difference.old)
+        for definition in graph.targets(application, Edge.INSTANCE_OF)
+    )
+
+
+def _is_redundant_alias(difference: Difference) -> bool:
+    """Whether only aliases are missing that equal the names of the imported elements."""
+    old, graph = difference.old, difference.trip.old
+    imports = [] if old is None else [e for e in graph.owned(old) if e.kind is Kind.IMPORT]
+    aliases = [e for e in imports if "alias" in e.attrs]
+    before = re.sub(r"; alias: \w+", "", difference.change.before)
+    return (
+        difference.is_about("import")
+        and before == difference.change.after
+        and all(
+            target.name == import_.attrs["alias"]
+            for import_ in aliases
+            for target in graph.targets(import_, Edge.REFERENCES)
+        )
+    )
 
 
 REASONS: list[Reason] = [
@@ -341,7 +409,10 @@ REASONS: list[Reason] = [
     ),
     Reason(
         "SysML v2 has no collaborations: their uses are omitted",
-        _is_removed(Kind.COLLABORATION_USE),
+        lambda d: (
+            _is_removed(Kind.COLLABORATION_USE)(d)
+            or (d.new is not None and d.new.subkind == "role-binding")
+        ),
         "SM730 CollaborationUse",
     ),
     Reason(
@@ -378,8 +449,56 @@ REASONS: list[Reason] = [
     ),
     Reason(
         "a reference to an element without a name in the text is omitted",
-        _is_attribute("references", "calls", "subsets", "represents", "covers", "type"),
-        "SM73[16] (references|calls|subsets|represents|covers|typed-by)",
+        _is_attribute(
+            "references", "calls", "subsets", "represents", "covers", "type", "specializes"
+        ),
+        "SM73[16] (references|calls|subsets|represents|covers|typed-by|specializes)",
+    ),
+    Reason(
+        "elements outside the model that have one name are one element",
+        _is_attribute("applies"),
+        "SM731 applies",
+    ),
+    Reason(
+        "a behaviour of SysML v2 has one start, at which the flows of all initial nodes begin",
+        _is_second_start,
+        "SM737 an initial",
+        is_in_behaviour=True,
+    ),
+    Reason(
+        "a pseudostate of a state belongs to the only region of the state",
+        lambda d: d.kind in (Kind.PSEUDOSTATE, Kind.REGION, Kind.TRANSITION),
+        "SM734 a pseudostate that no region owns",
+        is_in_behaviour=True,
+    ),
+    Reason(
+        "SysML v2 has no execution specifications",
+        _is_removed(Kind.EXECUTION),
+        "SM730 Execution",
+    ),
+    Reason("a guard of SysML v2 has no name", _is_attribute("constraint name"), "SM737 a guard"),
+    Reason(
+        "a feature of SysML v2 has the type of the feature that it subsets", _has_inherited_type
+    ),
+    Reason(
+        "SysML v2 has no element groups: a group is a comment about its members",
+        _is_about_element_groups,
+        "SM734 an element group",
+    ),
+    Reason(
+        "a comment of a comment is about the same elements",
+        lambda d: d.is_about("comment"),
+        "SM734 a comment about a comment",
+    ),
+    Reason(
+        "metadata has the full name of its definition, the model only the end",
+        _has_qualified_stereotype,
+    ),
+    Reason("an alias that equals the name says nothing", _is_redundant_alias),
+    Reason(
+        "in the library ISQ, a unit determines its quantity kind",
+        lambda d: d.is_about("quantity kind name", "unit"),
+        "SM734 a quantity kind that has other units",
     ),
     Reason(
         "an object flow that does not pass a control node has no guard",
@@ -388,7 +507,10 @@ REASONS: list[Reason] = [
     ),
     Reason(
         "messages of SysML v2 have no events of their own",
-        lambda d: d.kind in (Kind.OCCURRENCE, Kind.MESSAGE, Kind.LIFELINE),
+        lambda d: (
+            d.kind in (Kind.OCCURRENCE, Kind.MESSAGE, Kind.LIFELINE)
+            or (d.kind is Kind.INTERACTION and d.is_about("order"))
+        ),
         "SM734 (the|an) events? of a message",
         is_in_behaviour=True,
     ),

@@ -126,6 +126,8 @@ class Difference:
                 yield from graph.sources(child, Edge.REALIZING)
                 yield from graph.sources(child, Edge.CLIENT)
                 for member in graph.owned(child):
+                    if child.kind is Kind.ENUMERATION:
+                        yield member
                     yield from graph.sources(member, Edge.CLIENT)
             yield from graph.sources(owner, Edge.CLIENT)
 

@@ -395,3 +395,56 @@ Activity a "Fill"
     assert list_changes(model, model.replace('first ""', 'first "start"'), "id") == []
     renamed = list_changes(model, model.replace('first ""', 'first "begin"'))
     assert [change for change in renamed if "renamed" in change]
+
+
+NAMESAKES = """\
+Package p "Plant"
+  Class gate "Gate" role="block"
+    Property a1 "stop" multiplicity="2"
+      -> typed-by {type}
+    Property a2 "stop" multiplicity="3"
+      -> typed-by {type}
+  Class x "X"
+  Class y "Y"
+"""
+
+
+def test_namesakes_are_paired_although_their_types_have_changed():
+    old, new = NAMESAKES.format(type="x"), NAMESAKES.format(type="y")
+    change = "Plant::Gate: retyped property stop, type: X => Y"
+    assert list_changes(old, new, "id") == [change, change]
+
+
+REQUIREMENTS = """\
+Package p "Plant"
+  Class r1 "" role="requirement" req_id="1" text="{first}"
+  Class r2 "" role="requirement" req_id="2" text="{second}" {facts}
+    Comment r2.c body="{second}"
+"""
+
+
+def test_requirements_without_names_are_the_same_if_their_ids_are():
+    old = REQUIREMENTS.format(first="soft", second="fast", facts="")
+    new = REQUIREMENTS.format(first="loud", second="slow", facts='risk="high" rank="1"')
+    changed = [line.partition(", ")[2] for line in list_changes(old, new, "id")]
+    assert sorted(changed) == [
+        "comment: fast => slow",
+        "rank: None => 1",
+        "risk: None => high",
+        "text: fast => slow",
+        "text: soft => loud",
+    ]
+
+
+STUB = """\
+Package p "Plant"
+  Stereotype s "Cell" external={external}
+    {member}
+"""
+
+
+@pytest.mark.parametrize(("external", "count"), [("true", 0), ("false", 1)])
+def test_what_an_element_outside_the_model_owns_is_no_difference(external, count):
+    old = STUB.format(external=external, member="")
+    new = STUB.format(external=external, member='Property s.a "speed"')
+    assert len(list_changes(old, new, "id")) == count

@@ -55,6 +55,10 @@ def _write_body(writer: Writer, member: Member, element: Element) -> list[Line]:
     annotations = []
     if element.subkind not in _EXPRESSED_SUBKINDS or _has_no_target(writer, element):
         annotations.append(make_annotation(writer, member, "Kind", {"name": element.subkind}))
+    if _is_repeated(writer, element):
+        annotations.append(make_annotation(writer, member, "Repeated", {}))
+        construct = "an accept action without incoming flows"
+        writer.record_approximation(element, construct, "one that accepts once")
     return annotations + write_contents(writer, member)
 
 
@@ -63,6 +67,16 @@ def _has_no_target(writer: Writer, action: Element) -> bool:
     if action.subkind in ("call-behavior", "call-operation"):
         return not writer.graph.targets(action, Edge.CALLS)
     return action.subkind == "accept" and not _list_triggers(writer, action)
+
+
+def _is_repeated(writer: Writer, action: Element) -> bool:
+    """Whether an accept action waits again after each event (UML 2.5.1, 16.10.3).
+
+    An accept action of SysML v2 occurs once.
+    """
+    is_accept = action.subkind.startswith("accept") and _list_triggers(writer, action)
+    flows = writer.graph.sources(action, Edge.FLOW_TARGET)
+    return bool(is_accept) and not any(flow.kind is Kind.CONTROL_FLOW for flow in flows)
 
 
 # -- calls ---------------------------------------------------------------------------------------

@@ -17,7 +17,7 @@ from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE
 from sysmlc.backends.sysml.shapes import is_part_port
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import AttrValue, Edge, Element, Kind, list_items
-from sysmlc.ir.query import CLASSIFIERS
+from sysmlc.ir.query import BEHAVIORS, CLASSIFIERS
 from sysmlc.ir.query.names import find_caex_id
 
 _STRUCTURAL_SUBKINDS = frozenset({"part", "model", "caex", "internal-link", "alias", "variable"})
@@ -124,6 +124,13 @@ def _iter_preserved_facts(writer: Writer, member: Member, element: Element) -> I
 
 
 def _iter_caex_attributes(writer: Writer, member: Member, element: Element) -> Iterator[Line]:
+    facts = _list_caex_facts(writer, element)
+    if facts:
+        yield make_annotation(writer, member, "AutomationML", facts)
+
+
+def _list_caex_facts(writer: Writer, element: Element) -> dict[str, AttrValue]:
+    """Return the attributes that AutomationML gives to an element, without absent values."""
     facts: dict[str, AttrValue] = {"id": find_caex_id(element, writer.caex_files)}
     for key, name in _CAEX_ATTRIBUTES.items():
         value = element.attrs.get(key)
@@ -132,9 +139,7 @@ def _iter_caex_attributes(writer: Writer, member: Member, element: Element) -> I
     is_caex = element.source in writer.caex_files or any(facts.values())
     if (is_caex and _needs_subkind(element)) or is_part_of_class(writer, element):
         facts["kind"] = element.subkind
-    present = {name: value for name, value in facts.items() if value not in (None, "", ())}
-    if present:
-        yield make_annotation(writer, member, "AutomationML", present)
+    return {name: value for name, value in facts.items() if value not in (None, "", ())}
 
 
 def is_part_of_class(writer: Writer, element: Element) -> bool:
@@ -171,7 +176,9 @@ def _iter_kind(writer: Writer, member: Member, element: Element) -> Iterator[Lin
     """Yield the kind of an element, where the keyword does not determine it, and its domain."""
     has_subkind = _needs_subkind(element) and element.source not in writer.caex_files
     name = element.subkind if has_subkind else _KIND_NAMES.get(element.kind)
-    name = name or _name_plain_port(writer, element) or _name_idle_activity(writer, member, element)
+    name = name or _name_plain_port(writer, element) or _name_operation(writer, element)
+    name = name or _name_idle_activity(writer, member, element)
+    name = name or _name_reference(writer, member, element)
     domain = element.attrs.get("domain") if element.kind in _ITEMS else None
     if name or domain:
         yield make_annotation(writer, member, "Kind", {"name": name, "domain": domain})
@@ -184,12 +191,31 @@ def _needs_subkind(element: Element) -> bool:
 
 
 def _name_plain_port(writer: Writer, element: Element) -> str | None:
-    """Return ``port`` for a port of plain UML, which would be read as a proxy port of SysML."""
+    """Return ``port`` for a port that would be read as a proxy port of SysML.
+
+    Metadata for AutomationML states the same.
+    """
     if element.kind is not Kind.PORT or element.role != "port":
         return None
-    if is_part_port(writer.graph, element) or element.source in writer.caex_files:
+    if is_part_port(writer.graph, element) or _list_caex_facts(writer, element):
         return None
     return "port"
+
+
+def _name_operation(writer: Writer, element: Element) -> str | None:
+    """Return the kind of an operation of a behaviour, which would be read as one of its steps."""
+    if element.kind not in (Kind.OPERATION, Kind.RECEPTION):
+        return None
+    owner = writer.graph.owner(element)
+    return str(element.kind).lower() if owner is not None and owner.kind in BEHAVIORS else None
+
+
+def _name_reference(writer: Writer, member: Member, element: Element) -> str | None:
+    """Return ``property`` for a reference of an interaction, which would be read as a lifeline."""
+    owner = writer.graph.owner(element) if element.kind is Kind.PROPERTY else None
+    if owner is None or owner.kind is not Kind.INTERACTION or member.shape.keyword == "ref":
+        return None
+    return "property" if element.attrs.get("aggregation") != "composite" else None
 
 
 def _name_idle_activity(writer: Writer, member: Member, element: Element) -> str | None:
@@ -264,10 +290,26 @@ def _write_application(
 
 
 def _format_tag(writer: Writer, value: AttrValue) -> str:
-    """Return a tagged value; an id of an element becomes its qualified name."""
+    """Return a tagged value; an id of an element becomes its qualified name in the text."""
     if isinstance(value, tuple):
         return f"({', '.join(_format_tag(writer, item) for item in value)})"
     if isinstance(value, str):
         element = writer.graph.get(value)
-        return quote_string(value if element is None else writer.graph.qualified_name(element))
+        # An id that equals the name is a text: ``prefix="SysML"`` in a profile called SysML.
+        if element is None or element.name == value:
+            return quote_string(value)
+        return quote_string(_join_text_names(writer, element))
     return _format_value(value)
+
+
+def _join_text_names(writer: Writer, element: Element) -> str:
+    """Return the qualified name of an element, from the names that its owners have in the text."""
+    if element.attrs.get("external"):
+        return writer.graph.qualified_name(element)
+    path = [element, *writer.graph.ancestors(element)]
+    members = [writer.plan.find(step) for step in path]
+    names = [
+        step.name if member is None or member.element is not step else member.name
+        for step, member in zip(path, members, strict=True)
+    ]
+    return "::".join(name for name in reversed(names) if name)

@@ -90,8 +90,9 @@ def _has_unexpressed_aggregation(writer: Writer, member: Member | None, element:
         return element.attrs["aggregation"] != "none"
     if element.kind is not Kind.PROPERTY or element.attrs["aggregation"] != "composite":
         return False
-    is_composite = member is not None and member.shape.keyword in _COMPOSITE
-    return not is_composite or "direction" in element.attrs
+    if member is None or member.shape.keyword not in _COMPOSITE or "direction" in element.attrs:
+        return True
+    return member.parent is not None and member.parent.shape.usage_keyword == "attribute"
 
 
 def _has_unexpressed_subkind(writer: Writer, _member: Member | None, element: Element) -> bool:
@@ -146,9 +147,13 @@ def _is_flow(_writer: Writer, _member: Member | None, element: Element) -> bool:
     return element.kind in _FLOWS
 
 
-def _has_unexpressed_direction(_writer: Writer, member: Member | None, element: Element) -> bool:
+def _has_unexpressed_direction(writer: Writer, member: Member | None, element: Element) -> bool:
     if element.kind is Kind.PARAMETER:
         return element.attrs["direction"] == "return"
+    if element.kind is Kind.ACTIVITY_PARAMETER:
+        parameter = writer.graph.target(element, Edge.REFERENCES)
+        is_inout = parameter is not None and parameter.attrs.get("direction") == "inout"
+        return is_inout and element.attrs["direction"] != "inout"
     return element.kind is Kind.PORT and _is_part(member)
 
 
@@ -224,7 +229,16 @@ def _is_never_expressed(_writer: Writer, _member: Member | None, _element: Eleme
     return True
 
 
+def _has_unexpressed_role(writer: Writer, _member: Member | None, element: Element) -> bool:
+    """Whether no keyword states the role: an association is a block, a stereotype has values."""
+    if element.kind is Kind.ASSOCIATION:
+        return True
+    owner = writer.graph.owner(element) if element.kind is Kind.PROPERTY else None
+    return owner is not None and owner.kind is Kind.STEREOTYPE
+
+
 _CHECKS: dict[str, _Check] = {
+    "role": _has_unexpressed_role,
     "aggregation": _has_unexpressed_aggregation,
     "subkind": _has_unexpressed_subkind,
     "guard": _has_unexpressed_guard,

@@ -26,6 +26,11 @@ def write_comment(writer: Writer, member: Member) -> list[Line]:
     name = f" {quote_name(member.name)}" if member.name else ""
     children = _write_children(writer, member)
     record_text_changes(writer, element, str(body))
+    if owner is not None and owner.kind is Kind.COMMENT:
+        construct = "a comment about a comment"
+        writer.record_approximation(element, construct, "one about the same elements")
+    if element.role == "element group":
+        writer.record_approximation(element, "an element group", "a comment about its members")
     if not annotated and owner is not None:
         construct = "a comment about nothing"
         writer.record_approximation(element, construct, "documentation of its owner")

@@ -7,6 +7,7 @@ from sysmlc.backends.sysml.expressions import format_expression
 from sysmlc.backends.sysml.plan import Member
 from sysmlc.backends.sysml.printing import Line, quote_name
 from sysmlc.backends.sysml.references import format_qualified_name
+from sysmlc.backends.sysml.rules import NAME_LEFT_OUT
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import Edge, Element, Kind
 
@@ -26,6 +27,8 @@ def write_constraint(writer: Writer, member: Member) -> list[Line]:
     """
     element = member.require_element()
     if writer.graph.sources(element, Edge.GUARD):
+        if element.name:
+            writer.losses.record(NAME_LEFT_OUT, element, construct="a guard")
         return []
     owner = member.parent
     result = _format_result(writer, member, element)
@@ -82,12 +85,14 @@ def _write_references(writer: Writer, member: Member, element: Element) -> list[
         return []
     names = []
     for target in targets:
-        target_member = writer.plan.find(target)
-        if target_member is not None:
-            names.append(format_qualified_name(writer.plan, member.parent, target_member))
-    keyword = writer.refer_to_sysmlc(member.parent, "constrains")
-    known_names = [name for name in names if name is not None]
-    if not known_names:
+        end = writer.plan.find(target)
+        name = None if end is None else format_qualified_name(writer.plan, member.parent, end)
+        if name is None:
+            writer.record_unreachable(element, "references")
+        else:
+            names.append(name)
+    if not names:
         return []
+    keyword = writer.refer_to_sysmlc(member.parent, "constrains")
     source = quote_name(member.name)
-    return [Line(f"#{keyword} dependency from {source} to {', '.join(known_names)}")]
+    return [Line(f"#{keyword} dependency from {source} to {', '.join(names)}")]

@@ -12,6 +12,7 @@ from sysmlc.backends.sysml.library import (
 from sysmlc.backends.sysml.plan import Member
 from sysmlc.backends.sysml.printing import Line, format_comment, quote_name
 from sysmlc.backends.sysml.references import format_qualified_name
+from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.ir.query import STRUCTURAL_FEATURES
@@ -47,7 +48,11 @@ def write_import(writer: Writer, member: Member) -> list[Line]:
         return writer.writers[str(Kind.DOCUMENT)](writer, member)
     visibility = "private" if element.attrs.get("visibility") == "private" else "public"
     lines = []
-    for target in writer.graph.targets(element, Edge.REFERENCES):
+    alias = element.attrs.get("alias")
+    if alias and any(target.name != alias for target in _list_imported(writer, element)):
+        facts = {"attribute": "alias", "kind": str(element.kind)}
+        writer.losses.record(UNSAID_ATTRIBUTE, element, **facts)
+    for target in _list_imported(writer, element):
         name = _refer_to_imported(writer, member, target)
         if name is None and target.attrs.get("library"):
             construct = f"the import of the library {target.name}"
@@ -62,6 +67,10 @@ def write_import(writer: Writer, member: Member) -> list[Line]:
         is_package = target.kind in (Kind.PACKAGE, Kind.PROFILE) and element.subkind != "element"
         lines.append(Line(f"{visibility} import {name}{'::*' if is_package else ''}"))
     return lines
+
+
+def _list_imported(writer: Writer, import_: Element) -> list[Element]:
+    return writer.graph.targets(import_, Edge.REFERENCES)
 
 
 def _refer_to_imported(writer: Writer, member: Member, target: Element) -> str | None:

@@ -19,6 +19,7 @@ def write_lifeline(writer: Writer, member: Member) -> list[Line]:
     """Write a lifeline: a reference to a part of the type that it represents."""
     element = member.require_element()
     head = f"ref part {quote_name(member.name)}"
+    body = []
     for represented in writer.graph.targets(element, Edge.REPRESENTS):
         type_ = type_of(writer.graph, represented)
         type_member = writer.plan.find(type_)
@@ -29,9 +30,11 @@ def write_lifeline(writer: Writer, member: Member) -> list[Line]:
             type_name = refer_to_type(writer, member.parent, element, type_)
             if type_name is not None:
                 head = f"ref {keyword}{quote_name(member.name)} : {type_name}"
+                if not keyword:
+                    body = [make_annotation(writer, member, "Kind", {"name": "lifeline"})]
         construct = "what a lifeline represents"
         writer.record_approximation(element, construct, "a part of the same type")
-    return [Line(head, write_contents(writer, member))]
+    return [Line(head, body + write_contents(writer, member))]
 
 
 # -- messages ------------------------------------------------------------------------------------

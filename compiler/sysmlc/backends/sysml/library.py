@@ -136,10 +136,10 @@ ROOTS = frozenset(_ROOTS.split())
 """Names of the packages of the standard library and of ``SysMLC``: no root may have them."""
 _SYSMLC_NAMES = """
     AutomationML Facet Group Kind Named Kept Element ObjectFlow Through External Unit Units
-    Requirement Partition Call inWords fullPort blockPort shared realization generalization trace
-    copies satisfies verifies derives allocates conforms exposes substitution usage abstraction
-    manifestation deployment roleBinding extension internalLink processLink orderLink constrains
-    precondition postcondition bodyCondition invariant choice junction forking joining
+    Requirement Partition Repeated Call inWords fullPort blockPort shared realization generalization
+    trace copies satisfies verifies derives allocates conforms exposes substitution usage
+    abstraction manifestation deployment roleBinding extension internalLink processLink orderLink
+    constrains precondition postcondition bodyCondition invariant choice junction forking joining
     shallowHistory deepHistory entryPoint exitPoint connectionPoint termination
 """
 _SYSMLC_LONG_NAMES = """

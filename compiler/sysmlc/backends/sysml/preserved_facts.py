@@ -2,9 +2,10 @@
 
 A fact is a line of text: ``key=value`` for an attribute, ``edge->name`` for an edge to a member of
 the text, ``edge=>name`` for an edge to an element outside of the model, ``key[]->name`` for an
-attribute that is a list of elements. The front end for SysML v2 restores attributes and edges from
-it. Facts of a part without a member start with the word for the part and a dot
-(``region.visibility=private``).
+attribute that is a list of elements, and ``{"->": name}`` for an element in other JSON. The front
+end for SysML v2 restores attributes and edges from it. Facts of a part without a member start with
+the word for the part and a dot (``region.visibility=private``); a trigger without a member has the
+name of its owner and ``.trigger``.
 """
 
 import json
@@ -69,8 +70,14 @@ def list_all_facts(writer: Writer, element: Element) -> tuple[str, ...]:
 
 def _iter_own_facts(writer: Writer, member: Member, element: Element) -> Iterator[str]:
     yield from _iter_attribute_facts(writer, member, element)
+    facts: set[str] = set()
     for edge, target in iter_unexpressed_edges(writer, element):
-        yield from _iter_edge_facts(writer, element, edge, target)
+        fact = _format_edge(writer, edge, target)
+        # Two elements outside of the model that have one name cannot be told apart.
+        if fact is not None and fact not in facts:
+            facts.add(fact)
+            writer.stored_edges.add((edge, element.id, target.id))
+            yield fact
 
 
 def _iter_attribute_facts(writer: Writer, member: Member | None, element: Element) -> Iterator[str]:
@@ -96,12 +103,19 @@ def _iter_part_facts(writer: Writer, part: Element, default_name: str) -> Iterat
     if part.name != default_name and not part.name and default_name in ("start", "done"):
         construct = "a first or last node without a name"
         writer.record_approximation(part, construct, "start or done")
-    elif part.name != default_name:
+    elif part.name != default_name or _is_idle_parameter_node(writer, part):
         yield from _format_attribute(writer, "name", part.name)
     if part.kind is Kind.ACTIVITY_PARAMETER and not writer.graph.targets(part, Edge.TYPED_BY):
         construct = "a parameter node without a type"
         writer.record_approximation(part, construct, "one of its parameter's type")
     yield from _iter_attribute_facts(writer, None, part)
+
+
+def _is_idle_parameter_node(writer: Writer, part: Element) -> bool:
+    """Whether no flow of the text tells a reader that a parameter has a node."""
+    edges = (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)
+    is_node = part.kind is Kind.ACTIVITY_PARAMETER
+    return is_node and not any(writer.graph.sources(part, edge) for edge in edges)
 
 
 def _iter_parts(writer: Writer, element: Element) -> Iterator[tuple[str, Element]]:
@@ -159,8 +173,12 @@ def _format_attribute(writer: Writer, key: str, value: AttrValue) -> list[str]:
     if isinstance(value, tuple) and _contains_ids(writer, value):
         elements = [writer.graph.get(item) for item in value if isinstance(item, str)]
         paths = [_format_path(writer, element) for element in elements if element is not None]
-        is_nameable = len(paths) == len(value) and None not in paths
-        return [f"{name}[]->{path}" for path in paths] if is_nameable else []
+        if len(paths) == len(value) and None not in paths:
+            return [f"{name}[]->{path}" for path in paths]
+        try:
+            return [f"{name}={_format_json(_replace_ids(writer, value))}"]
+        except LookupError:
+            return []
     return [f"{name}={format_fact_value(value)}"]
 
 
@@ -175,6 +193,8 @@ def _format_edge(writer: Writer, edge: Edge, target: Element) -> str | None:
 
 def _format_path(writer: Writer, target: Element) -> str | None:
     """Return the qualified name of a member, which must be public; None if it has none."""
+    if target.kind is Kind.TRIGGER:
+        return _format_trigger_path(writer, target)
     member = writer.plan.find(target)
     if member is None or member.element is not target:
         return None
@@ -184,6 +204,16 @@ def _format_path(writer: Writer, target: Element) -> str | None:
     for step in path:
         writer.plan.expose(step)
     return "::".join(quote_name(step.name) for step in reversed(path))
+
+
+def _format_trigger_path(writer: Writer, trigger: Element) -> str | None:
+    """Return the qualified name of the action or transition with the only trigger *trigger*."""
+    owner = writer.graph.owner(trigger)
+    siblings = [] if owner is None else writer.graph.owned(owner)
+    if owner is None or sum(sibling.kind is Kind.TRIGGER for sibling in siblings) > 1:
+        return None
+    path = _format_path(writer, owner)
+    return None if path is None else f"{path}.trigger"
 
 
 def _contains_ids(writer: Writer, value: AttrValue) -> bool:
@@ -198,7 +228,22 @@ def format_fact_value(value: AttrValue) -> str:
     return str(value) if is_plain else _format_json(value)
 
 
-def _format_json(value: AttrValue) -> str:
+def _replace_ids(writer: Writer, value: AttrValue) -> object:
+    """Return a value with an object ``{"->": path}`` for each id of an element.
+
+    Raises LookupError if an element has no path.
+    """
+    if isinstance(value, tuple):
+        return [_replace_ids(writer, item) for item in value]
+    if not isinstance(value, str) or value not in writer.graph:
+        return value
+    path = _format_path(writer, writer.graph[value])
+    if path is None:
+        raise LookupError(value)
+    return {"->": path}
+
+
+def _format_json(value: object) -> str:
     return json.dumps(value, ensure_ascii=False)
 
 
@@ -207,4 +252,6 @@ def _is_json(text: str) -> bool:
         json.loads(text)
     except ValueError:
         return False
+    except RecursionError:
+        return True
     return True

@@ -195,9 +195,10 @@ def _defer_port(lowering: "Lowering", action: Element, end: Node) -> None:
 
 def lower_accept(lowering: "Lowering", node: Node, owner: Element) -> Element:
     """Lower an accept action with its trigger."""
-    action = _add_action(lowering, node, owner, "accept")
+    subkind = str(annotations.metadata_value(node, "Kind", "name") or "accept")
+    action = _add_action(lowering, node, owner, subkind)
     lower_trigger(lowering, node, action)
-    if owner.kind in ACTIVITIES:
+    if owner.kind in ACTIVITIES and "Repeated" not in nodes.shipped_metadata_of(node):
         defer_implied_start(lowering, node, owner, action)
     _lower_members(lowering, node, action)
     return action

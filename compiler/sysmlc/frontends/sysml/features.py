@@ -81,6 +81,8 @@ def _feature_attributes(node: Node, owner: Element) -> dict[str, AttrValue]:
 def _set_aggregation(node: Node, property_: Element) -> None:
     keywords = nodes.shipped_metadata_of(node)
     is_owned = not node.attributes.get("isReference") and "direction" not in node.attributes
+    # What an attribute has is referential (SysML 2.0, 8.2.2.6.2, note 1).
+    is_owned &= node.owner is None or not node.owner.kind.startswith("Attribute")
     if "shared" in keywords or "SharedAggregation" in keywords:
         property_.attrs["aggregation"] = "shared"
     elif node.kind in _COMPOSITE and is_owned and not node.attributes.get("isEnd"):
@@ -92,10 +94,12 @@ def _set_aggregation(node: Node, property_: Element) -> None:
 
 def describe_feature(lowering: "Lowering", node: Node, feature: Element) -> None:
     """Add what a declaration states: flags, multiplicity, types, generals, value, members."""
-    flags, multiplicity = _flags_of(node), values.multiplicity_of(lowering, node)
-    if flags or multiplicity:
-        lowering.set_attributes(feature, **flags, multiplicity=multiplicity)
-    if node.attributes.get("isUnique") is False:
+    multiplicity = values.multiplicity_of(lowering, node)
+    # A cross feature has the flags of an end, like its multiplicity.
+    holders = [holder for holder in (node, nodes.cross_feature_of(node)) if holder is not None]
+    for holder in holders:
+        lowering.set_attributes(feature, **_flags_of(holder), multiplicity=multiplicity)
+    if any(holder.attributes.get("isUnique") is False for holder in holders):
         lowering.graph.set(feature, unique=False)
     _connect_relations(lowering, node, feature)
     value = nodes.value_of(node)

@@ -22,6 +22,7 @@ from sysmlc.frontends.sysml import (
 from sysmlc.frontends.sysml.kinds import ACTIVITIES, BEHAVIOURS, CLASSIFIERS, STRUCTURAL
 from sysmlc.frontends.sysml.lowering import Handler, Lowering
 from sysmlc.ir import Element, Kind
+from sysmlc.ir.query import BEHAVIORS
 from sysmlc.language.tree import Node
 
 _PACKAGES = frozenset({Kind.PACKAGE, Kind.PROFILE})
@@ -62,6 +63,8 @@ def _lower_action(lowering: Lowering, node: Node, owner: Element | None) -> None
         activities.lower_activity(lowering, node, owner)
     elif owner.kind in ACTIVITIES and "direction" in node.attributes:
         object_nodes.lower_behaviour_feature(lowering, node, owner)
+    elif _is_operation_of_behaviour(node, owner):
+        activities.lower_classifier_action(lowering, node, owner)
     elif owner.kind in ACTIVITIES:
         actions.lower_action(lowering, node, owner)
     elif owner.kind in STRUCTURAL and node.kind == "PerformActionUsage":
@@ -78,12 +81,20 @@ def _as_step(handler: _MemberHandler) -> Handler:
     """Return a handler for a construct that is special only among the steps of an activity."""
 
     def lower_step(lowering: Lowering, node: Node, owner: Element | None) -> None:
-        if owner is not None and owner.kind in ACTIVITIES:
+        is_step = owner is not None and not _is_operation_of_behaviour(node, owner)
+        if owner is not None and owner.kind in ACTIVITIES and is_step:
             handler(lowering, node, owner)
         else:
             _lower_action(lowering, node, owner)
 
     return lower_step
+
+
+def _is_operation_of_behaviour(node: Node, owner: Element) -> bool:
+    """Whether metadata states that an action is no step of a behaviour, but its operation."""
+    if owner.kind not in BEHAVIORS:
+        return False
+    return definitions.read_kind(node, Kind.ACTION)[0] in (Kind.OPERATION, Kind.RECEPTION)
 
 
 def _lower_connection(lowering: Lowering, node: Node, owner: Element | None) -> None:

@@ -26,15 +26,21 @@ _MESSAGE_EDGES = (
 def lower_interaction_member(lowering: "Lowering", node: Node, owner: Element) -> None:
     """Lower a feature of an interaction: a fragment, a lifeline, or a property.
 
-    The back end ``sysml`` writes lifelines as references and other properties of an interaction as
-    parts. In other models every feature is a lifeline.
+    In a text of the back end ``sysml``, referential parts, ports and features that metadata marks
+    are lifelines. In other models every feature is a lifeline.
     """
     if node.kind == "OccurrenceUsage":
         _lower_fragment(lowering, node, owner)
-    elif node.attributes.get("isReference") or not _is_from_backend(node.owner):
+    elif _is_lifeline(node) or not _is_from_backend(node.owner):
         _lower_lifeline(lowering, node, owner)
     else:
         lower_property(lowering, node, owner)
+
+
+def _is_lifeline(node: Node) -> bool:
+    name = annotations.metadata_value(node, "Kind", "name")
+    is_referential = node.attributes.get("isReference") or node.kind == "PortUsage"
+    return name == "lifeline" or (bool(is_referential) and name != "property")
 
 
 def _is_from_backend(interaction: Node | None) -> bool:

@@ -53,6 +53,7 @@ KINDS_BY_METADATA = {
     "property": Kind.PROPERTY,
     "activity": Kind.ACTIVITY,
     "operation": Kind.OPERATION,
+    "reception": Kind.RECEPTION,
     "structured": Kind.STRUCTURED,
     "association": Kind.ASSOCIATION,
     "interaction": Kind.INTERACTION,

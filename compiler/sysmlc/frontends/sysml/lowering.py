@@ -208,6 +208,11 @@ class Lowering(Verdicts):
         """Return the node for which an element was added."""
         return self._origins.get(element.id)
 
+    def text_name_of(self, element: Element) -> str:
+        """Return the name that an element has in the text; metadata may give it another one."""
+        node = self._origins.get(element.id)
+        return element.name if node is None else nodes.name_of(node)
+
     def add_implied_child(self, owner: Element, kind: Kind, name: str) -> Element:
         """Add an element without a node, at the location of its owner."""
         return self._add_implied(owner, kind, name, owner)
@@ -316,6 +321,18 @@ class Lowering(Verdicts):
         while owner is not None and owner.owner is not None and self.element_of(owner) is None:
             outermost, owner = owner, owner.owner
         return nodes.qualified_name_of(outermost)
+
+    def ensure_parameter_node(self, parameter: Element) -> Element:
+        """Return the activity parameter node of a parameter; add it if it is new."""
+        for source in self.graph.sources(parameter, Edge.REFERENCES):
+            if source.kind is Kind.ACTIVITY_PARAMETER:
+                return source
+        node = self.add_implied_sibling(parameter, Kind.ACTIVITY_PARAMETER, parameter.name)
+        direction = str(parameter.attrs.get("direction", "in"))
+        self.set_attributes(node, direction="out" if direction == "return" else direction)
+        self.graph.connect(Edge.REFERENCES, node, parameter)
+        self.copy_types(parameter, node)
+        return node
 
     # -- starts and ends of behaviours ---------------------------------------------------------
 

@@ -120,13 +120,16 @@ def _set_output(lowering: "Lowering", action: Element, value: Node) -> None:
     constant = values.constant_of(value)
     is_reference = value.kind == "FeatureReferenceExpression"
     target = nodes.find_target(value, "Membership") if is_reference else None
+    feature = lowering.element_of(target)
     if constant is not None:
         lowering.graph.set(action, subkind="value", value=constant)
         if quantities.has_unit(value):
             lowering.defer_until_edges(
                 lambda: quantities.set_unit(lowering, action, "value", value)
             )
-    elif target is not None and lowering.element_of(target) is not None:
+    elif feature is not None and _is_instance(feature):
+        lowering.graph.set(action, subkind="value", value=feature.name, value_instance=feature.id)
+    elif feature is not None:
         lowering.graph.set(action, subkind="read")
         lowering.connect_node(Edge.CALLS, action, target)
     else:
@@ -135,6 +138,11 @@ def _set_output(lowering: "Lowering", action: Element, value: Node) -> None:
     for pin in lowering.graph.owned(action):
         if pin.kind is Kind.PIN and pin.subkind == "output-value":
             lowering.graph.set(pin, subkind="result")
+
+
+def _is_instance(feature: Element) -> bool:
+    """Whether a feature is an instance of the model; of a stub, the kind is not known."""
+    return feature.kind is Kind.INSTANCE and not feature.attrs.get("external")
 
 
 # -- object nodes that flows need --------------------------------------------------------------
@@ -170,19 +178,6 @@ def _ensure_own_parameter(lowering: "Lowering", parameter: Element, activity: El
     lowering.graph.connect(Edge.REDEFINES, redefinition, parameter)
     lowering.copy_types(parameter, redefinition)
     return redefinition
-
-
-def _ensure_parameter_node(lowering: "Lowering", parameter: Element) -> Element:
-    """Return the activity parameter node of a parameter; add it if it is new."""
-    for source in lowering.graph.sources(parameter, Edge.REFERENCES):
-        if source.kind is Kind.ACTIVITY_PARAMETER:
-            return source
-    node = lowering.add_implied_sibling(parameter, Kind.ACTIVITY_PARAMETER, parameter.name)
-    direction = str(parameter.attrs.get("direction", "in"))
-    lowering.set_attributes(node, direction=_pin_direction(direction))
-    lowering.graph.connect(Edge.REFERENCES, node, parameter)
-    lowering.copy_types(parameter, node)
-    return node
 
 
 # -- object flows ------------------------------------------------------------------------------
@@ -323,5 +318,5 @@ def _ensure_node_of_activity(lowering: "Lowering", flow: Element, parameter: Ele
     for ancestor in lowering.graph.ancestors(flow):
         if ancestor.kind is Kind.ACTIVITY:
             own_parameter = _ensure_own_parameter(lowering, parameter, ancestor)
-            return _ensure_parameter_node(lowering, own_parameter)
-    return _ensure_parameter_node(lowering, parameter)
+            return lowering.ensure_parameter_node(own_parameter)
+    return lowering.ensure_parameter_node(parameter)

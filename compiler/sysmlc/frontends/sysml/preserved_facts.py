@@ -25,8 +25,12 @@ _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "b": "\b", "f": "\f"}
 _EDGES = {edge.value: edge for edge in Edge}
 _EXTERNAL_KINDS = {Edge.APPLIES: Kind.PROFILE}
 """Kinds of the external targets of edges; other edges lead to classes."""
+_TRIGGER = ".trigger"
+"""End of the path to a trigger, after the qualified name of its owner."""
 _LIST = "[]"
 """End of the key of an attribute whose value is a list of elements: one fact for each."""
+_REFERENCE = '{"->": '
+"""Start of an element in the JSON of a list that also has other values."""
 _ATTEMPTS = 3
 """How often a fact waits for a part of its element."""
 
@@ -52,13 +56,18 @@ def _restore_fact(lowering: "Lowering", element: Element, fact: str, attempts: i
     part, name, operator, text = match.groups()
     holder = element if part is None else _find_part(lowering, element, part)
     key = str(json.loads(name)) if name.startswith('"') else name
+    if holder is None and attempts:
+        _defer_fact(lowering, element, fact, attempts - 1)
+        return
+    if holder is None and part == "node" and element.kind is Kind.PARAMETER:
+        # No flow has needed the node of the parameter.
+        holder = lowering.ensure_parameter_node(element)
     if holder is None:
-        if attempts:
-            _defer_fact(lowering, element, fact, attempts - 1)
-    elif key == "name":
+        return
+    if key == "name":
         lowering.graph.rename(holder, str(parse_fact_value(text)))
     elif operator == "=":
-        lowering.graph.set(holder, **{key: parse_fact_value(text)})
+        lowering.graph.set(holder, **{key: _parse_value_with_elements(lowering, text)})
     elif operator == "=>":
         _connect_external(lowering, holder, key, text)
     else:
@@ -74,7 +83,7 @@ def _connect_external(lowering: "Lowering", holder: Element, key: str, name: str
 
 def _connect(lowering: "Lowering", holder: Element, key: str, name: str) -> None:
     """Add an edge, or an attribute whose value is the id of an element, or a list of ids."""
-    target = lowering.element_of(_find_node(lowering, name))
+    target = _find_element(lowering, name)
     if target is None:
         return
     edge = _EDGES.get(key)
@@ -85,6 +94,14 @@ def _connect(lowering: "Lowering", holder: Element, key: str, name: str) -> None
         lowering.graph.set(holder, **{key: (*list_items(holder.attrs.get(key)), target.id)})
     else:
         lowering.graph.set(holder, **{key: target.id})
+
+
+def _find_element(lowering: "Lowering", path: str) -> Element | None:
+    """Return the element with a qualified name, or its trigger if the name ends in ``.trigger``."""
+    element = lowering.element_of(_find_node(lowering, path.removesuffix(_TRIGGER)))
+    if element is None or not path.endswith(_TRIGGER):
+        return element
+    return _find_part(lowering, element, "trigger")
 
 
 def _find_node(lowering: "Lowering", qualified_name: str) -> Node | None:
@@ -105,11 +122,26 @@ def _unescape(text: str) -> str:
     return _ESCAPED.sub(lambda match: _ESCAPES.get(match[1], match[1]), text)
 
 
+def _parse_value_with_elements(lowering: "Lowering", text: str) -> AttrValue:
+    """Return the value of a fact, in which an object ``{"->": name}`` stands for an element."""
+    if _REFERENCE not in text:
+        return parse_fact_value(text)
+
+    def find_id(reference: dict[str, object]) -> str | None:
+        element = _find_element(lowering, str(reference.get("->")))
+        return None if element is None else element.id
+
+    try:
+        return _freeze(json.loads(text, object_hook=find_id))
+    except (ValueError, RecursionError):
+        return text
+
+
 def parse_fact_value(text: str) -> AttrValue:
     """Return the JSON value of a text, or the text itself if it is no JSON."""
     try:
         return _freeze(json.loads(text))
-    except ValueError:
+    except (ValueError, RecursionError):
         return text
 
 

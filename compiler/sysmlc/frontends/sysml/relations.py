@@ -30,6 +30,7 @@ _SUBKINDS = {
     "Deployment": "deployment",
     "RoleBinding": "role-binding",
     "InternalLink": "internal-link",
+    "ProcessLink": "ppr",
     "OrderLink": "succession",
 }
 _EDGES = {"Generalization": Edge.SPECIALIZES, "Constrains": Edge.REFERENCES}

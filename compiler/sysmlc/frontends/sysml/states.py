@@ -7,6 +7,7 @@ from sysmlc.frontends.sysml.activities import lower_body
 from sysmlc.frontends.sysml.definitions import (
     connect_generals,
     declaration_attributes,
+    lower_definition,
     read_kind,
     visibility_attributes,
 )
@@ -207,6 +208,8 @@ def _lower_own_behaviour(lowering: "Lowering", node: Node, owner: Element) -> El
     body, name = nodes.body_of(node), node.name or ""
     if len(body) == 1 and body[0].kind in _STATES and not name:
         return lower_state_machine(lowering, body[0], owner)
+    if len(body) == 1 and read_kind(body[0], Kind.CLASS)[0] is Kind.INTERACTION and not name:
+        return lower_definition(lowering, body[0], owner, Kind.INTERACTION, "")
     if node.kind in ("SendActionUsage", "AcceptActionUsage"):
         activity = lowering.add_derived(node, Kind.ACTIVITY, name, owner)
         lowering.lower(node, activity)

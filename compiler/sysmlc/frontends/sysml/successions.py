@@ -165,8 +165,8 @@ def _move_ends_to_pins(lowering: "Lowering", node: Node, flow: Element) -> None:
         step = lowering.graph.target(flow, edge)
         name = annotations.metadata_value(node, "ObjectFlow", key)
         members = [] if step is None or not name else lowering.graph.owned(step)
-        pins = (member for member in members if member.kind is Kind.PIN and member.name == name)
-        pin = next(pins, None)
+        pins = (member for member in members if member.kind is Kind.PIN)
+        pin = next((pin for pin in pins if lowering.text_name_of(pin) == name), None)
         if step is not None and pin is not None:
             lowering.graph.disconnect(edge, flow, step)
             lowering.graph.connect(edge, flow, pin)

@@ -113,6 +113,9 @@ def _iter_unpaired(pairs: Pairs, side: Side, what: What) -> Iterator[Change]:
     for owner, children in side.members.items():
         if not (owner is None or owner in paired or _is_transparent(side, owner, paired)):
             continue
+        if owner is not None and is_external(side.graph[owner]):
+            # What an element outside of the model owns is known as far as the model uses it.
+            continue
         for child in children:
             if child.id in paired or is_external(child):
                 continue

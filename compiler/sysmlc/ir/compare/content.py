@@ -92,6 +92,8 @@ WORDS = frozenset(
         "multiplicity",
         "role",
         "stereotype",
+        "tag.nsPrefix",
+        "tag.prefix",
         "subkind",
         "unit",
         "visibility",

@@ -203,7 +203,7 @@ def _by_unique_name(elements: list[Element], *, with_kind: bool) -> dict[tuple[s
     index: dict[tuple[str, str], Element] = {}
     ambiguous: set[tuple[str, str]] = set()
     for element in elements:
-        name = name_in_comparison(element)
+        name = name_in_comparison(element) or str(element.attrs.get("req_id", ""))
         key = (element.kind if with_kind else "", name)
         if name and key in index:
             ambiguous.add(key)
@@ -218,6 +218,8 @@ _THRESHOLD = 0.5
 """Least likeness of two elements of a pair."""
 _COMMON = 64
 """A fact about more elements than these does not distinguish them."""
+_ROLE = ("role",)
+"""Key of the fact about a role, which not every file format states for a classifier."""
 _Portrait = Counter[Token]
 """Facts about an element, its children and its incoming edges, with the number of each."""
 
@@ -306,7 +308,8 @@ def _score(old: Element, new: Element, old_portrait: _Portrait, new_portrait: _P
     has_name = bool(name_in_comparison(old))
     if old.kind is not new.kind or has_name != bool(name_in_comparison(new)):
         return 0.0
-    if has_name and _types(old_portrait) != _types(new_portrait):
+    has_same_name = name_in_comparison(old) == name_in_comparison(new)
+    if has_name and not has_same_name and _types(old_portrait) != _types(new_portrait):
         return 0.0
     if has_name and not old_portrait and not new_portrait:
         return _name_likeness(old, new)
@@ -336,6 +339,8 @@ def _portray(pairs: Pairs, element: Element, *, is_old: bool) -> _Portrait:
     side = pairs.old if is_old else pairs.new
     to_token = pairs.old_token if is_old else pairs.new_token
     facts = pairs.old_facts(element) if is_old else pairs.new_facts(element)
+    if element.kind in CLASSIFIERS:
+        facts = [(tokens, fact) for tokens, fact in facts if fact.key != _ROLE]
     portrait: _Portrait = Counter(part for tokens, _ in facts for part in _split_ends(tokens))
     portrait.update(
         ("owns", child.kind, name_in_comparison(child)) for child in side.children(element)
