@@ -218,8 +218,6 @@ _THRESHOLD = 0.5
 """Least likeness of two elements of a pair."""
 _COMMON = 64
 """A fact about more elements than these does not distinguish them."""
-_ROLE = ("role",)
-"""Key of the fact about a role, which not every file format states for a classifier."""
 _Portrait = Counter[Token]
 """Facts about an element, its children and its incoming edges, with the number of each."""
 
@@ -313,7 +311,18 @@ def _score(old: Element, new: Element, old_portrait: _Portrait, new_portrait: _P
         return 0.0
     if has_name and not old_portrait and not new_portrait:
         return _name_likeness(old, new)
+    if bool(old.role) != bool(new.role):
+        return _likeness(_omit_role(old_portrait), _omit_role(new_portrait))
     return _likeness(old_portrait, new_portrait)
+
+
+def _omit_role(portrait: _Portrait) -> _Portrait:
+    """Return a portrait without the role, which only one of two file formats may state."""
+    return Counter({token: n for token, n in portrait.items() if not _is_about(token, "role")})
+
+
+def _is_about(token: Token, key: str) -> bool:
+    return isinstance(token, tuple) and token[0] == (key,)
 
 
 def _types(portrait: _Portrait) -> set[Token]:
@@ -321,7 +330,7 @@ def _types(portrait: _Portrait) -> set[Token]:
 
     Facts about general classifiers are not included, because they may change with the name.
     """
-    return {fact for fact in portrait if isinstance(fact, tuple) and fact[0] == ("typed-by",)}
+    return {token for token in portrait if _is_about(token, "typed-by")}
 
 
 def _likeness(left: _Portrait, right: _Portrait) -> float:
@@ -339,8 +348,6 @@ def _portray(pairs: Pairs, element: Element, *, is_old: bool) -> _Portrait:
     side = pairs.old if is_old else pairs.new
     to_token = pairs.old_token if is_old else pairs.new_token
     facts = pairs.old_facts(element) if is_old else pairs.new_facts(element)
-    if element.kind in CLASSIFIERS:
-        facts = [(tokens, fact) for tokens, fact in facts if fact.key != _ROLE]
     portrait: _Portrait = Counter(part for tokens, _ in facts for part in _split_ends(tokens))
     portrait.update(
         ("owns", child.kind, name_in_comparison(child)) for child in side.children(element)
