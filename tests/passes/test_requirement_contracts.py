@@ -166,3 +166,19 @@ def test_an_operation_has_the_contract_of_its_method():
 def test_a_guarantee_outside_gr1_is_reported(text, expected):
     _, sink = derive(build_tank(f'language="LTL" body="{text}"'))
     assert list_codes(sink) == expected
+
+
+def list_codes_of_chain(name):
+    """Return the codes for a requirement with the subject 'reserve' that names a feature so."""
+    text = build_tank(f'language="LTL" body="G ({name}<=3)"')
+    return list_codes(derive(text.replace('"R1"', '"R1" subject_name="reserve"'))[1])
+
+
+@pytest.mark.parametrize("name", ["level", "reserve.level", "Tank.level", "self.level"])
+def test_the_name_of_the_subject_may_precede_a_name(name):
+    assert "SM522" not in list_codes_of_chain(name)
+
+
+@pytest.mark.parametrize("name", ["reserv.level", "Safe.level", "reserve.x.level"])
+def test_another_name_before_a_name_is_an_error(name):
+    assert "SM522" in list_codes_of_chain(name)

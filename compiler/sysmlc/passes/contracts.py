@@ -31,7 +31,7 @@ from sysmlc.logic.reduction.contract_reduction import add_history_bits, is_reduc
 from sysmlc.logic.requirements import derivation as requirements
 from sysmlc.logic.requirements.derivation import add_features
 from sysmlc.logic.requirements.scope import Scope, scope_of
-from sysmlc.logic.requirements.statements import component_of, definition_of
+from sysmlc.logic.requirements.statements import component_of, definition_of, list_component_names
 from sysmlc.logic.services import derivation as services
 from sysmlc.logic.syntax import FormulaError
 
@@ -323,7 +323,8 @@ def _find_scope(graph: Graph, contract: Contract, assumed_range: tuple[int, int]
     if origin.kind not in _ACTIONS:
         return None
     context = context_of(graph, definition_of(graph, origin), assumed_range)
-    return scope_of(context, contract.variables)
+    scope = scope_of(context, contract.variables)
+    return replace(scope, component_names=list_component_names(graph, origin))
 
 
 def _extend(contract: Contract, conjuncts: list[Conjunct]) -> Contract:

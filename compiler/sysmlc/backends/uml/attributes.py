@@ -26,7 +26,8 @@ _Writer = Callable[[Context, Element, str, AttrValue], None]
 
 _DERIVED_NAMES = """
     role level origin unresolved lineage message_kind path_multiplicity item_property usage
-    property_specific req_id text external href library qualified_name stereotype namespace on"""
+    property_specific req_id text external href library qualified_name stereotype namespace on
+    subject_name"""
 _DERIVED = frozenset(_DERIVED_NAMES.split())
 """Attributes that passes derive, or that belong to stereotype applications."""
 _FROM_TAGS_NAMES = """encapsulated rate probability no_buffer overwrite distribution

@@ -165,6 +165,8 @@ def lower_subject(lowering: "Lowering", node: Node, element: Element) -> None:
     """Connect a requirement or a use case to the types of its subject."""
     for type_ in nodes.types_of(lowering, node):
         _defer_subject(lowering, element, type_)
+    if node.name:
+        lowering.graph.set(element, subject_name=node.name)
     if nodes.value_of(node) is not None:
         lowering.mark_approximated(node, "the value of a subject", "its type")
 

@@ -36,6 +36,7 @@ from sysmlc.logic.requirements.statements import (
     definition_of,
     find_redefining_operation,
     list_component_names,
+    list_subject_names,
 )
 from sysmlc.logic.syntax import FormulaError
 
@@ -235,6 +236,8 @@ def _read_statement(
     *obstacle* is the reason if the names of states, actions and parts are not available.
     """
     constraint = statement.constraint
+    subject_names = list_subject_names(graph, statement.requirement)
+    scope = replace(scope, component_names=(*scope.component_names, *subject_names))
     # Tools append a version: "OCL2.0", "KerML 1.0".
     language = _language_of(constraint).rstrip("0123456789. ")
     if _is_temporal(constraint):

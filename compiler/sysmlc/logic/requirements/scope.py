@@ -20,6 +20,8 @@ _NAME = re.compile(
     r"(?:running|finished)\(\s*[\w.]+\s*\)|[^\W\d]\w*(?:(?:\.|\#\(\d+\)\.)[^\W\d]\w*)*"
 )
 """A name in a formula: of an action, dotted, or plain."""
+_SELF = ("self", "this")
+"""Words for the subject in KerML, OCL and Alf."""
 _COMPONENT = re.compile(r"\s+shall\b", re.IGNORECASE)
 """What follows the name of the component in a structured requirement."""
 
@@ -33,7 +35,7 @@ class Scope(Struct, frozen=True):
     names: ComponentNames | None = None
     """Names of actions, states and parts; None if the subject has no behaviour to describe."""
     component_names: tuple[str, ...] = ()
-    """Names by which structured requirements may call the subject."""
+    """Names by which formulas and structured requirements may call the subject."""
 
     @property
     def domains(self) -> dict[str, Domain]:
@@ -63,19 +65,21 @@ class Scope(Struct, frozen=True):
         return Symbol(var(name), variable.domain)
 
     def find_feature(self, name: str) -> Feature | None:
-        """Return the feature with this name, or with the name after the first dot."""
+        """Return the feature with this name, or with the name behind that of the subject."""
         features = self.context.features
-        return features.get(name) or features.get(name.partition(".")[2])
+        return features.get(name) or features.get(self._drop_subject(name))
 
     def _find_meaning(self, name: str) -> Meaning | None:
-        """Return what a name, or the name after its first dot, denotes in the component.
-
-        The name of the subject may precede any name.
-        """
+        """Return what a name denotes in the component; the name of the subject may precede it."""
         if self.names is None:
             return None
-        rest = name.partition(".")[2]
+        rest = self._drop_subject(name)
         return self.names.find(name) or (self.names.find(rest) if rest else None)
+
+    def _drop_subject(self, name: str) -> str:
+        """Return the name behind that of the subject; empty if another name is the first one."""
+        first, _, rest = name.partition(".")
+        return rest if first in (*self.component_names, *_SELF) else ""
 
     def replace_names(self, text: str) -> tuple[str, dict[str, Meaning]]:
         """Replace names that are no variables (``tank.filling``, ``running(pick)``) by variables.

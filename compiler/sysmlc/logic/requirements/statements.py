@@ -126,6 +126,13 @@ def list_component_names(graph: Graph, subject: Element) -> tuple[str, ...]:
     return tuple(dict.fromkeys(element.name for element in elements if element.name))
 
 
+def list_subject_names(graph: Graph, requirement: Element) -> Iterator[str]:
+    """Yield the names of the subjects that a requirement declares, and of what satisfies it."""
+    for member in (requirement, *query.generals(graph, requirement)):
+        satisfying = (element.name for element in graph.sources(member, Edge.SATISFIES))
+        yield from filter(None, (str(member.attrs.get("subject_name", "")), *satisfying))
+
+
 def find_redefining_operation(graph: Graph, subject: Element) -> Element | None:
     """Return *subject* if it is an operation that redefines parameters of its method, else None."""
     if subject.kind is not Kind.OPERATION:
