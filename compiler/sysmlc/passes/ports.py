@@ -158,12 +158,13 @@ def _vendor_direction(graph: Graph, port: Element) -> str | None:
     Examples are FlowPort of MARTE, DataFlowPort of RobotML and Port of Papyrus' FMI profile. Their
     names end in "Port", and their literals are those of SysML.
     """
-    for application in applications(graph, port):
-        if str(application.attrs.get("stereotype", "")).endswith("Port"):
-            stated = application.attrs.get("tag.direction")
-            if stated in FLOW_DIRECTIONS:
-                return str(stated)
-    return None
+    stated = (a.attrs.get("tag.direction") for a in _list_port_applications(graph, port))
+    return next((str(direction) for direction in stated if direction in FLOW_DIRECTIONS), None)
+
+
+def _list_port_applications(graph: Graph, port: Element) -> list[Element]:
+    named = applications(graph, port)
+    return [a for a in named if str(a.attrs.get("stereotype", "")).endswith("Port")]
 
 
 def _conjugate(port: Element, direction: str | None) -> str | None:
@@ -285,15 +286,11 @@ def _check_multiplicity(graph: Graph, sink: Sink, feature: Element) -> None:
     if limits is None or limits[1] is None:
         return
     if limits[1] < limits[0]:
-        name = graph.qualified_name(feature)
-        sink.report(
-            BAD_MULTIPLICITY, graph.subject(feature), multiplicity=multiplicity, feature=name
-        )
+        subject = graph.subject(feature)
+        sink.report(BAD_MULTIPLICITY, subject, multiplicity=multiplicity, feature=subject.name)
     elif limits[1] == 0 and feature.kind is Kind.PORT:
-        name = graph.qualified_name(feature)
-        sink.report(
-            EMPTY_MULTIPLICITY, graph.subject(feature), multiplicity=multiplicity, port=name
-        )
+        subject = graph.subject(feature)
+        sink.report(EMPTY_MULTIPLICITY, subject, multiplicity=multiplicity, port=subject.name)
 
 
 def _report_undirected(graph: Graph, sink: Sink, ports: list[Element]) -> None:
@@ -331,11 +328,16 @@ def _is_reported(graph: Graph, port: Element) -> bool:
 
 
 def _has_explaining_type(graph: Graph, port: Element) -> bool:
-    """Whether the type of the port explains why the port has no direction.
+    """Whether the type or stereotype of the port explains why the port has no direction.
 
     Everything flows through the ports of the type, or the type or a general of it is in a file that
     is not read. The missing file is reported, and its flow properties may state a direction.
     """
+    # Without a tag, the direction of a vendor's port is a default value in the vendor's profile.
+    vendor_ports = _list_port_applications(graph, port) if port.role == "port" else []
+    untagged = (each for each in vendor_ports if "tag.direction" not in each.attrs)
+    if any(graph.target(each, Edge.INSTANCE_OF) is None for each in untagged):
+        return True
     type_ = type_of(graph, port)
     if type_ is None:
         return False
@@ -358,7 +360,6 @@ def _find_plant_files(graph: Graph) -> frozenset[str]:
 
 def _find_undirected_plant_ports(graph: Graph, ports: Iterable[Element]) -> list[Element]:
     """Return the ports for flows without direction, in files where other ports have one."""
-    # In most files no port has a direction, which is no fault of single ports.
     flow_ports = [port for port in ports if _is_for_flows(graph, port)]
     files_with_directions = {port.source for port in flow_ports if "direction" in port.attrs}
     return [
