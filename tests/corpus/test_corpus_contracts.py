@@ -4,6 +4,7 @@ import re
 
 import pytest
 
+from examples.compiling import list_silent_contracts
 from sysmlc.diagnostics import Sink
 from sysmlc.driver import Request, compile_model
 from sysmlc.logic.composition.derivation import compose_blocks
@@ -18,6 +19,10 @@ pytestmark = pytest.mark.corpus
 @pytest.fixture(scope="module")
 def laboratory(corpus):
     return compile_model(Request((corpus / "sysml2" / "ice-lab",))).graph
+
+
+def test_a_contract_of_the_laboratory_is_about_a_feature_or_says_why_it_is_not(laboratory):
+    assert list_silent_contracts(laboratory) == []
 
 
 def make_locator(graph):

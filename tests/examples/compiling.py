@@ -1,8 +1,14 @@
 """The models in ``examples``, and functions that compile them in memory."""
 
+import re
 from pathlib import Path
 
+from sysmlc.backends.contract_pages import print_page
 from sysmlc.driver import Compilation, Request, compile_model, select_backends
+from sysmlc.ir import Graph
+from sysmlc.logic.contract import Contract
+from sysmlc.logic.expressions.named_elements import VALUE_KINDS
+from sysmlc.logic.formula import variables
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = sorted(
@@ -38,4 +44,28 @@ def format_diagnostics(compilation: Compilation) -> str:
         f"{diagnostic.rule.code} {diagnostic.severity} {diagnostic.message} "
         f"[{diagnostic.subject.name}]\n"
         for diagnostic in compilation.diagnostics
+    )
+
+
+_REASON = re.compile(r"^No guarantee is about a feature or a signal: .+\.$", re.MULTILINE)
+
+
+def list_silent_contracts(graph: Graph) -> list[str]:
+    """Return the components whose pages say wrongly, or fail to say, that no feature is stated."""
+    return [
+        contract.component
+        for contract in graph.derived(Contract)
+        if (_REASON.search(print_page(graph, contract)) is not None)
+        == _states_feature(graph, contract)
+    ]
+
+
+def _states_feature(graph: Graph, contract: Contract) -> bool:
+    """Whether a guarantee is about a feature, or about a signal that is sent or received."""
+    used = {variable.name for part in contract.guarantees for variable in variables(part.formula)}
+    return any(
+        graph[variable.origin].kind in VALUE_KINDS
+        or re.search(r"event$|^(send|receive)_", variable.name) is not None
+        for variable in contract.variables
+        if variable.name in used and variable.origin in graph
     )

@@ -15,6 +15,9 @@ from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.compare.titles import separate_words
 from sysmlc.logic.contract import Class, Conjunct, Contract, Variable
 from sysmlc.logic.domains import describe
+from sysmlc.logic.expressions.named_elements import VALUE_KINDS
+from sysmlc.logic.feature_writes import iter_writes
+from sysmlc.logic.formula import variables as list_variables
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.requirements.statements import list_texts_about
 from sysmlc.support.escapes import escape_code, escape_markdown
@@ -43,6 +46,12 @@ _UNSET = re.compile(r"!\w+$")
 """The formula of a Boolean that is false."""
 _MANY_UNSET = 3
 """From this number on, Booleans that are initially false are one item with a list."""
+_SIGNALS = ("send_", "receive_")
+"""Prefixes of variables that are true when a signal is sent or received."""
+_NOTHING_TO_STATE = (
+    "No guarantee is about a feature or a signal: the behaviour only orders its actions; it "
+    "assigns no feature, tests none in a guard, and exchanges no signals."
+)
 _FLOWS = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
 _MARKUP = re.compile(r"[<>`|\[\]]")
 """Characters of a comment that Markdown would not show as they are written."""
@@ -84,6 +93,8 @@ class Page(Struct, frozen=True):
     """The author's comment on the component."""
     texts: tuple[str, ...] = ()
     """Requirements on the component that are only text."""
+    reason: str = ""
+    """Why no guarantee is about a feature or a signal; empty if one is."""
 
 
 def print_page(graph: Graph, contract: Contract, templates: Templates = _SHIPPED) -> str:
@@ -112,6 +123,7 @@ class _PageBuilder:
             "; ".join(_explain_prefixes(contract)),
             escape_markdown(_find_author_comment(self._graph, contract)),
             tuple(_list_texts(self._graph, contract)),
+            escape_markdown(_explain_missing_features(self._graph, contract)),
         )
 
     def _label_element(self, id: str) -> tuple[str, str]:
@@ -172,6 +184,27 @@ def _explain_prefixes(contract: Contract) -> Iterator[str]:
     for prefix, meaning in _PREFIXES.items():
         if prefix in prefixes:
             yield f"`{prefix}...`: {meaning}"
+
+
+def _explain_missing_features(graph: Graph, contract: Contract) -> str:
+    """Return why no guarantee is about a feature or a signal, in a sentence; empty if one is."""
+    formulas = (conjunct.formula for conjunct in contract.guarantees)
+    used = {variable.name for formula in formulas for variable in list_variables(formula)}
+    for variable in contract.variables:
+        origin = graph.get(variable.origin)
+        is_signal = variable.name.startswith(_SIGNALS) or variable.name.endswith("event")
+        is_feature = origin is not None and origin.kind in VALUE_KINDS
+        if variable.name in used and (is_feature or is_signal):
+            return ""
+    actions = (item for item in graph.subtree(graph[contract.origin]) if item.kind is Kind.ACTION)
+    names = dict.fromkeys(write.name for action in actions for write in iter_writes(graph, action))
+    if not names:
+        return _NOTHING_TO_STATE
+    listed = ", ".join(f"'{name}'" for name in names)
+    return (
+        f"No guarantee is about a feature or a signal: {listed} has no known value, no finite "
+        "range, or other writers."
+    )
 
 
 def _list_texts(graph: Graph, contract: Contract) -> Iterator[str]:

@@ -85,7 +85,7 @@ class CompositionVerdict(Struct, frozen=True):
     component: str
     parts: int
     has_whole: bool
-    """Whether the block itself has a contract."""
+    """Whether the block itself guarantees something."""
     has_shared_variables: bool
     """Whether a part shares variables with another part or with the block."""
     is_satisfied: bool | None
@@ -101,8 +101,12 @@ class CompositionVerdict(Struct, frozen=True):
         if self.is_satisfied is None:
             return "the composition of its parts is not checked"
         if self.has_whole and self.has_shared_variables:
+            if self.parts == 1:
+                return f"its part {'satisfies' if self.is_satisfied else 'violates'} its contract"
             verb = "satisfy" if self.is_satisfied else "violate"
             return f"its {self.parts} parts together {verb} its contract"
+        if self.parts == 1:
+            return f"its part {'fits' if self.is_satisfied else 'does not fit'}"
         if self.is_satisfied and not self.has_shared_variables:
             return f"its {self.parts} parts are not connected"
         return f"its {self.parts} parts {'fit' if self.is_satisfied else 'do not fit'} together"
@@ -131,7 +135,8 @@ def check_compositions(
             for group, composition in decided
             for witness in _build_witnesses(group, composition)
         )
-        has_whole, has_shared = composite.whole is not None, has_shared_variables(composite)
+        whole, has_shared = composite.whole, has_shared_variables(composite)
+        has_whole = whole is not None and bool(whole.guarantees)
         yield CompositionVerdict(
             composite.component,
             len(composite.parts),

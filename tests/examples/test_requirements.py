@@ -1,0 +1,128 @@
+"""Requirements and contracts of the examples: what is proved, and which faults are refuted."""
+
+import json
+import re
+
+import pytest
+from click.testing import CliRunner
+
+from examples.compiling import (
+    EXAMPLES,
+    PLANT,
+    ROOT,
+    TEXT,
+    compile_example,
+    list_silent_contracts,
+)
+from plantuml_jar import PlantUml, list_missing_tools
+from sysmlc.cli.group import sysmlc
+from sysmlc.logic.contract import Contract
+
+GATE = ROOT / "examples" / "baygate-behaviour" / "baygate-behaviour.uml"
+LEGO = ROOT / "examples" / "lego-recipe" / "lego-recipe.uml"
+
+
+def check(model, *options):
+    """Return the exit code and the entries of the requirements of a model."""
+    arguments = ["contracts", "check", str(model), "--format", "json", *options]
+    result = CliRunner().invoke(sysmlc, arguments)
+    return result.exit_code, json.loads(result.stdout)["requirements"]
+
+
+def list_verdicts(entries):
+    """Return requirement, component and verdict of each entry by their last names."""
+    return [
+        (last_name(entry["requirement"]), last_name(entry["component"]), entry["verdict"])
+        for entry in entries
+    ]
+
+
+def last_name(qualified_name):
+    return qualified_name.rpartition("::")[2]
+
+
+LEGO_VERDICTS = [
+    ("HoldPiece", "Robot1", "holds"),
+    ("HoldPiece", "Robot1", "holds"),
+    ("HoldPiece", "Robot2", "holds"),
+    ("HoldPiece", "Robot2", "holds"),
+    ("AssembleQuality", "CheckQuality", "not-decided"),
+    ("BoundedRetry", "Assemble", "not-decided"),
+    ("CycleTime", "BuildLegoStack", "holds"),
+    ("AssembleTime", "Assemble", "holds"),
+    ("StoreTime", "Store", "holds"),
+]
+GATE_VERDICTS = [
+    ("ReadBeforeRelease", "Stopper", "holds"),
+    ("ReadBeforeRelease", "Stopper", "holds"),
+    ("ReadBeforeRelease", "Stopper", "holds"),
+    ("ReadBeforeRelease", "Stopper", "holds"),
+    ("AdmitExpectedPallet", "BayGate.HandlePallet", "not-decided"),
+    ("OnePalletInBay", "BayGate", "not-decided"),
+]
+
+
+@pytest.mark.parametrize(
+    ("model", "verdicts"),
+    [
+        (LEGO, LEGO_VERDICTS),
+        pytest.param(TEXT, LEGO_VERDICTS, marks=pytest.mark.long),
+        (GATE, GATE_VERDICTS),
+    ],
+)
+def test_the_requirements_of_the_examples_have_these_verdicts(model, verdicts):
+    exit_code, entries = check(model)
+    assert [exit_code, list_verdicts(entries)] == [0, verdicts]
+    assert not any(entry["vacuous"] for entry in entries)
+    # Three requirements on times are decided by the recipe; the others that hold are formulas.
+    texts = [entry for entry in entries if "only text" in (entry["reason"] or "")]
+    assert all("the recipe decides it" in e["reason"] for e in texts if e["verdict"] == "holds")
+
+
+FAULTS = [
+    (
+        LEGO,
+        # The gripper does not store that it is closed.
+        ("closed := true", "closed := false"),
+        "LegoRecipe::Plant::Robot1",
+        "gripper_state=Closed -> gripper_closed",
+        ["p0 -> p1 : gripper_event=CloseGripper", "gripper_state=Closed"],
+    ),
+    (
+        GATE,
+        # An emergency stop lowers the pin.
+        (r'(name="holdAll".*?)PinPosition::raised', r"\1PinPosition::lowered"),
+        "BayGate::BayGate Breakdown::Stopper",
+        "state=Stopped -> pin=raised",
+        ["p0 -> p1 : event=EmergencyStop", "state=Stopped"],
+    ),
+]
+
+
+@pytest.mark.parametrize(("model", "fault", "component", "formula", "steps"), FAULTS)
+def test_a_deliberate_fault_is_refuted_with_a_run_that_is_drawn(
+    tmp_path, model, fault, component, formula, steps
+):
+    text = model.read_text("utf-8")
+    mutant = tmp_path / model.name
+    mutant.write_text(re.sub(*fault, text, count=1, flags=re.DOTALL), "utf-8")
+    assert mutant.read_text("utf-8") != text
+    exit_code, entries = check(mutant, "-c", component, "-o", str(tmp_path / "runs"))
+    broken = [entry for entry in entries if entry["verdict"] == "broken"]
+    assert exit_code == 1
+    assert f"G ({formula})" in [entry["formula"] for entry in broken]
+    diagrams = {path.name: path.read_text("utf-8") for path in (tmp_path / "runs").iterdir()}
+    drawn = "\n".join(diagrams.values())
+    assert all(step in drawn for step in steps)
+    if not list_missing_tools():
+        assert PlantUml(tmp_path / "pictures").render(diagrams)
+
+
+# -- what the contracts state ----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("model", [*EXAMPLES, PLANT], ids=lambda path: path.parent.name)
+def test_a_contract_is_about_a_feature_or_says_why_it_is_not(model):
+    graph = compile_example(model, "ir").graph
+    assert list(graph.derived(Contract))
+    assert list_silent_contracts(graph) == []
