@@ -202,3 +202,32 @@ def test_an_output_without_attribute_changes_no_other_feature(decide):
         "holds",
         "broken",
     ]
+
+
+# -- wording -------------------------------------------------------------------------------------
+
+
+def test_formulas_have_the_names_of_the_author(workspace, all_passes):
+    cell = "part def Cell { part robot : Robot; perform action work { first start then take; "
+    cell += "perform action take references robot.pick; then done; } }"
+    formulas = ("G (finished(take) -> X it.robot.gripped) & G F running(take)", "G !robot.gripped")
+    requirements = (
+        f'requirement R{number} {{ subject it : Cell; require constraint {{ language "ltl" '
+        f"/* {formula} */ }} }}"
+        for number, formula in enumerate(formulas)
+    )
+    lines = ("package P {", "private import ScalarValues::*;", ROBOT, cell, *requirements, "}")
+    workspace.write("model.sysml", "\n".join(lines))
+    result = workspace.sysmlc("contracts", "check", "--format", "json", "model.sysml")
+    document = json.loads(result.stdout)
+    assert [entry["formula"] for entry in document["requirements"]] == [
+        "G (finished(take) -> it.robot.gripped')",
+        "G F running(take)",
+        "G !robot.gripped",
+    ]
+    (broken,) = (
+        diagnostic["message"]
+        for diagnostic in document["diagnostics"]
+        if "robot.gripped" in diagnostic["message"]
+    )
+    assert "violates 'G !robot.gripped'" in broken

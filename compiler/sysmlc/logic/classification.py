@@ -1,9 +1,11 @@
 """Classes of GR(1): the class of an LTL formula, and its form in that class (thesis, 2.2.3)."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+
+from msgspec.structs import replace
 
 from sysmlc.logic import formula as f
-from sysmlc.logic.contract import Class
+from sysmlc.logic.contract import Class, Conjunct
 from sysmlc.logic.formula import FUTURE, Apply, Formula, Op, has_future, has_primes
 
 
@@ -33,6 +35,27 @@ def classify(formula: Formula) -> Iterator[tuple[Class, Formula]]:
         case _:
             is_initial = not has_future(formula) and not has_primes(formula)
             yield (Class.INIT if is_initial else Class.OTHER), formula
+
+
+def word_conjuncts(conjuncts: Sequence[Conjunct], wording: Formula | None) -> Iterator[Conjunct]:
+    """Yield the conjuncts of a formula with the wording of the formula, or of their part of it.
+
+    A part whose class differs in words has none, such as one that constants decide.
+    """
+    parts = [] if wording is None else list(classify(wording))
+    if [class_ for class_, _ in parts] != [conjunct.class_ for conjunct in conjuncts]:
+        yield from conjuncts
+        return
+    for conjunct, (class_, part) in zip(conjuncts, parts, strict=True):
+        whole = wording if len(parts) == 1 else add_temporal_operators(class_, part)
+        yield replace(conjunct, wording=whole)
+
+
+def add_temporal_operators(class_: Class, formula: Formula) -> Formula:
+    """Return the formula in LTL, with the operators that its class implies."""
+    if class_ is Class.LIVENESS:
+        formula = f.eventually(formula)
+    return f.always(formula) if class_ in (Class.SAFETY, Class.LIVENESS) else formula
 
 
 def convert_to_class(formula: Formula, class_: Class) -> Formula | None:

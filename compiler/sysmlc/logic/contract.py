@@ -91,6 +91,8 @@ class Conjunct(Struct, frozen=True):
     viewpoint: str = ""
     """Name of the requirement whose viewpoint the conjunct belongs to; empty if common to all."""
     source: Source = Source.AUTHOR
+    wording: Formula | None = None
+    """The formula in LTL with the names that the author wrote, if they differ from variables."""
 
     @property
     def is_derived(self) -> bool:

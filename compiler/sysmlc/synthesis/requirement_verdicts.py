@@ -183,8 +183,12 @@ class BehaviourCheck:
         """
         if self._is_valid(conjunct):
             return "it holds whatever the behaviour does"
-        for condition, stronger in iter_strengthened(conjunct.formula):
+        strengthened = list(iter_strengthened(conjunct.formula))
+        worded = list(iter_strengthened(conjunct.wording or conjunct.formula))
+        for position, (condition, stronger) in enumerate(strengthened):
             if self._entails(endings, replace(conjunct, formula=stronger)):
+                if len(worded) == len(strengthened):
+                    condition, _ = worded[position]
                 return f"its condition '{print_formula(condition)}' is never true"
         return ""
 

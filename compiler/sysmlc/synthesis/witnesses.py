@@ -116,7 +116,9 @@ _TEMPORAL_PREFIXES = {Class.INIT: "", Class.SAFETY: "G ", Class.LIVENESS: "G F "
 
 
 def print_temporal(conjunct: Conjunct) -> str:
-    """Return the conjunct with the temporal operators that its class implies."""
+    """Return the conjunct in the author's names, with the operators that its class implies."""
+    if conjunct.wording is not None:
+        return print_formula(conjunct.wording)
     formula, operators = print_formula(conjunct.formula), _TEMPORAL_PREFIXES[conjunct.class_]
     return f"{operators}({formula})" if operators else formula
 
@@ -199,6 +201,6 @@ def report_failure(
         subject,
         notes=(*describe_run(failure.trace, conjunct), *notes),
         component=component,
-        formula=print_formula(conjunct.formula),
+        formula=print_formula(conjunct.wording or conjunct.formula),
         context=text_in_parentheses(conjunct),
     )

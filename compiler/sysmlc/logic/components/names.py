@@ -29,6 +29,8 @@ class Meaning(Struct, frozen=True):
 
     formula: Formula
     domain: Domain
+    name: str = ""
+    """The name in the formula of the author."""
 
 
 class ComponentNames:

@@ -8,7 +8,7 @@ from msgspec.structs import replace
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.logic import formula as f
-from sysmlc.logic.classification import classify
+from sysmlc.logic.classification import classify, word_conjuncts
 from sysmlc.logic.components.component import Component
 from sysmlc.logic.components.derivation import (
     ComponentBehaviour,
@@ -23,12 +23,12 @@ from sysmlc.logic.expressions.elaboration import ElaborationError, Fault, elabor
 from sysmlc.logic.expressions.expression import ExpressionError
 from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.feature_writes import WriterIndex
-from sysmlc.logic.formal_texts import describe_error, is_formal, read_formal
+from sysmlc.logic.formal_texts import describe_error, read_formal
 from sysmlc.logic.formula import Formula, Literal
 from sysmlc.logic.machines.reader import MachineOptions, find_context_classifier
 from sysmlc.logic.printing import print_literal
 from sysmlc.logic.reduction.contract_reduction import add_history_bits
-from sysmlc.logic.requirements.scope import Scope, replace_meanings, scope_of
+from sysmlc.logic.requirements.scope import Scope, replace_meanings, restore_names, scope_of
 from sysmlc.logic.requirements.statements import (
     Statement,
     collect_statements,
@@ -100,9 +100,9 @@ def derive(
         if described is not None:
             scope = replace(scope, names=ComponentNames(described))
         formulas = [
-            (statement, formula)
+            (statement, reading)
             for statement in statements
-            if (formula := _read_statement(graph, scope, statement, informal, sink, obstacle))
+            if (reading := _read_statement(graph, scope, statement, informal, sink, obstacle))
             is not None
         ]
         if described is not None:
@@ -111,10 +111,10 @@ def derive(
             scope = replace(scope, variables=scope_of(context, whole.contract.variables).variables)
         assumptions: list[Conjunct] = []
         demands: list[Conjunct] = []
-        for statement, formula in formulas:
-            is_assumed = _is_assumed(scope, statement, formula)
+        for statement, reading in formulas:
+            is_assumed = _is_assumed(scope, statement, reading.formula)
             conjuncts = assumptions if is_assumed else demands
-            conjuncts += _classify(scope, statement, formula, is_assumed)
+            conjuncts += _classify(scope, statement, reading, is_assumed)
         if demands:
             name = component if behaviour is None else f"{component}.requirements"
             inputs, outputs = _state_initial_values(
@@ -223,6 +223,13 @@ class _InformalStatements:
             )
 
 
+class _Reading(Struct, frozen=True):
+    """The formula of a statement, and the same formula with the names that the author wrote."""
+
+    formula: Formula
+    wording: Formula | None = None
+
+
 def _read_statement(
     graph: Graph,
     scope: Scope,
@@ -230,7 +237,7 @@ def _read_statement(
     informal: _InformalStatements,
     sink: Sink,
     obstacle: str = "",
-) -> Formula | None:
+) -> _Reading | None:
     """Return the formula of a statement, or record why it has none.
 
     *obstacle* is the reason if the names of states, actions and parts are not available.
@@ -239,39 +246,31 @@ def _read_statement(
     subject_names = list_subject_names(graph, statement.requirement)
     scope = replace(scope, component_names=(*scope.component_names, *subject_names))
     # Tools append a version: "OCL2.0", "KerML 1.0".
-    language = _language_of(constraint).rstrip("0123456789. ")
-    if _is_temporal(constraint):
+    language = statement.language.rstrip("0123456789. ")
+    reading: _Reading | None = None
+    if statement.is_temporal:
         # Without the names of the component, an unknown name may be one of them.
-        formula = _read_temporal(graph, scope, statement, Sink() if obstacle else sink)
-        if formula is None and obstacle:
+        reading = _read_temporal(graph, scope, statement, Sink() if obstacle else sink)
+        if reading is None and obstacle:
             informal.add(statement, obstacle)
     elif language in _EXPRESSION_LANGUAGES:
         formula = _read_condition(scope, statement, informal)
+        reading = None if formula is None else _Reading(formula)
     else:
-        formula = None
         informal.add(statement, f"it is written in {constraint.attrs['language']}")
-    if formula is not None:
-        _report_ranges(graph, scope, formula, sink)
-    return formula
+    if reading is not None:
+        _report_ranges(graph, scope, reading.formula, sink)
+    return reading
 
 
-def _is_temporal(constraint: Element) -> bool:
-    """Whether the constraint is temporal logic or a sentence of a property pattern."""
-    return is_formal(_language_of(constraint), str(constraint.attrs.get("body", "")))
-
-
-def _language_of(constraint: Element) -> str:
-    return str(constraint.attrs.get("language", "")).lower()
-
-
-def _read_temporal(graph: Graph, scope: Scope, statement: Statement, sink: Sink) -> Formula | None:
+def _read_temporal(graph: Graph, scope: Scope, statement: Statement, sink: Sink) -> _Reading | None:
     constraint = statement.constraint
     body = str(constraint.attrs["body"])
     try:
         text, meanings = scope.replace_names(body)
         domains = {name: meaning.domain for name, meaning in meanings.items()}
         all_domains = {**scope.domains, **domains}
-        formula = read_formal(text, _language_of(constraint), all_domains, scope.component_names)
+        formula = read_formal(text, statement.language, all_domains, scope.component_names)
     except FormulaError as error:
         sink.report(
             NOT_A_FORMULA,
@@ -283,7 +282,8 @@ def _read_temporal(graph: Graph, scope: Scope, statement: Statement, sink: Sink)
             reason=describe_error(error, body),
         )
         return None
-    return replace_meanings(scope.substitute_constants(formula), meanings)
+    wording = restore_names(formula, meanings) if meanings else None
+    return _Reading(replace_meanings(scope.substitute_constants(formula), meanings), wording)
 
 
 def _read_condition(
@@ -323,13 +323,16 @@ def _is_assumed(scope: Scope, statement: Statement, formula: Formula) -> bool:
 
 
 def _classify(
-    scope: Scope, statement: Statement, formula: Formula, is_assumed: bool
+    scope: Scope, statement: Statement, reading: _Reading, is_assumed: bool
 ) -> Iterator[Conjunct]:
     """Yield the conjuncts of a statement; their texts name its requirement."""
     id, name = statement.constraint.id, statement.requirement.name
     text = _describe(statement, is_assumed)
-    for class_, part in _split_by_class(scope, statement, formula, is_assumed):
-        yield Conjunct(part, class_, id, text, name)
+    conjuncts = [
+        Conjunct(part, class_, id, text, name)
+        for class_, part in _split_by_class(scope, statement, reading.formula, is_assumed)
+    ]
+    yield from word_conjuncts(conjuncts, reading.wording)
 
 
 def _split_by_class(
@@ -341,7 +344,7 @@ def _split_by_class(
     about inputs alone, it is stated for the first step and for each next step: the environment can
     then never reach a step in which it has to violate the assumption.
     """
-    if _is_temporal(statement.constraint):
+    if statement.is_temporal:
         yield from classify(formula)
     elif is_assumed and scope.is_about_inputs(formula):
         yield Class.INIT, formula

@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable, Mapping
 
 from msgspec import Struct
+from msgspec.structs import replace
 
 from sysmlc.ir import Kind
 from sysmlc.logic.components.names import ComponentNames, Meaning
@@ -106,7 +107,7 @@ class Scope(Struct, frozen=True):
         if is_plain and (name in self.variables or isinstance(meaning.formula, Const)):
             return name
         variable = f"__{len(meanings)}"
-        meanings[variable] = meaning
+        meanings[variable] = replace(meaning, name=name)
         return variable.ljust(len(name))
 
     def substitute_constants(self, formula: Formula) -> Formula:
@@ -138,6 +139,17 @@ def replace_meanings(formula: Formula, meanings: Mapping[str, Meaning]) -> Formu
             return prime(meaning) if primed else meaning
         case Apply(op, args):
             return rebuild(op, tuple(replace_meanings(arg, meanings) for arg in args))
+        case _:
+            return formula
+
+
+def restore_names(formula: Formula, meanings: Mapping[str, Meaning]) -> Formula:
+    """Replace the variables that stand for names by the names themselves."""
+    match formula:
+        case Var(name, primed) if name in meanings:
+            return Var(meanings[name].name, primed)
+        case Apply(op, args):
+            return Apply(op, tuple(restore_names(arg, meanings) for arg in args))
         case _:
             return formula
 

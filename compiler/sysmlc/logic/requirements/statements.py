@@ -6,6 +6,7 @@ from msgspec import Struct
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic.contract import Contract
+from sysmlc.logic.formal_texts import is_formal
 
 _SUBJECTS = (*query.CLASSIFIERS, *query.BEHAVIORS)
 
@@ -20,6 +21,16 @@ class Statement(Struct, frozen=True):
     """The requirement does not separate assumptions from demands (SysML v1): a formula over inputs
     alone is then assumed.
     """
+
+    @property
+    def language(self) -> str:
+        """The language of the constraint, in small letters."""
+        return str(self.constraint.attrs.get("language", "")).lower()
+
+    @property
+    def is_temporal(self) -> bool:
+        """Whether the constraint is temporal logic or a sentence of a property pattern."""
+        return is_formal(self.language, str(self.constraint.attrs.get("body", "")))
 
 
 def collect_statements(graph: Graph) -> list[tuple[Element, list[Statement]]]:
