@@ -2,8 +2,8 @@
 
 The game reads the drawing and uses nothing that the compiler derives. In one step, every node moves
 the tokens that it can move, as it finds them at the start of the step: an action starts, and ends
-when the environment says that it is done; a control node passes tokens on. An activity that is over
-starts again in the next step.
+when the environment says that it is done, or after one step if it sends or assigns something; a
+control node passes tokens on. An activity that is over starts again in the next step.
 """
 
 from dataclasses import dataclass, replace
@@ -110,7 +110,7 @@ class _Step:
                 self.running.add(node)
         elif ready:
             raise UnsafeError
-        elif kind == "send" or node in self.inputs:
+        elif kind == "send" or node in self.drawing.bodies or node in self.inputs:
             self.running.remove(node)
             self.produced += outgoing
             if node in self.drawing.bodies:

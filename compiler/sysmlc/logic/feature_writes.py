@@ -138,6 +138,17 @@ def _iter_assignments(action: Element) -> Iterator[FeatureWrite]:
             yield FeatureWrite(action, name.removeprefix("self."), statement.value)
 
 
+def takes_one_step(action: Element) -> bool:
+    """Whether the body of an action consists of assignments alone."""
+    body = action.attrs.get("body")
+    if not isinstance(body, str) or ":=" not in body:
+        return False
+    try:
+        return all(isinstance(statement, Assignment) for statement in parse_effect(body))
+    except ExpressionError:
+        return False
+
+
 def _read_write_action(graph: Graph, action: Element) -> Iterator[FeatureWrite]:
     """Yield the write of an Add Structural Feature Value action."""
     feature = graph.target(action, Edge.CALLS)

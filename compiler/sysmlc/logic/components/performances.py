@@ -36,8 +36,6 @@ from sysmlc.logic.components.objects import (
 from sysmlc.logic.composition.naming import rename_variables
 from sysmlc.logic.composition.structure import find_drawn_activity
 from sysmlc.logic.contract import BooleanDomain, Owner, Variable
-from sysmlc.logic.expressions.expression import Assignment, ExpressionError
-from sysmlc.logic.expressions.parsing import parse_effect
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.identifiers import identifier
 
@@ -305,9 +303,6 @@ class Performances:
             self.paths.append(ActionPath(names, new.id))
         if is_work and self._graph.targets(element, Edge.CALLS) and _is_call(element):
             new = self._add_call(new, element, copy, names, around)
-        elif is_work and node.done is not None and takes_one_step(element):
-            self._drop_end(new)
-            new = replace(new, duration=Duration.PULSE, done=None)
         self.nodes.append(new)
 
     def _add_call(
@@ -370,17 +365,6 @@ class Performances:
 
 def _is_call(element: Element) -> bool:
     return element.subkind in ("call-behavior", "call-operation", "")
-
-
-def takes_one_step(action: Element) -> bool:
-    """Whether the body of an action consists of assignments alone."""
-    body = action.attrs.get("body")
-    if not isinstance(body, str) or ":=" not in body:
-        return False
-    try:
-        return all(isinstance(statement, Assignment) for statement in parse_effect(body))
-    except ExpressionError:
-        return False
 
 
 def _rename_guard(guard: Guard | None, copy: Copy) -> Guard | None:

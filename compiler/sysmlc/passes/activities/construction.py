@@ -20,6 +20,7 @@ from sysmlc.logic.activities.token_graph import (
     TokenGraph,
     TokenNode,
 )
+from sysmlc.logic.feature_writes import takes_one_step
 from sysmlc.logic.identifiers import identifier
 from sysmlc.passes.activities import rules
 from sysmlc.passes.activities.draft import Draft, lower_bound
@@ -223,8 +224,9 @@ def _add_action_variables(draft: Draft, node: Element, token_node: TokenNode) ->
     prefix = _OUTPUT_PREFIXES.get(node.subkind, "run")
     called_name = _find_called_name(draft, node) if prefix != "run" else ""
     run = draft.inputs.names.new(f"{prefix}_{identifier(called_name) if called_name else short}")
-    if node.subkind in _PULSE_ACTIONS or node.attrs.get("synchronous") is False:
-        # The caller does not wait for the end of an asynchronous call (UML 2.5.1, 16.3.3).
+    # The caller does not wait for the end of an asynchronous call (UML 2.5.1, 16.3.3).
+    is_asynchronous = node.attrs.get("synchronous") is False
+    if node.subkind in _PULSE_ACTIONS or is_asynchronous or takes_one_step(node):
         return replace(token_node, duration=Duration.PULSE, run=run)
     if node.subkind in ACCEPTS:
         end_condition, names = read_events(draft.inputs, node)
