@@ -10,9 +10,11 @@ from collections.abc import Iterable, Iterator
 
 from msgspec import Struct
 
+from sysmlc.backends.activity_summaries import ActivitySummary
 from sysmlc.backends.templates import Templates
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.compare.titles import separate_words
+from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.contract import Class, Conjunct, Contract, Variable
 from sysmlc.logic.domains import describe
 from sysmlc.logic.expressions.named_elements import VALUE_KINDS
@@ -95,6 +97,8 @@ class Page(Struct, frozen=True):
     """Requirements on the component that are only text."""
     reason: str = ""
     """Why no guarantee is about a feature or a signal; empty if one is."""
+    summary: tuple[str, ...] = ()
+    """What an activity does, in sentences; empty for other components."""
 
 
 def print_page(graph: Graph, contract: Contract, templates: Templates = _SHIPPED) -> str:
@@ -124,7 +128,14 @@ class _PageBuilder:
             escape_markdown(_find_author_comment(self._graph, contract)),
             tuple(_list_texts(self._graph, contract)),
             escape_markdown(_explain_missing_features(self._graph, contract)),
+            self._summarise(contract),
         )
+
+    def _summarise(self, contract: Contract) -> tuple[str, ...]:
+        """Return the paragraphs about an activity, or nothing for another component."""
+        games = self._graph.derived(TokenGraph)
+        game = next((game for game in games if game.activity == contract.origin), None)
+        return () if game is None else tuple(ActivitySummary(game, contract).iter_paragraphs())
 
     def _label_element(self, id: str) -> tuple[str, str]:
         """Return the description of an element, and the file that contains it, as Markdown."""
