@@ -1,4 +1,7 @@
-"""sysmlc and the OpenMBEE toolkit accept the SysML v2 text of all XMI and AutomationML models."""
+"""The OpenMBEE toolkit accepts the SysML v2 text of all XMI and AutomationML models.
+
+``test_corpus_v2_same_graph`` reads the texts with sysmlc, and fails if they have errors.
+"""
 
 import gc
 
@@ -22,13 +25,11 @@ MODELS = [
 
 
 @pytest.mark.parametrize("path", MODELS, ids=lambda path: path.name)
-def test_both_tools_accept_the_text(path):
+def test_the_toolkit_accepts_the_text(path):
     files, _ = write(compile_example(path, "ir").graph)
-    _, sink = lower([Source(*file) for file in encode(files)], PASSES, FRONTEND)
-    errors = [f"{error.rule.code} {error.message}" for error in sink if error.is_error]
     complaints = load(files).complaints
     gc.unfreeze()
-    assert (errors, complaints) == ([], [])
+    assert complaints == []
 
 
 def test_the_text_of_the_telescope_has_no_errors(corpus):

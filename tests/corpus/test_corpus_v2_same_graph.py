@@ -25,11 +25,16 @@ TASKS = next(path for path in EXAMPLES if path.stem == "four-tasks")
 
 
 def read_text(lines, uses_library):
-    """Return the graph of a text, read together with the library if the text uses it."""
+    """Return the graph of a text, read together with the library if the text uses it.
+
+    Fails if the text has errors.
+    """
     sources = [Source("model.sysml", print_lines(lines).encode())]
     if uses_library:
         sources.append(Source(LIBRARY, resources.read_text("metamodels", LIBRARY).encode()))
-    return lower(sources, PASSES, FRONTEND)[0]
+    graph, sink = lower(sources, PASSES, FRONTEND)
+    assert [f"{error.rule.code} {error.message}" for error in sink if error.is_error] == []
+    return graph
 
 
 def explain_model(path):
@@ -63,7 +68,7 @@ def test_a_difference_without_a_reason_is_not_explained():
 def test_differences_of_real_models_have_reasons(golden):
     models = [
         *list_models(*(f"xmi/{folder}" for folder in XMI_FOLDERS), suffixes=XMI_SUFFIXES),
-        *list_models("aml/dev", suffixes=(".aml", ".amlx")),
+        *list_models("aml/baygate", "aml/dev", suffixes=(".aml", ".amlx")),
     ]
     lines, total = [], 0
     for path in models:

@@ -467,7 +467,10 @@ REASONS: list[Reason] = [
     ),
     Reason(
         "a pseudostate of a state belongs to the only region of the state",
-        lambda d: d.kind in (Kind.PSEUDOSTATE, Kind.REGION, Kind.TRANSITION),
+        lambda d: (
+            (d.kind in (Kind.PSEUDOSTATE, Kind.REGION) and not d.change.aspect)
+            or (d.kind is Kind.TRANSITION and d.is_about("ends"))
+        ),
         "SM734 a pseudostate that no region owns",
         is_in_behaviour=True,
     ),
