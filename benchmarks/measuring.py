@@ -66,6 +66,15 @@ def measure_work(script: Path, work: str, path: Path, rounds: int, *arguments: s
     return min(rows, key=lambda row: row.total_time)
 
 
+def measure_fastest_laps(script: Path, work: str, path: Path, rounds: int) -> dict[str, float]:
+    """Return the least CPU seconds of each lap among several processes that do the same work."""
+    rows = [_run_work(script, work, path, ()) for _ in range(rounds)]
+    return {
+        name: min(row.times[name] * row.megabytes / _MILLISECONDS for row in rows)
+        for name in rows[0].times
+    }
+
+
 def limit_rounds(path: Path, rounds: int) -> int:
     """Return the number of rounds for a file: one for a large file, which takes long."""
     return rounds if path.stat().st_size < _LARGE else 1

@@ -2,6 +2,7 @@
 
     python benchmarks/sysml.py                  a generated model of 1 MB
     python benchmarks/sysml.py FOLDER ...       folders with .sysml and .kerml files too
+    python benchmarks/sysml.py --copies         only copies of the ICE laboratory, pass by pass
 
 If SYSMLC_CORPUS is set, the official files are measured, too. The other tools are measured if they
 are installed (``pip install sysml tree-sitter-sysml``).
@@ -52,6 +53,14 @@ OFFICIAL = 2.0
 
 EDITED = 0.8
 """Budget in seconds of ``sysmlc watch``, from an edit of the ICE laboratory to all outputs."""
+
+GROWTH = 1.2
+"""Budget of each pass in one unit with twenty copies of the ICE laboratory, for each copy, as a
+multiple of its time with five copies."""
+
+_FEW, _MANY = 5, 20
+_LEAST_SHARE = 0.01
+"""Share of the whole time below which a pass is not judged, because noise decides."""
 
 _CELL = """\
     part def Cell{n} :> Machine {{
@@ -118,6 +127,28 @@ def report_processes(report: Report, folder: Path, rounds: int, slowness: float)
             report.print_line("", f"outputs {elapsed:.3f} s after the save")
 
 
+def report_copies(report: Report, corpus: Path, folder: Path, rounds: int) -> None:
+    """Print the time of each pass for one copy of the ICE laboratory among few and many copies."""
+    few, many = (
+        measuring.measure_fastest_laps(
+            _WORK,
+            "check-by-pass",
+            sysml_processes.copy_laboratories(corpus, folder / str(count), count),
+            rounds,
+        )
+        for count in (_FEW, _MANY)
+    )
+    for name in (*many, "check"):
+        before = few[name] if name in few else sum(few.values())
+        after = many[name] if name in many else sum(many.values())
+        text = f"{before / _FEW:7.4f} s, {after / _MANY:7.4f} s"
+        if after < _LEAST_SHARE * sum(many.values()):
+            report.print_line(name, text)
+        else:
+            growth = after / _MANY / (before / _FEW)
+            report.judge(name, f"{text}, {growth:.2f} times", growth, GROWTH, "times")
+
+
 def report_folder(
     report: Report, name: str, folder: Path, rounds: int, slowness: float, *, is_linked: bool
 ) -> None:
@@ -149,8 +180,13 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folders", nargs="*", type=Path)
     parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--copies", action="store_true")
     options = parser.parse_args()
     rounds, report = options.rounds, Report()
+    if options.copies:
+        with tempfile.TemporaryDirectory() as name:
+            report_copies(report, Path(os.environ["SYSMLC_CORPUS"]), Path(name), rounds)
+        return 0 if report.is_good else 1
     report.print_calibration()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)

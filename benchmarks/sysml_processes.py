@@ -31,6 +31,7 @@ package P {
 """
 _number = count()
 """Numbers that make every edit differ from the edits before."""
+_PACKAGE = re.compile(r"^package (\w+)", re.MULTILINE)
 _SERVICES = "services/conveyor.sysml"
 _VALUE = re.compile(r"(?<= := )\d+(?=;)")
 _STEP = re.compile(r"callReleasePallet\d*")
@@ -90,4 +91,18 @@ def copy_official_files(corpus: Path, folder: Path) -> Path:
     unit = folder / "official"
     for name in ("training", "examples"):
         shutil.copytree(corpus / "sysml2" / "omg-release" / name, unit / name)
+    return unit
+
+
+def copy_laboratories(corpus: Path, unit: Path, count: int) -> Path:
+    """Write copies of the ICE laboratory whose packages have a number each, as one compile unit."""
+    paths = sorted((corpus / "sysml2" / "ice-lab").rglob("*.sysml"))
+    texts = {path: path.read_text("utf-8") for path in paths}
+    packages = {name for text in texts.values() for name in _PACKAGE.findall(text)}
+    name = re.compile(rf"\b({'|'.join(sorted(packages))})\b")
+    for number in range(count):
+        for path, text in texts.items():
+            target = unit / f"copy{number}" / path.relative_to(corpus / "sysml2" / "ice-lab")
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_text(name.sub(rf"\g<1>{number}", text), "utf-8")
     return unit

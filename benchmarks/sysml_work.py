@@ -10,6 +10,8 @@ from work import Measurement, Work, run_work
 # The script `sysml.py` in this folder would hide the package `sysml` of the toolkit.
 sys.path = [entry for entry in sys.path if entry != str(Path(__file__).parent)]
 
+_NEW_OBJECTS = 200_000
+"""New objects between two collections of the command ``sysmlc``."""
 _SUFFIXES = (".sysml", ".kerml")
 
 
@@ -122,9 +124,27 @@ def link_with_toolkit(folder: Path, *_arguments: str) -> tuple[Measurement, int]
     return measurement, _count_bytes(texts)
 
 
+def check_by_pass(folder: Path, *_arguments: str) -> tuple[Measurement, int]:
+    """Compile a folder without back ends, like ``sysmlc check``, with a lap for each pass."""
+    from sysmlc.driver.compilation import Observer, Request, compile_model
+    from sysmlc.ir import Graph
+
+    gc.set_threshold(_NEW_OBJECTS)
+    measurement = Measurement()
+
+    class Laps(Observer):
+        def after(self, what: str, graph: Graph) -> None:
+            measurement.end_lap(what)
+
+    compile_model(Request((folder,)), Laps())
+    measurement.end_lap("end")
+    return measurement, _count_bytes(_read_texts(folder))
+
+
 WORKS: dict[str, Work] = {
     "scan": scan_texts,
     "parse": parse_texts,
+    "check-by-pass": check_by_pass,
     "resolve": resolve_texts,
     "resolve-on-demand": resolve_on_demand,
     "tree-sitter": parse_with_tree_sitter,

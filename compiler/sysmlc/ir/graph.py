@@ -37,6 +37,8 @@ class Graph:
         self._owned = self._targets[Edge.OWNS]
         self._derived: dict[type, tuple[object, ...]] = {}
         self.pending: list[Reference] = []
+        self.revision = 0
+        """Number of changes of elements so far. Derived indexes compare it; edges do not count."""
 
     # -- elements ------------------------------------------------------------------------------
 
@@ -173,6 +175,7 @@ class Graph:
             add_neighbour(self._owned, owner, element)
         self._elements[id] = element
         self._by_kind[element.kind][id] = element
+        self.revision += 1
         return element
 
     def move(self, element: Element, owner: Element | None) -> None:
@@ -182,11 +185,13 @@ class Graph:
         if element.owner is not None:
             remove_neighbour(self._owned, element.owner, element)
         element.owner = None if owner is None else owner.id
+        self.revision += 1
         if owner is not None:
             add_neighbour(self._owned, owner.id, element)
 
     def remove(self, element: Element) -> None:
         """Remove *element*, everything below it, and all their edges."""
+        self.revision += 1
         for removed in reversed(list(self.subtree(element))):
             self._isolate(removed)
             del self._elements[removed.id]
@@ -195,9 +200,11 @@ class Graph:
     def rename(self, element: Element, name: str) -> None:
         """Give *element* another name."""
         element.name = name
+        self.revision += 1
 
     def set(self, element: Element, **attrs: AttrValue) -> None:
         """Set attributes of *element*; the value None removes the attribute."""
+        self.revision += 1
         for key, value in attrs.items():
             if value is None:
                 element.attrs.pop(key, None)

@@ -1,6 +1,7 @@
 """A model: documents, their library, and queries about names and generalization."""
 
 from collections.abc import Sequence
+from functools import cached_property
 from typing import NamedTuple
 
 from sysmlc.language.library import Library
@@ -69,6 +70,18 @@ class Model:
     def own_packages(self) -> list[Node]:
         """Return the root members of the documents."""
         return _list_root_members(self.documents)
+
+    def find_packages_owning(self, name: str) -> Sequence[Node]:
+        """Return the root members of the documents that own a member of that name."""
+        return self._packages_by_member.get(name, ())
+
+    @cached_property
+    def _packages_by_member(self) -> dict[str, list[Node]]:
+        packages: dict[str, list[Node]] = {}
+        for package in self.own_packages():
+            for name in self.lookup.symbol_table(package):
+                packages.setdefault(name, []).append(package)
+        return packages
 
     def _find_text(self, root: Node) -> str:
         document = self.document(root)

@@ -157,7 +157,7 @@ def _find_unimported_package(
     node, relation = use
     scopes = _list_scopes(context)
     kinds = contexts.TARGET_KINDS.get(relation.kind)
-    for package in model.own_packages():
+    for package in model.find_packages_owning(names[0]):
         if package not in scopes and _has_visible_member(model.lookup, package, names[0], kinds):
             return package
     if relation.kind == "FeatureTyping":

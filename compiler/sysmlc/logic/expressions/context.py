@@ -26,6 +26,7 @@ from sysmlc.logic.expressions.features import (
 )
 from sysmlc.logic.expressions.named_elements import (
     Enumerations,
+    enumerations_of,
     find_direction,
     find_named_values,
     find_object_values,
@@ -71,7 +72,7 @@ class Context(Struct, frozen=True):
 
     def number(self, name: str) -> int | None:
         """Return the number that the enumeration literal of a qualified name stands for."""
-        return self.enumerations.number(name)
+        return self.enumerations.numbers.get(name)
 
 
 def context_of(
@@ -85,7 +86,7 @@ def context_of(
     An Integer without a range gets *assumed_range*. The names of *behaviour*, a behaviour of the
     classifier, hide those of the classifier.
     """
-    enumerations = Enumerations(graph)
+    enumerations = enumerations_of(graph)
     if classifier is None:
         return Context("", {}, enumerations)
     elements = _find_elements(graph, classifier, behaviour)
@@ -335,7 +336,7 @@ def _find_mentioned_values(
         strings, pairs = _find_values(text)
         texts |= dict.fromkeys(strings)
         for name, value in pairs:
-            number = enumerations.number(value) if "::" in value else int(value)
+            number = enumerations.numbers.get(value) if "::" in value else int(value)
             if number is not None and abs(number) <= _GREATEST:
                 numbers.setdefault(name, {})[number] = None
     return _MentionedValues(tuple(texts), {name: tuple(values) for name, values in numbers.items()})

@@ -274,11 +274,14 @@ def literals_of(graph: Graph, enumeration: Element) -> dict[str, str]:
 
 
 class Enumerations:
-    """The literals of all enumerations of a model, collected when the first one is looked up."""
+    """The literals of all enumerations of a model, collected when the first one is looked up.
+
+    Use ``enumerations_of``, which collects them once for all components.
+    """
 
     def __init__(self, graph: Graph) -> None:
         self._graph = graph
-        self._numbers: dict[str, int | None] = {}
+        self.revision = graph.revision
 
     @cached_property
     def literals(self) -> dict[str, tuple[str, str]]:
@@ -298,21 +301,26 @@ class Enumerations:
             identifiers.setdefault(enumeration, {})[identifier] = None
         return {name: EnumerationDomain(tuple(members)) for name, members in identifiers.items()}
 
-    def number(self, name: str) -> int | None:
-        """Return the number that the literal of a qualified name stands for."""
-        if name not in self._numbers:
-            self._numbers[name] = self._find_number(name)
-        return self._numbers[name]
-
-    def _find_number(self, name: str) -> int | None:
+    @cached_property
+    def numbers(self) -> dict[str, int]:
+        """The number that each literal with a number stands for, by qualified name."""
+        numbers: dict[str, int] = {}
         for literal in self._graph.of_kind(Kind.ENUMERATION_LITERAL):
-            owner = self._graph.owner(literal) if name.endswith(literal.name) else None
-            if owner is None or name not in _qualified_names(owner.name, literal.name):
-                continue
-            value = literal.attrs.get("value")
-            if isinstance(value, int) and not isinstance(value, bool):
-                return value
-        return None
+            owner, value = self._graph.owner(literal), literal.attrs.get("value")
+            if owner is not None and isinstance(value, int) and not isinstance(value, bool):
+                for name in _qualified_names(owner.name, literal.name):
+                    numbers.setdefault(name, value)
+        return numbers
+
+
+def enumerations_of(graph: Graph) -> Enumerations:
+    """Return the enumerations of a graph; they are collected again after a change of elements."""
+    for enumerations in graph.derived(Enumerations):
+        if enumerations.revision == graph.revision:
+            return enumerations
+    enumerations = Enumerations(graph)
+    graph.store(Enumerations, (enumerations,))
+    return enumerations
 
 
 def _qualified_names(enumeration: str, literal: str) -> tuple[str, str]:
