@@ -1,6 +1,7 @@
 """Verdicts about a component: who writes a feature, and which object performs an action."""
 
 import json
+import re
 
 import pytest
 
@@ -231,3 +232,42 @@ def test_formulas_have_the_names_of_the_author(workspace, all_passes):
         if "robot.gripped" in diagnostic["message"]
     )
     assert "violates 'G !robot.gripped'" in broken
+
+
+# -- SysML v1 --------------------------------------------------------------------------------------
+
+
+def add_satisfactions(text):
+    """Return the XMI with the block B satisfying each requirement, as SysML v1 states a subject."""
+    (block,) = re.findall(r'xmi:id="([^"]+)" name="B"', text)
+    requirements = re.findall(r'xmi:type="uml:Class" xmi:id="([^"]+)" name="R\d+"', text)
+    for number, requirement in enumerate(requirements):
+        satisfaction = (
+            f'<packagedElement xmi:type="uml:Abstraction" xmi:id="s{number}" client="{block}" '
+            f'supplier="{requirement}"/>'
+        )
+        stereotype = f'<Requirements:Satisfy xmi:id="t{number}" base_Abstraction="s{number}"/>'
+        text = text.replace("</uml:Package>", f"{satisfaction}</uml:Package>")
+        text = text.replace("</xmi:XMI>", f"{stereotype}</xmi:XMI>")
+    return text
+
+
+@pytest.mark.parametrize(
+    ("block", "others", "formulas"),
+    [
+        (FLAGS + MOVE.format("if x do assign y := true"), "", ("G !y", "G (state=S)")),
+        (
+            "part c : Cell;" + MOVE.format("do assign c.full := true"),
+            CELL,
+            ("G !(c.full)", "G (event=Go -> X c.full)"),
+        ),
+        ("part r : Robot; perform r.pick;", ROBOT, ("F r.gripped", "G !(r.gripped)")),
+    ],
+)
+def test_the_verdicts_are_equal_in_xmi(decide, workspace, block, others, formulas):
+    verdicts = decide(block, *formulas, others=others)
+    workspace.sysmlc("build", "model.sysml", "--emit", "uml", "-o", "out")
+    workspace.write("model.uml", add_satisfactions(workspace.read("out/uml/model.uml")))
+    result = workspace.sysmlc("contracts", "check", "--format", "json", "model.uml")
+    entries = json.loads(result.stdout)["requirements"]
+    assert [entry["verdict"] for entry in entries] == verdicts
