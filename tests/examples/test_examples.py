@@ -18,6 +18,7 @@ from examples.compiling import (
     outputs,
 )
 from sysmlc.diagnostics import Sink
+from sysmlc.logic.components.derivation import ComponentBehaviour
 from sysmlc.logic.contract import Contract
 from sysmlc.synthesis.contract_checks import check_contracts
 from sysmlc.synthesis.decision import Options
@@ -83,8 +84,16 @@ def test_the_contracts_of_an_example_are_realizable_without_diagnostics(model):
     compilation, sink = compile_example(model), Sink()
     graph = compilation.graph
     contracts = graph.derived(Contract)
+    behaviours = {
+        behaviour.contract.component: behaviour for behaviour in graph.derived(ComponentBehaviour)
+    }
     results = check_contracts(
-        contracts, contracts, lambda origin: graph.subject(graph[origin]), sink, Options()
+        contracts,
+        contracts,
+        lambda origin: graph.subject(graph[origin]),
+        sink,
+        Options(),
+        behaviours,
     )
     verdicts = {result.verdict.component: result.verdict.is_realizable for result in results}
     assert [name for name, is_realizable in verdicts.items() if not is_realizable] == []

@@ -19,6 +19,7 @@ from sysmlc.cli.group import sysmlc
 from sysmlc.logic.contract import Contract
 
 GATE = ROOT / "examples" / "baygate-behaviour" / "baygate-behaviour.uml"
+TASKS = ROOT / "examples" / "four-tasks" / "four-tasks.uml"
 LEGO = ROOT / "examples" / "lego-recipe" / "lego-recipe.uml"
 
 
@@ -60,6 +61,11 @@ GATE_VERDICTS = [
     ("AdmitExpectedPallet", "BayGate.HandlePallet", "not-decided"),
     ("OnePalletInBay", "BayGate", "not-decided"),
 ]
+TASK_VERDICTS = [
+    ("OrderOfTasks", "FourTasks", "holds"),
+    ("OrderOfTasks", "FourTasks", "holds"),
+    ("TightPins", "T2", "holds"),
+]
 
 
 @pytest.mark.parametrize(
@@ -68,6 +74,7 @@ GATE_VERDICTS = [
         (LEGO, LEGO_VERDICTS),
         pytest.param(TEXT, LEGO_VERDICTS, marks=pytest.mark.long),
         (GATE, GATE_VERDICTS),
+        (TASKS, TASK_VERDICTS),
     ],
 )
 def test_the_requirements_of_the_examples_have_these_verdicts(model, verdicts):
