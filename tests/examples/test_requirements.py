@@ -92,7 +92,7 @@ FAULTS = [
         # The gripper does not store that it is closed.
         ("closed := true", "closed := false"),
         "LegoRecipe::Plant::Robot1",
-        "gripper_state=Closed -> gripper_closed",
+        "gripper.state=Closed -> gripper.closed",
         ["p0 -> p1 : gripper_event=CloseGripper", "gripper_state=Closed"],
     ),
     (
