@@ -292,8 +292,9 @@ class _PromelaWriter:
             yield "if"
             *firsts, last = (f"({self._print_condition(test)})" for test in tests)
             # SPIN ends a statement at a line that ends with a parenthesis.
-            yield from (f"{':: ' if at == 0 else '   '}{test} &&" for at, test in enumerate(firsts))
-            yield f"{'   ' if firsts else ':: '}{last}"
+            lines = [*(f"{test} &&" for test in firsts), last]
+            yield f":: {lines[0]}"
+            yield from (f"   {line}" for line in lines[1:])
             yield ":: else -> goto stop"
             yield "fi;"
 
