@@ -344,7 +344,7 @@ def test_a_mode_that_two_variables_may_have_is_ambiguous():
         read_requirement("In Open mode the gate shall satisfy r", domains)
 
 
-@pytest.mark.parametrize(("scope", "timing"), itertools.product(SCOPES, TIMINGS))
+@pytest.mark.parametrize(("scope", "timing"), list(itertools.product(SCOPES, TIMINGS)))
 def test_history_bits_bring_every_sentence_into_gr1(scope, timing):
     """So that synthesis and the other tools can use it."""
     for condition in CONDITIONS.values():
