@@ -158,6 +158,19 @@ class _Simplification:
             for class_, formula in classify(f.implies(premise, as_ltl(guarantee)))
         )
 
+    def promise(self, contract: Contract, facts: Conjuncts) -> Conjuncts:
+        """Return the saturated guarantees as premises: one conjunct if they need an implication.
+
+        One implication needs one tableau, which is far smaller than one for each guarantee.
+        """
+        premises = self.drop_entailed(contract.assumptions, facts)
+        if not premises:
+            return contract.guarantees
+        assumed, guaranteed = (
+            f.both(*map(as_ltl, side)) for side in (premises, contract.guarantees)
+        )
+        return (Conjunct(f.implies(assumed, guaranteed), Class.OTHER, contract.origin),)
+
 
 def _unite(*sides: Conjuncts) -> Conjuncts:
     """Return all conjuncts; of those with equal formulas only the first."""
@@ -250,8 +263,8 @@ def compose(first: Contract, second: Contract, new_manager: ManagerFactory) -> C
     assumptions = _unite(first.assumptions, second.assumptions)
     for candidate in assumptions:
         rest = tuple(conjunct for conjunct in assumptions if conjunct != candidate)
-        facts = (*rest, *simplification.saturate(first, rest))
-        facts = (*facts, *simplification.saturate(second, facts))
+        facts = (*rest, *simplification.promise(first, rest))
+        facts = (*facts, *simplification.promise(second, facts))
         if simplification.entails(facts, candidate):
             assumptions = rest
     return replace(
