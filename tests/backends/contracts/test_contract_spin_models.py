@@ -180,6 +180,8 @@ def assert_model_is_equivalent(model):
     for contract in contracts[:: len(contracts) // 50 + 1]:
         domains = list_domains(contract)
         for conjunct in (*contract.assumptions, *contract.guarantees):
+            if conjunct.class_ is Class.OTHER:
+                continue  # no decision diagram over one step; random formulas cover it
             names = list_names(conjunct.formula)
             axioms = write_step_axioms(domains, names)
             expected = spot.formula(translate(domains, conjunct.formula))
