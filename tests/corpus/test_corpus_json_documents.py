@@ -55,7 +55,14 @@ NEVER_WRITTEN = {
     ),
     *(
         f"sysmlc-diagnostics#/behaviours/{member}"
-        for member in ("component", "unreachable", "write_conflicts")
+        for member in (
+            "component",
+            "unreachable",
+            "never_taken",
+            "never_true",
+            "never_changed",
+            "write_conflicts",
+        )
     ),
 }
 

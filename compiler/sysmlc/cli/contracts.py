@@ -268,10 +268,15 @@ def list_verdicts(
 
 def list_behaviours(results: "Iterable[CheckedContract]") -> list[dict[str, object]]:
     """Return an entry for each behaviour that was checked against requirements."""
+    from sysmlc.logic.components.names import PlaceKind
+
     return [
         {
             "component": result.verdict.component,
-            "unreachable": list(result.findings.unreachable),
+            "unreachable": list(result.findings.unreachable.get(PlaceKind.ACTIVITY, ())),
+            "never_taken": list(result.findings.unreachable.get(PlaceKind.TRANSITION, ())),
+            "never_true": list(result.findings.unreachable.get(PlaceKind.GUARD, ())),
+            "never_changed": list(result.findings.unreachable.get(PlaceKind.FEATURE, ())),
             "write_conflicts": list(result.findings.conflicts),
         }
         for result in results

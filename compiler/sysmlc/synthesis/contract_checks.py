@@ -8,6 +8,7 @@ from msgspec.structs import replace
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.logic import formula as f
 from sysmlc.logic.components.derivation import ComponentBehaviour
+from sysmlc.logic.components.names import PlaceKind
 from sysmlc.logic.contract import Conjunct, Contract, Owner
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import reduce_contract
@@ -20,11 +21,14 @@ from sysmlc.synthesis.decision import Options, Place, Verdict, decide
 from sysmlc.synthesis.games.game import OutsideGr1Error, make_game
 from sysmlc.synthesis.lints import lint
 from sysmlc.synthesis.requirement_verdicts import (
+    UNREACHABLE_RULES,
     Answer,
     BehaviourCheck,
+    BehaviourFindings,
     RequirementVerdict,
+    iter_negations,
 )
-from sysmlc.synthesis.rules import CONFLICT, UNREACHABLE, VACUOUS
+from sysmlc.synthesis.rules import CONFLICT, VACUOUS
 from sysmlc.synthesis.unrealizable import find_unrealizable_core, is_won
 from sysmlc.synthesis.witnesses import (
     Party,
@@ -70,17 +74,6 @@ GIVEN_UP = rule(
     "the checks of '{component}' are incomplete: {reached}",
     help="give more time (--question-limit), or check the contracts of parts",
 )
-
-
-class BehaviourFindings(Struct, frozen=True):
-    """What no requirement asks for.
-
-    ``unreachable`` are the states and actions that no run reaches, ``conflicts`` the features to
-    which two writers may give different values in one step.
-    """
-
-    unreachable: tuple[str, ...] = ()
-    conflicts: tuple[str, ...] = ()
 
 
 class CheckedContract(Struct, frozen=True):
@@ -276,7 +269,7 @@ def _find_behaviour_findings(
 ) -> BehaviourFindings | None:
     """Report write conflicts, and places that no run reaches; None if a limit is reached.
 
-    A state that the author requires to be never reached is not reported.
+    A state that the author requires to be never reached is not reported, nor a transition to it.
     """
     component = behaviour.contract.component
     try:
@@ -295,21 +288,18 @@ def _find_behaviour_findings(
             variable=conflict.variable,
         )
     required = {conjunct.formula for conjunct in requirements.guarantees}
-    for unreached in unreachable:
-        if required.isdisjoint(_iter_negations(unreached.is_active)):
-            subject = place(unreached.origin)
-            sink.report(UNREACHABLE, subject, component=component, name=unreached.name)
+    for place_ in unreachable:
+        negations = (*iter_negations(place_.is_active), *iter_negations(place_.leads_to))
+        if required.isdisjoint(negations):
+            rule_ = UNREACHABLE_RULES[place_.kind]
+            sink.report(rule_, place(place_.origin), component=component, name=place_.name)
     return BehaviourFindings(
-        tuple(unreached.name for unreached in unreachable),
         tuple(conflict.variable for conflict in conflicts),
+        {
+            kind: tuple(place_.name for place_ in unreachable if place_.kind is kind)
+            for kind in PlaceKind
+        },
     )
-
-
-def _iter_negations(formula: f.Formula) -> Iterator[f.Formula]:
-    """Yield the spellings of the negation of a formula."""
-    yield f.negate(formula)
-    if isinstance(formula, f.Apply) and formula.op is f.Op.EQ:
-        yield f.compare(f.Op.NE, *formula.args)
 
 
 def _find_undischarged(

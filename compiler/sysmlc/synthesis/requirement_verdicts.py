@@ -5,7 +5,7 @@ they do if each action ends, or a run violates it. The assumptions that actions 
 left are derived by the compiler: they may prove a requirement, and never refute one.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from enum import StrEnum
 from itertools import combinations
 
@@ -13,7 +13,8 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.logic import formula as f
-from sysmlc.logic.components.derivation import ComponentBehaviour, PlaceInBehaviour
+from sysmlc.logic.components.derivation import ComponentBehaviour
+from sysmlc.logic.components.names import PlaceInBehaviour, PlaceKind
 from sysmlc.logic.contract import (
     BooleanDomain,
     Class,
@@ -27,6 +28,7 @@ from sysmlc.logic.formula import Apply, Const, Formula, Op
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import as_ltl
 from sysmlc.logic.reduction.formula_reduction import NotReducibleError
+from sysmlc.synthesis import rules
 from sysmlc.synthesis.algebra.fair_systems import DomainError, Trace
 from sysmlc.synthesis.algebra.refinement import RunSearch
 from sysmlc.synthesis.bdd.limits import LimitError
@@ -68,6 +70,23 @@ class WriteConflict(Struct, frozen=True):
     trace: Trace
 
 
+class BehaviourFindings(Struct, frozen=True):
+    """What no requirement asks for.
+
+    ``conflicts`` are the features to which two writers may give different values in one step,
+    ``unreachable`` the names of places that no run reaches, by kind.
+    """
+
+    conflicts: tuple[str, ...] = ()
+    unreachable: Mapping[PlaceKind, tuple[str, ...]] = {}
+
+
+UNREACHABLE_RULES = {
+    PlaceKind.ACTIVITY: rules.UNREACHABLE,
+    PlaceKind.TRANSITION: rules.NEVER_TAKEN,
+    PlaceKind.GUARD: rules.GUARD_NEVER_HOLDS,
+    PlaceKind.FEATURE: rules.NEVER_CHANGED,
+}
 _UNDECIDED_PROBLEMS = (OutsideGr1Error, DomainError, LimitError, NotReducibleError)
 
 
@@ -140,11 +159,16 @@ class BehaviourCheck:
                     break
 
     def find_unreachable(self) -> Iterator[PlaceInBehaviour]:
-        """Yield the states and actions that are active in no run. Raises LimitError."""
+        """Yield the places that no run reaches, although runs come near. Raises LimitError."""
         for place in self._behaviour.places:
-            conjunct = Conjunct(f.negate(place.is_active), Class.SAFETY, place.origin)
-            if self._entails((), conjunct):
+            if self._is_never(place, place.is_active) and (
+                place.within == f.TRUE or not self._is_never(place, place.within)
+            ):
                 yield place
+
+    def _is_never(self, place: PlaceInBehaviour, condition: Formula) -> bool:
+        conjunct = Conjunct(f.negate(condition), Class.SAFETY, place.origin)
+        return self._entails((), conjunct)
 
     def decide(self, conjunct: Conjunct) -> RequirementVerdict:
         """Return the verdict about a conjunct."""
@@ -331,3 +355,10 @@ def is_safety(formula: Formula, is_positive: bool = True) -> bool:
 
 _EVENTUAL_OPERATORS = (Op.EVENTUALLY, Op.UNTIL)
 _PERPETUAL_OPERATORS = (Op.ALWAYS, Op.RELEASE, Op.WEAK_UNTIL)
+
+
+def iter_negations(formula: Formula) -> Iterator[Formula]:
+    """Yield the spellings of the negation of a formula."""
+    yield f.negate(formula)
+    if isinstance(formula, Apply) and formula.op is Op.EQ:
+        yield f.compare(Op.NE, *formula.args)

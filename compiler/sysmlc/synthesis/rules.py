@@ -171,3 +171,24 @@ NOT_COMPARABLE = rule(
     help="shared variables need the same direction and type; a question may need more time "
     "(--question-limit)",
 )
+NEVER_TAKEN = rule(
+    "SM517",
+    "transition-never-taken",
+    Severity.WARNING,
+    "no run of '{component}' takes {name}, although runs reach its source",
+    help="correct its guard or trigger, or what comes first; or remove the transition",
+)
+GUARD_NEVER_HOLDS = rule(
+    "SM518",
+    "guard-never-holds",
+    Severity.INFO,
+    "guard '{name}' never holds in '{component}' when a run reaches it",
+    help="correct the guard or what it reads, or remove the flow",
+)
+NEVER_CHANGED = rule(
+    "SM519",
+    "feature-never-changes",
+    Severity.INFO,
+    "'{name}' of '{component}' is assigned, but no run changes its value",
+    help="correct the assignments, or make it a constant",
+)

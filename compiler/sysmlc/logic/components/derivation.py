@@ -14,7 +14,6 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.activities.assumptions import derive_assumptions
 from sysmlc.logic.activities.derivation import derive_run_update, derive_token_updates
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
-from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.components.arguments import derive_arguments, equals
 from sysmlc.logic.components.component import Component, finish_name
 from sysmlc.logic.components.machines import (
@@ -22,9 +21,9 @@ from sysmlc.logic.components.machines import (
     PlacedMachine,
     find_unread_features,
 )
+from sysmlc.logic.components.names import PlaceInBehaviour, iter_places
 from sysmlc.logic.components.objects import Slot
 from sysmlc.logic.components.signals import derive_events
-from sysmlc.logic.composition.structure import join_path
 from sysmlc.logic.contract import (
     BooleanDomain,
     Class,
@@ -36,7 +35,6 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.feature_writes import find_label
 from sysmlc.logic.formula import Const, Formula
-from sysmlc.logic.machines.machine import element_id
 from sysmlc.logic.simplification import substitute
 
 
@@ -46,14 +44,6 @@ class Writer(Struct, frozen=True):
     condition: Formula
     value: Formula
     origin: str
-
-
-class PlaceInBehaviour(Struct, frozen=True):
-    """A state or action, its name in the component, and the formula that it is active."""
-
-    name: str
-    origin: str
-    is_active: Formula
 
 
 class ComponentBehaviour(Struct, frozen=True):
@@ -139,9 +129,8 @@ class _Description:
         replacements = finishes
         ends = {name: substitute(end, replacements) for name, end in self.component.ends.items()}
 
-        def complete(conjunct: Conjunct) -> Conjunct:
-            formula = substitute(substitute(conjunct.formula, ends), replacements)
-            return replace(conjunct, formula=formula, source=Source.DERIVED)
+        def complete(formula: Formula) -> Formula:
+            return substitute(substitute(formula, ends), replacements)
 
         all_variables = self._list_variables(
             formulas, written, wiring.variables, ends, outputs.variables
@@ -151,15 +140,14 @@ class _Description:
             self.component.subject.id,
             tuple(all_variables.values()),
             tuple(endings),
-            tuple(map(complete, self._conjuncts)),
+            tuple(
+                replace(conjunct, formula=complete(conjunct.formula), source=Source.DERIVED)
+                for conjunct in self._conjuncts
+            ),
         )
         shared = {
             tree.read_slot(slot).variable.name: tuple(
-                replace(
-                    writer,
-                    condition=substitute(substitute(writer.condition, ends), replacements),
-                )
-                for writer in group
+                replace(writer, condition=complete(writer.condition)) for writer in group
             )
             for slot, group in writers.items()
             if len(group) > 1
@@ -169,25 +157,17 @@ class _Description:
             gaps | performances.long_ends,
             frozenset(performances.long_ends),
             shared,
-            tuple(self._list_places(tokens)),
+            tuple(
+                replace(place, is_active=complete(place.is_active))
+                for place in iter_places(
+                    self.component, tokens, [tree.read_slot(slot).variable for slot in writers]
+                )
+            ),
         )
 
     def _is_decided(self, slot: Slot, written: set[Slot]) -> bool:
         """Whether the component decides the value of a feature."""
         return slot in written or not self.tree.used_slots[slot].is_input
-
-    def _list_places(self, tokens: TokenGraph) -> Iterator[PlaceInBehaviour]:
-        for machine in self.machines:
-            for state in machine.machine.list_states():
-                element = self.graph[element_id(state.id)]
-                name = join_path(machine.owner.path, element.name)
-                yield PlaceInBehaviour(name, element.id, machine.active_formula(state))
-        names: dict[str, tuple[str, ...]] = {}
-        for action in self.performances.paths:
-            names.setdefault(action.node, action.names)
-        for id, path in names.items():
-            node = tokens.node(id)
-            yield PlaceInBehaviour(".".join(path), node.origin, f.var(node.run))
 
     def _derive_performances(self, formulas: PerformanceFormulas) -> None:
         graph = formulas.graph
