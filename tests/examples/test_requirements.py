@@ -57,7 +57,7 @@ GATE_VERDICTS = [
     ("ReadBeforeRelease", "Stopper", "holds"),
     ("ReadBeforeRelease", "Stopper", "holds"),
     ("ReadBeforeRelease", "Stopper", "holds"),
-    ("ReadBeforeRelease", "Stopper", "holds"),
+    ("RaisedWhenStopped", "Stopper", "holds"),
     ("AdmitExpectedPallet", "BayGate.HandlePallet", "not-decided"),
     ("OnePalletInBay", "BayGate", "not-decided"),
 ]
