@@ -1,8 +1,8 @@
 """Random formulas and contracts over Booleans, ranges and enumerations."""
 
 from hypothesis import strategies as st
-from spot_formulas import conjoin
 
+from spot_formulas import conjoin
 from sysmlc.logic import formula as f
 from sysmlc.logic.classification import classify
 from sysmlc.logic.contract import (

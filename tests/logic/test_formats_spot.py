@@ -5,9 +5,9 @@ import spot
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_contracts import apply_binary, apply_unary, connect
-from spot_formulas import conjoin, print_for_spot
 
 from long_runs import examples
+from spot_formulas import conjoin, print_for_spot
 from sysmlc.diagnostics import Sink
 from sysmlc.logic import formats
 from sysmlc.logic import formula as f

@@ -2,9 +2,9 @@
 
 import pytest
 from random_block_activities import build_tokens, draw_activity
-from spot_formulas import conjoin, print_for_spot
 
 from activity_sketch import sketch
+from spot_formulas import conjoin, print_for_spot
 from sysmlc.ir.text import parse_text
 from sysmlc.logic.activities.derivation import derive_contract
 from sysmlc.logic.contract import Class, Conjunct, Contract

@@ -5,9 +5,9 @@ import spot
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_contracts import apply_binary, apply_unary
-from spot_formulas import conjoin, conjoin_parts, print_for_spot
 
 from long_runs import examples
+from spot_formulas import conjoin, conjoin_parts, print_for_spot
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owner, Variable
 from sysmlc.logic.formal_texts import read_temporal_logic
