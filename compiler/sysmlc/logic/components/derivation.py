@@ -17,8 +17,6 @@ from sysmlc.logic.activities.step_formulas import PerformanceFormulas
 from sysmlc.logic.components.arguments import derive_arguments, equals
 from sysmlc.logic.components.component import Component, finish_name
 from sysmlc.logic.components.machines import (
-    MachineWrite,
-    PlacedMachine,
     find_unread_features,
 )
 from sysmlc.logic.components.names import PlaceInBehaviour, iter_places
@@ -84,6 +82,13 @@ class _Description:
         self.machines = component.machines
         self._roots = component.roots
         self._conjuncts = list(component.conjuncts)
+        self._machine_writes = [
+            (machine, write) for machine in self.machines for write in machine.iter_writes()
+        ]
+        self._outputs = derive_arguments(self.tree, self.performances)
+        self._written = {write.slot for _, write in self._machine_writes}
+        self._written |= {write.slot for write in self.performances.writes}
+        self._written |= {slot for slot, *_ in self._outputs.writes}
 
     def _add(self, formula: Formula, class_: Class, origin: str, text: str = "") -> None:
         if formula != f.TRUE:
@@ -91,83 +96,66 @@ class _Description:
 
     def describe(self, name: str) -> ComponentBehaviour:
         """Return the behaviour with all features that were named so far. Raises ComponentError."""
-        tree, performances = self.tree, self.performances
-        machine_writes = [
-            (machine, write) for machine in self.machines for write in machine.iter_writes()
-        ]
-        outputs = derive_arguments(tree, performances)
-        written = {write.slot for _, write in machine_writes}
-        written |= {write.slot for write in performances.writes}
-        written |= {slot for slot, *_ in outputs.writes}
-        slots = tree.used_slots
-        decided = [slots[slot].variable for slot in slots if self._is_decided(slot, written)]
-        given = [slots[slot].variable for slot in slots if not self._is_decided(slot, written)]
-        tokens = performances.build(name, self.component.subject.id, decided, given)
-        starts = {root.id: root.start for root in self._roots}
-        stops = {root.id: root.stop for root in self._roots}
-        formulas = PerformanceFormulas(tokens, starts, stops)
-        finishes = {
-            finish_name(root.id): f.both(
-                f.var(tokens.node(root.id).run), formulas.done_formula(tokens.node(root.id))
-            )
-            for root in self._roots
-        }
+        formulas = self._make_formulas(name)
         self._derive_performances(formulas)
         for machine in self.machines:
             self._conjuncts += machine.iter_steps()
-        self._conjuncts += outputs.derive(formulas)
-        gaps = dict(performances.gaps) | outputs.gaps
-        writers = self._list_writers(formulas, machine_writes, outputs.writes)
-        gaps |= self._derive_updates(writers, outputs.origins)
+        self._conjuncts += self._outputs.derive(formulas)
+        gaps = dict(self.performances.gaps) | self._outputs.gaps
+        writers = self._list_writers(formulas)
+        gaps |= self._derive_updates(writers)
         gaps |= self._derive_starts(gaps)
         wiring = derive_events(self.component)
         self._conjuncts += wiring.conjuncts
         gaps |= wiring.gaps
-        endings = [
-            replace(conjunct, source=Source.DERIVED) for conjunct in derive_assumptions(formulas)
-        ]
-        replacements = finishes
-        ends = {name: substitute(end, replacements) for name, end in self.component.ends.items()}
-
-        def complete(formula: Formula) -> Formula:
-            return substitute(substitute(formula, ends), replacements)
-
-        all_variables = self._list_variables(
-            formulas, written, wiring.variables, ends, outputs.variables
-        )
+        ends = self._define_ends(formulas)
         contract = Contract(
             name,
             self.component.subject.id,
-            tuple(all_variables.values()),
-            tuple(endings),
+            tuple(self._list_variables(formulas, wiring.variables).values()),
+            tuple(replace(each, source=Source.DERIVED) for each in derive_assumptions(formulas)),
             tuple(
-                replace(conjunct, formula=complete(conjunct.formula), source=Source.DERIVED)
+                replace(conjunct, formula=substitute(conjunct.formula, ends), source=Source.DERIVED)
                 for conjunct in self._conjuncts
             ),
         )
+        variables = {slot: self.tree.read_slot(slot).variable for slot in writers}
         shared = {
-            tree.read_slot(slot).variable.name: tuple(
-                replace(writer, condition=complete(writer.condition)) for writer in group
+            variables[slot].name: tuple(
+                replace(writer, condition=substitute(writer.condition, ends)) for writer in group
             )
             for slot, group in writers.items()
             if len(group) > 1
         }
-        return ComponentBehaviour(
-            contract,
-            gaps | performances.long_ends,
-            frozenset(performances.long_ends),
-            shared,
-            tuple(
-                replace(place, is_active=complete(place.is_active))
-                for place in iter_places(
-                    self.component, tokens, [tree.read_slot(slot).variable for slot in writers]
-                )
-            ),
+        places = tuple(
+            replace(place, is_active=substitute(place.is_active, ends))
+            for place in iter_places(self.component, formulas.graph, list(variables.values()))
         )
+        long_ends = self.performances.long_ends
+        return ComponentBehaviour(contract, gaps | long_ends, frozenset(long_ends), shared, places)
 
-    def _is_decided(self, slot: Slot, written: set[Slot]) -> bool:
+    def _make_formulas(self, name: str) -> PerformanceFormulas:
+        """Return the formulas about the steps of all performances."""
+        slots = self.tree.used_slots
+        decided = [slots[slot].variable for slot in slots if self._is_decided(slot)]
+        given = [slots[slot].variable for slot in slots if not self._is_decided(slot)]
+        tokens = self.performances.build(name, self.component.subject.id, decided, given)
+        starts = {root.id: root.start for root in self._roots}
+        return PerformanceFormulas(tokens, starts, {root.id: root.stop for root in self._roots})
+
+    def _define_ends(self, formulas: PerformanceFormulas) -> dict[str, Formula]:
+        """Return the formulas for the placeholders that tell when performances end."""
+        nodes = {root.id: formulas.graph.node(root.id) for root in self._roots}
+        finishes = {
+            finish_name(id): f.both(f.var(node.run), formulas.done_formula(node))
+            for id, node in nodes.items()
+        }
+        ends = {name: substitute(end, finishes) for name, end in self.component.ends.items()}
+        return {**finishes, **ends}
+
+    def _is_decided(self, slot: Slot) -> bool:
         """Whether the component decides the value of a feature."""
-        return slot in written or not self.tree.used_slots[slot].is_input
+        return slot in self._written or not self.tree.used_slots[slot].is_input
 
     def _derive_performances(self, formulas: PerformanceFormulas) -> None:
         graph = formulas.graph
@@ -186,12 +174,7 @@ class _Description:
             else:
                 self._conjuncts.append(derive_run_update(formulas, node))
 
-    def _list_writers(
-        self,
-        formulas: PerformanceFormulas,
-        machine_writes: list[tuple[PlacedMachine, MachineWrite]],
-        bound: list[tuple[Slot, str, Formula]],
-    ) -> dict[Slot, list[Writer]]:
+    def _list_writers(self, formulas: PerformanceFormulas) -> dict[Slot, list[Writer]]:
         """Return the writers of each slot. A machine overrides the do behaviours of its states."""
         writers: dict[Slot, list[Writer]] = {}
         machine_of_root = {root.id: root.machine for root in self._roots}
@@ -207,18 +190,18 @@ class _Description:
                     )
                     later = [
                         other.condition
-                        for owner, other in machine_writes
+                        for owner, other in self._machine_writes
                         if owner is machine and other.slot == write.slot
                     ]
                     when = f.both(when, f.negate(f.either(*later)))
                 writers.setdefault(write.slot, []).append(Writer(when, value, write.origin))
-        for machine, machine_write in machine_writes:
+        for machine, machine_write in self._machine_writes:
             earlier = done_writes.get(machine.element.id + machine.owner.path, [])
             for condition, value in self._follow_writes(machine_write.value, earlier):
                 writers.setdefault(machine_write.slot, []).append(
                     Writer(f.both(machine_write.condition, condition), value, machine.element.id)
                 )
-        for slot, node, value in bound:
+        for slot, node, value in self._outputs.writes:
             finishes = formulas.finish_formula(formulas.graph.node(node))
             origin = formulas.graph.node(node).origin
             writers.setdefault(slot, []).append(Writer(finishes, value, origin))
@@ -267,12 +250,10 @@ class _Description:
                 )
         return clashes
 
-    def _derive_updates(
-        self, writers: Mapping[Slot, list[Writer]], bound: set[str]
-    ) -> dict[str, str]:
+    def _derive_updates(self, writers: Mapping[Slot, list[Writer]]) -> dict[str, str]:
         """Add the next-state relation of each feature; return those with other writers."""
         index = self.component.writers
-        described = bound | {write.origin for write in self.performances.writes}
+        described = self._outputs.origins | {write.origin for write in self.performances.writes}
         described |= {id for machine in self.machines for id in machine.written}
         described -= self.component.released
         gaps = find_unread_features(self.tree, self.machines, self.component.writers)
@@ -310,20 +291,17 @@ class _Description:
         return gaps
 
     def _list_variables(
-        self,
-        formulas: PerformanceFormulas,
-        written: set[Slot],
-        events: list[Variable],
-        ends: Mapping[str, Formula],
-        arguments: list[Variable],
+        self, formulas: PerformanceFormulas, events: list[Variable]
     ) -> dict[str, Variable]:
-        variables = [*events, *self.component.variables, *arguments]
+        variables = [*events, *self.component.variables, *self._outputs.variables]
         for slot, feature in self.tree.used_slots.items():
-            owner = Owner.SYSTEM if self._is_decided(slot, written) else Owner.ENVIRONMENT
+            owner = Owner.SYSTEM if self._is_decided(slot) else Owner.ENVIRONMENT
             variables.append(replace(feature.variable, owner=owner))
         for machine in self.machines:
             variables += (
-                object_ for object_ in machine.list_variables() if object_.name not in ends
+                variable
+                for variable in machine.list_variables()
+                if variable.name not in self.component.ends
             )
         graph = formulas.graph
         variables += graph.inputs

@@ -18,7 +18,7 @@ from sysmlc.logic.components.derivation import (
 from sysmlc.logic.components.names import ComponentNames
 from sysmlc.logic.components.objects import ComponentError
 from sysmlc.logic.contract import Class, Conjunct, Contract, Source
-from sysmlc.logic.expressions.context import context_of, report_range
+from sysmlc.logic.expressions.context import report_range
 from sysmlc.logic.expressions.elaboration import ElaborationError, Fault, elaborate_condition
 from sysmlc.logic.expressions.expression import ExpressionError
 from sysmlc.logic.expressions.parsing import parse_expression
@@ -28,14 +28,17 @@ from sysmlc.logic.formula import Formula, Literal
 from sysmlc.logic.machines.reader import MachineOptions, find_context_classifier
 from sysmlc.logic.printing import print_literal
 from sysmlc.logic.reduction.contract_reduction import add_history_bits
-from sysmlc.logic.requirements.scope import Scope, replace_meanings, restore_names, scope_of
+from sysmlc.logic.requirements.scope import (
+    Scope,
+    make_scope,
+    replace_meanings,
+    restore_names,
+    scope_of,
+)
 from sysmlc.logic.requirements.statements import (
     Statement,
     collect_statements,
     component_of,
-    definition_of,
-    find_redefining_operation,
-    list_component_names,
     list_subject_names,
 )
 from sysmlc.logic.syntax import FormulaError
@@ -78,93 +81,73 @@ def derive(
     informal = _InformalStatements()
     writers = WriterIndex(graph)
     for subject, statements in collect_statements(graph):
-        component = component_of(graph, subject)
-        behaviour = behaviour_by_component.get(component)
-        context = context_of(
-            graph,
-            definition_of(graph, subject),
-            options.assumed_range,
-            find_redefining_operation(graph, subject),
-        )
-        own_variables = () if behaviour is None else behaviour.variables
-        scope = replace(
-            scope_of(context, own_variables), component_names=list_component_names(graph, subject)
-        )
-        described, whole, obstacle = None, None, ""
-        is_machine = behaviour is not None and graph[behaviour.origin].kind is Kind.STATE_MACHINE
-        try:
-            described = _open_component(graph, subject, options, writers)
-        except ComponentError as problem:
-            obstacle = str(problem)
-            whole = _describe_alone(behaviour, obstacle, is_machine=is_machine)
-        if described is not None:
-            scope = replace(scope, names=ComponentNames(described))
+        behaviour = behaviour_by_component.get(component_of(graph, subject))
+        scope = make_scope(graph, subject, behaviour, options.assumed_range)
+        component, obstacle = _open_component(graph, subject, options, writers)
+        if component is not None:
+            scope = replace(scope, names=ComponentNames(component))
         formulas = [
             (statement, reading)
             for statement in statements
             if (reading := _read_statement(graph, scope, statement, informal, sink, obstacle))
             is not None
         ]
-        if described is not None:
-            whole = _describe_component(described, component, behaviour, is_machine=is_machine)
+        # The formulas have named all features that the behaviour has to describe.
+        whole = _describe_behaviour(graph, subject, component, behaviour, obstacle)
         if whole is not None:
-            scope = replace(scope, variables=scope_of(context, whole.contract.variables).variables)
-        assumptions: list[Conjunct] = []
-        demands: list[Conjunct] = []
-        for statement, reading in formulas:
-            is_assumed = _is_assumed(scope, statement, reading.formula)
-            conjuncts = assumptions if is_assumed else demands
-            conjuncts += _classify(scope, statement, reading, is_assumed)
-        if demands:
-            name = component if behaviour is None else f"{component}.requirements"
-            inputs, outputs = _state_initial_values(
-                scope, _list_used_names(scope, (*assumptions, *demands))
-            )
-            # Initial values of outputs belong to the behaviour, whose first entries may assign
-            # other values.
-            initial_values = () if behaviour is not None else outputs
-            contract = _make_contract(
-                name, subject, scope, (*inputs, *assumptions), (*initial_values, *demands)
-            )
+            variables = scope_of(scope.context, whole.contract.variables).variables
+            scope = replace(scope, variables=variables)
+        contract = _make_contract(graph, subject, scope, formulas, behaviour)
+        if contract is not None:
             yield RequiredContract(contract, whole)
     informal.report(graph, sink)
 
 
 def _open_component(
     graph: Graph, subject: Element, options: MachineOptions, writers: WriterIndex
-) -> Component | None:
-    """Return the component whose behaviour a subject is or has, or None if it has none."""
+) -> tuple[Component | None, str]:
+    """Return the component whose behaviour a subject is or has, if any, or why there is none."""
     if subject.kind is Kind.STATE_MACHINE:
         subject = find_context_classifier(graph, subject) or subject
     if subject.kind not in (Kind.CLASS, Kind.COMPONENT, Kind.ACTIVITY):
-        return None
-    component = Component(graph, subject, options, writers)
+        return None, ""
+    try:
+        component = Component(graph, subject, options, writers)
+    except ComponentError as problem:
+        return None, str(problem)
     # An action without steps is one node: only its contract says what it does.
     has_steps = len(component.performances.nodes) > (subject.kind is Kind.ACTIVITY)
-    return component if component.machines or has_steps else None
+    return (component if component.machines or has_steps else None), ""
 
 
-def _describe_component(
-    component: Component, name: str, behaviour: Contract | None, *, is_machine: bool
+def _describe_behaviour(
+    graph: Graph,
+    subject: Element,
+    component: Component | None,
+    behaviour: Contract | None,
+    obstacle: str,
 ) -> ComponentBehaviour | None:
-    try:
-        whole = describe_component(component, name)
-    except ComponentError as problem:
-        return _describe_alone(behaviour, str(problem), is_machine=is_machine)
-    if behaviour is None:
-        return replace(whole, is_of_parts=True)
-    return add_stated_conjuncts(whole, behaviour)
+    """Return the behaviour that has to satisfy the requirements of a subject, or None."""
+    if component is not None:
+        try:
+            whole = describe_component(component, component_of(graph, subject))
+        except ComponentError as problem:
+            obstacle = str(problem)
+        else:
+            if behaviour is None:
+                return replace(whole, is_of_parts=True)
+            return add_stated_conjuncts(whole, behaviour)
+    if behaviour is None or not obstacle:
+        return None
+    is_machine = graph[behaviour.origin].kind is Kind.STATE_MACHINE
+    return _describe_alone(behaviour, obstacle, is_machine=is_machine)
 
 
-def _describe_alone(
-    behaviour: Contract | None, reason: str, *, is_machine: bool
-) -> ComponentBehaviour | None:
+def _describe_alone(behaviour: Contract, reason: str, *, is_machine: bool) -> ComponentBehaviour:
     """Return a behaviour as its own contract describes it, which refutes nothing.
 
     The contract of an activity describes one that starts again, so that it proves nothing either.
     """
-    if behaviour is None:
-        return None
     if not is_machine:
         stated = tuple(item for item in behaviour.guarantees if not item.is_derived)
         behaviour = replace(behaviour, guarantees=stated)
@@ -365,14 +348,34 @@ def _list_used_names(scope: Scope, conjuncts: Iterable[Conjunct]) -> set[str]:
 
 
 def _make_contract(
-    name: str,
+    graph: Graph,
     subject: Element,
     scope: Scope,
-    assumptions: tuple[Conjunct, ...],
-    demands: tuple[Conjunct, ...],
-) -> Contract:
-    variables = scope.select_variables(conjunct.formula for conjunct in (*assumptions, *demands))
-    return add_history_bits(Contract(name, subject.id, variables, assumptions, demands))
+    formulas: list[tuple[Statement, _Reading]],
+    behaviour: Contract | None,
+) -> Contract | None:
+    """Return the contract of a subject's formulas; None if they demand nothing."""
+    assumptions: list[Conjunct] = []
+    demands: list[Conjunct] = []
+    for statement, reading in formulas:
+        is_assumed = _is_assumed(scope, statement, reading.formula)
+        conjuncts = assumptions if is_assumed else demands
+        conjuncts += _classify(scope, statement, reading, is_assumed)
+    if not demands:
+        return None
+    inputs, outputs = _state_initial_values(
+        scope, _list_used_names(scope, (*assumptions, *demands))
+    )
+    component = component_of(graph, subject)
+    if behaviour is not None:
+        # Initial values of outputs belong to the behaviour, whose first entries may assign others.
+        component, outputs = f"{component}.requirements", []
+    stated = (*inputs, *assumptions, *outputs, *demands)
+    variables = scope.select_variables(conjunct.formula for conjunct in stated)
+    contract = Contract(
+        component, subject.id, variables, (*inputs, *assumptions), (*outputs, *demands)
+    )
+    return add_history_bits(contract)
 
 
 def _state_initial_values(scope: Scope, names: set[str]) -> tuple[list[Conjunct], list[Conjunct]]:

@@ -6,14 +6,19 @@ from collections.abc import Iterable, Mapping
 from msgspec import Struct
 from msgspec.structs import replace
 
-from sysmlc.ir import Kind
+from sysmlc.ir import Element, Graph, Kind
 from sysmlc.logic.components.names import ComponentNames, Meaning
 from sysmlc.logic.components.objects import ComponentError
-from sysmlc.logic.contract import Domain, Owner, Variable
-from sysmlc.logic.expressions.context import Context
+from sysmlc.logic.contract import Contract, Domain, Owner, Variable
+from sysmlc.logic.expressions.context import Context, context_of
 from sysmlc.logic.expressions.elaboration import Symbol, find_literal
 from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Var, prime, var, variables
+from sysmlc.logic.requirements.statements import (
+    definition_of,
+    find_redefining_operation,
+    list_component_names,
+)
 from sysmlc.logic.simplification import rebuild
 from sysmlc.logic.syntax import FormulaError
 
@@ -152,6 +157,20 @@ def restore_names(formula: Formula, meanings: Mapping[str, Meaning]) -> Formula:
             return Apply(op, tuple(restore_names(arg, meanings) for arg in args))
         case _:
             return formula
+
+
+def make_scope(
+    graph: Graph, subject: Element, behaviour: Contract | None, assumed_range: tuple[int, int]
+) -> Scope:
+    """Return the scope of a subject; *behaviour* is its contract if it has a behaviour."""
+    context = context_of(
+        graph,
+        definition_of(graph, subject),
+        assumed_range,
+        find_redefining_operation(graph, subject),
+    )
+    scope = scope_of(context, () if behaviour is None else behaviour.variables)
+    return replace(scope, component_names=list_component_names(graph, subject))
 
 
 def scope_of(context: Context, behaviour_variables: Iterable[Variable]) -> Scope:
