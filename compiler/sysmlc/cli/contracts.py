@@ -101,7 +101,6 @@ def _check(
 ) -> int:
     from sysmlc.cli.contract_files import select_contracts, show_results
     from sysmlc.cli.reports import write_files
-    from sysmlc.diagnostics import Severity
     from sysmlc.synthesis.composition_check import check_compositions
     from sysmlc.synthesis.contract_checks import check_contracts
     from sysmlc.synthesis.witnesses import witness_files
@@ -111,34 +110,23 @@ def _check(
         if contract_file.contracts
         else ()
     )
-    behaviours = contract_file.behaviours
+    place, sink, behaviours = contract_file.place, contract_file.sink, contract_file.behaviours
     composites = [
         _without_demands(composite) if composite.component in behaviours else composite
         for composite in contract_file.composites
         if component in ("", composite.component)
     ]
     alone = list(
-        check_contracts(
-            contracts,
-            contract_file.contracts,
-            contract_file.place,
-            contract_file.sink,
-            options,
-            behaviours,
-        )
+        check_contracts(contracts, contract_file.contracts, place, sink, options, behaviours)
     )
-    together = list(
-        check_compositions(composites, contract_file.place, contract_file.sink, options)
-    )
+    together = list(check_compositions(composites, place, sink, options))
     requirements = [
         item for item in contract_file.requirements if component in ("", item.component)
     ]
     if output is not None:
-        runs = [
-            *(contract.witnesses for contract in alone),
-            *(contract.witnesses for contract in together),
-        ]
-        write_files(witness_files(run for some in runs for run in some), output)
+        runs = [run for result in alone for run in result.witnesses]
+        runs += (run for result in together for run in result.witnesses)
+        write_files(witness_files(runs), output)
     show_results(
         contract_file,
         settings,
@@ -152,14 +140,22 @@ def _check(
             "behaviours": list_behaviours(alone),
         },
     )
+    return _find_exit_code(contract_file, alone, is_checked=bool(alone or together))
+
+
+def _find_exit_code(
+    contract_file: "ContractFile", results: "list[CheckedContract]", *, is_checked: bool
+) -> int:
+    """Return 0 if all is as it should be, 1 after errors, 2 if something is not decided."""
+    from sysmlc.diagnostics import Severity
+
     is_undecided = any(
         result.verdict.is_realizable is None and not result.is_checked_by_behaviour
-        for result in alone
+        for result in results
     )
     diagnostics = (*contract_file.sink, *(finding.diagnostic for finding in contract_file.findings))
     has_errors = any(diagnostic.severity is Severity.ERROR for diagnostic in diagnostics)
-    is_done = contract_file.is_whole and not is_undecided and bool(alone or together)
-    return int(has_errors) if is_done else 2
+    return int(has_errors) if contract_file.is_whole and is_checked and not is_undecided else 2
 
 
 def _without_demands(composite: "Composite") -> "Composite":
