@@ -11,6 +11,7 @@ from long_runs import examples
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, EnumerationDomain, IntegerDomain
 from sysmlc.logic.evaluate import evaluate_on_lasso, is_true
+from sysmlc.logic.formal_texts import is_formal
 from sysmlc.logic.formula import PAST, Apply, Op
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.formula_reduction import reduce_formula
@@ -336,6 +337,18 @@ def test_a_fault_is_reported_at_the_word(text, place, reason):
         read_requirement(text, DOMAINS, ("Gate",))
     assert line_and_column(text, caught.value.offset) == place
     assert reason in str(caught.value)
+
+
+def test_a_component_of_very_many_words_is_a_fault():
+    words = "word " * 200_000
+    with pytest.raises(FormulaError, match="the component 'Gate' is expected before 'shall'"):
+        read_requirement(f"the {words}shall always satisfy r", DOMAINS, ("Gate", "Gate"))
+
+
+def test_prose_that_repeats_words_of_sentences_is_no_requirement():
+    prose = "the gate shall always stop. " * 40_000
+    assert not is_formal("English", prose)
+    assert is_formal("English", f"{prose} It shall always satisfy r.")
 
 
 def test_a_mode_that_two_variables_may_have_is_ambiguous():

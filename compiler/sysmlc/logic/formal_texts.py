@@ -34,10 +34,11 @@ _SENTENCE = re.compile(
 """The start of a sentence that no informal text contains: tools label any prose as English."""
 _REQUIREMENT = re.compile(
     r"\bshall(?:\s+the\s+\w+)?(?:\s+|\s*,\s*)(always|never|immediately|eventually|until|before"
-    r"|at\s+the\s+next\s+timepoint|(within|for|after)\s+\d+\s+(tick|step)s?)\b.*\bsatisfy\b",
-    re.IGNORECASE | re.DOTALL,
+    r"|at\s+the\s+next\s+timepoint|(within|for|after)\s+\d+\s+(tick|step)s?)\b",
+    re.IGNORECASE,
 )
-"""Words that only a structured requirement contains."""
+"""Words that only a structured requirement contains, before the word "satisfy"."""
+_SATISFY = re.compile(r"\bsatisfy\b", re.IGNORECASE)
 _MAX_TIMES = 32
 """Most phases and steps of a pattern; each needs a history bit."""
 
@@ -47,8 +48,14 @@ def is_formal(language: str, text: str) -> bool:
     name = language.lower()
     if any(part in name for part in _LANGUAGES):
         return True
-    is_sentence = _SENTENCE.match(text) is not None or _REQUIREMENT.search(text) is not None
-    return "english" in name and is_sentence
+    return "english" in name and (_SENTENCE.match(text) is not None or _is_requirement(text))
+
+
+def _is_requirement(text: str) -> bool:
+    """Whether a text in English is a structured requirement."""
+    # Two searches take linear time; one expression for both searches the rest at each "shall".
+    start = _REQUIREMENT.search(text)
+    return start is not None and _SATISFY.search(text, start.end()) is not None
 
 
 def read_formal(
@@ -60,7 +67,7 @@ def read_formal(
     FormulaError, which ``describe_error`` shows with its location.
     """
     name = language.lower()
-    if "fret" in name or ("english" in name and _REQUIREMENT.search(text) is not None):
+    if "fret" in name or ("english" in name and _is_requirement(text)):
         return read_requirement(text, variables, components)
     if "pattern" in name or "english" in name:
         return read_sentence(text, variables)

@@ -248,9 +248,12 @@ class _RequirementReader(WordReader):
         self._accept("the")
         first, start = self._cursor.next, self._cursor.mark()
         names, words, end = {*map(_fold, components)}, "", start
+        longest = max(map(len, names), default=0)
         while self._cursor.next.kind == "name" and not self._is_after_component():
-            words += self._cursor.take().text
-            if _fold(words) in names or not names:
+            word = self._cursor.take().text
+            # Longer texts are no names; to join all words would take quadratic time.
+            words += _fold(word) if len(words) <= longest else ""
+            if words in names or not names:
                 end = self._cursor.mark()
         self._cursor.reset(end)
         if end == start:
@@ -261,7 +264,7 @@ class _RequirementReader(WordReader):
 
     def _raise_no_component(self, components: Collection[str], token: Token) -> NoReturn:
         """Raise an error about *token*, where a scope, a condition or the component is expected."""
-        names = " or ".join(f"'{name}'" for name in components)
+        names = " or ".join(f"'{name}'" for name in dict.fromkeys(components))
         expected = f"the component {names}".strip()
         similar = find_similar(token.text, (*_QUALIFIERS, *_SCOPES, *components))
         advice = f" (did you mean '{similar}'?)" if similar else ""
