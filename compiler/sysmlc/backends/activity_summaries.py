@@ -46,7 +46,10 @@ class ActivitySummary:
         events = [v for v in game.inputs if v.name not in done and v.name in game.pulses]
         stores = (*game.stores, *game.shared)
         yield f"**Inputs.** {_list_variables('It reads', inputs)}{_list_events(events)}"
-        outputs = _list_variables("Its steps assign", [store.variable for store in stores])
+        # A step may assign a feature without a finite range, which the contract leaves open.
+        outputs = "The contract states no value that a step assigns."
+        if stores:
+            outputs = _list_variables("Its steps assign", [store.variable for store in stores])
         yield f"**Outputs.** {outputs}{self._describe_writes(stores)}"
         order = " ".join(self._iter_order(ACTIVITY_REGION, "It"))
         yield f"**Order of the steps.** {order or 'It has no steps.'}"
