@@ -9,6 +9,7 @@ import re
 from bisect import bisect_left, bisect_right
 from codecs import BOM_UTF8
 from collections.abc import Iterator
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from msgspec import Struct
@@ -158,7 +159,7 @@ class Node:
         return f"<{self.kind} {self.name or self.short_name or '?'}>"
 
 
-class Document(Struct, frozen=True, eq=False):
+class Document(Struct, frozen=True, eq=False, dict=True):
     """One file: its path relative to the unit's root, its language, its text and its tree.
 
     ``language`` is ``sysml`` or ``kerml``. ``text`` is empty for interchange files, whose locations
@@ -170,6 +171,15 @@ class Document(Struct, frozen=True, eq=False):
     root: Node
     text: str = ""
     source: "Source | None" = None
+
+    @cached_property
+    def byte_offsets(self) -> "ByteOffsets":
+        """The offsets in the file of the characters of the text."""
+        return ByteOffsets(self.text, self.source)
+
+    def ordinal_of(self, node: Node) -> int:
+        """Return the byte at which the name of a node starts, or its ordinal in an XMI file."""
+        return self.byte_offsets.byte_of(node.name_start if node.name_start >= 0 else node.start)
 
 
 def find_root(node: Node) -> Node:
@@ -188,15 +198,7 @@ def locate(document: Document, start: int) -> Place:
     """Return the location of a character of a text, or of an XML element of an interchange file."""
     if not document.text:
         return Place(document.path, ordinal=start)
-    return Place(document.path, offset=byte_offset(document.text, document.source, start))
-
-
-def byte_offset(text: str, source: "Source | None", start: int) -> int:
-    """Return the offset in the file, in bytes, of a character of its text; -1 stays -1."""
-    if start < 0:
-        return start
-    offset = start if text.isascii() else len(text[:start].encode("utf-8", "replace"))
-    return byte_order_mark_length(source) + offset
+    return Place(document.path, offset=document.byte_offsets.byte_of(start))
 
 
 def byte_order_mark_length(source: "Source | None") -> int:
@@ -205,37 +207,30 @@ def byte_order_mark_length(source: "Source | None") -> int:
     return len(BOM_UTF8) if is_marked else 0
 
 
-class DocumentPositions:
-    """A document of the unit, with the byte offsets of its characters.
+class ByteOffsets:
+    """Offsets in a file, in bytes, of the characters of its text.
 
-    ``byte_offset`` encodes the text before one character, which is right for a single
-    diagnostic. The lowering asks for each element, so this class indexes the characters that take
-    several bytes once.
+    The characters that take several bytes are indexed once, because models with many diagnostics
+    ask for many offsets.
     """
 
-    def __init__(self, document: Document) -> None:
-        self.document = document
-        self.path = document.path
-        surplus = byte_order_mark_length(document.source) if document.text else 0
+    def __init__(self, text: str, source: "Source | None") -> None:
+        surplus = byte_order_mark_length(source) if text else 0
         self._wide_characters: list[int] = []
         self._surplus_bytes = [surplus]
         """Bytes beyond one for each character, before the first and after each wide character."""
-        for match in _WIDE_CHARACTER.finditer(document.text):
+        for match in _WIDE_CHARACTER.finditer(text):
             # A lone surrogate, which UTF-8 cannot encode, counts as the one byte of '?'.
             surplus += len(match[0].encode("utf-8", "replace")) - 1
             self._wide_characters.append(match.start())
             self._surplus_bytes.append(surplus)
 
-    def ordinal_of(self, node: Node) -> int:
-        """Return the byte at which the name of a node starts, or its ordinal in an XMI file."""
-        return self.byte_of(node.name_start if node.name_start >= 0 else node.start)
-
-    def byte_of(self, offset: int) -> int:
-        """Return the byte of a character of the document; -1 stays -1."""
-        if offset < 0:
-            return offset
-        return offset + self._surplus_bytes[bisect_left(self._wide_characters, offset)]
+    def byte_of(self, character: int) -> int:
+        """Return the byte at which a character of the text starts; -1 stays -1."""
+        if character < 0:
+            return character
+        return character + self._surplus_bytes[bisect_left(self._wide_characters, character)]
 
     def character_at(self, byte: int) -> int:
-        """Return the character of the document that contains a byte; -1 before the first."""
+        """Return the character of the text that contains a byte; -1 before the first."""
         return bisect_right(range(byte + 1), byte, key=self.byte_of) - 1

@@ -123,9 +123,7 @@ def _read_indent(text: str, start: int) -> str:
 
 def _find_node(document: Document, element: Element) -> Node:
     """Return the outermost node at the location of an element, a namesake if there is one."""
-    assert document.source is not None
-    data = document.source.data[byte_order_mark_length(document.source) : element.ordinal]
-    offset = len(data.decode(errors="replace"))
+    offset = document.byte_offsets.character_at(element.ordinal)
     nodes = list(_iter_nodes_at(document.root.members, offset))
     namesakes = (node for node in nodes if node.name == element.name)
     return next(namesakes, None) or nodes[0]

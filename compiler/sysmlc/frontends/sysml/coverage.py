@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from sysmlc.diagnostics import Coverage, Rule, Verdict
 from sysmlc.diagnostics.coverage import Loss
 from sysmlc.frontends.sysml.rules import APPROXIMATED, UNSUPPORTED
-from sysmlc.language.tree import DocumentPositions, Node
+from sysmlc.language.tree import Document, Node
 
 if TYPE_CHECKING:
     from sysmlc.frontends.sysml.lowering import Lowering
@@ -91,15 +91,15 @@ class _Judged(NamedTuple):
 
 def count_verdicts(
     lowering: "Lowering",
-    positions: DocumentPositions,
+    document: Document,
     nodes_by_kind: Mapping[str, Sequence[Node]],
     coverage: Coverage,
 ) -> None:
     """Count each node of a document once, and list the losses if the report is detailed."""
-    counts = coverage.file(positions.path)
+    counts = coverage.file(document.path)
     judged = [
         entry
-        for entry in _iter_judged(lowering, positions.document.root)
+        for entry in _iter_judged(lowering, document.root)
         if entry.verdict is not Verdict.MAPPED
     ]
     numbers = Counter((entry.node.kind, entry.verdict) for entry in judged)
@@ -110,7 +110,7 @@ def count_verdicts(
         if len(nodes) > unmapped[kind]:
             counts.count(kind, Verdict.MAPPED, len(nodes) - unmapped[kind])
     if coverage.is_detailed:
-        counts.losses.extend(_iter_losses(lowering, positions, judged))
+        counts.losses.extend(_iter_losses(lowering, document, judged))
 
 
 def _iter_judged(lowering: "Lowering", root: Node) -> Iterator[_Judged]:
@@ -135,9 +135,7 @@ def _iter_judged(lowering: "Lowering", root: Node) -> Iterator[_Judged]:
                 stack.append(_Judged(member, own or shared, own is None))
 
 
-def _iter_losses(
-    lowering: "Lowering", positions: DocumentPositions, judged: list[_Judged]
-) -> Iterator[Loss]:
+def _iter_losses(lowering: "Lowering", document: Document, judged: list[_Judged]) -> Iterator[Loss]:
     """Yield one loss for each node with a verdict, with the number of nodes that share it."""
     reasons = {
         id(node): (APPROXIMATED, describe_loss(construct, approximation))
@@ -157,7 +155,7 @@ def _iter_losses(
         yield Loss(
             node.kind,
             verdict,
-            positions.ordinal_of(node),
+            document.ordinal_of(node),
             number,
             _find_element_id(lowering, node),
             "" if id(node) in lowering.elements else node.name or "",

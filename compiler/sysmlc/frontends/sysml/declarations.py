@@ -90,9 +90,9 @@ def _list_statements(lowering: "Lowering", depth: int) -> list[Statement]:
     with allow_recursion(depth):
         return [
             statement
-            for positions in lowering.documents
-            if not positions.path.startswith(SHIPPED)
-            for statement in _iter_statements(lowering, positions.document.root)
+            for document in lowering.documents
+            if not document.path.startswith(SHIPPED)
+            for statement in _iter_statements(lowering, document.root)
         ]
 
 

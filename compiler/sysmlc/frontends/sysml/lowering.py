@@ -17,7 +17,7 @@ from sysmlc.frontends.sysml.rules import NOT_IN_GRAPH
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, list_items
 from sysmlc.ir import Reference as Pending
 from sysmlc.ir.query.activities import is_joined
-from sysmlc.language.tree import Document, DocumentPositions, Node, Reference, Relation
+from sysmlc.language.tree import Document, Node, Reference, Relation
 
 if TYPE_CHECKING:
     from sysmlc.language.names import Model
@@ -35,7 +35,7 @@ class Lowering(Verdicts):
 
     def __init__(
         self,
-        documents: Sequence[DocumentPositions],
+        documents: Sequence[Document],
         model: "Model",
         graph: Graph,
         sink: Sink,
@@ -47,7 +47,7 @@ class Lowering(Verdicts):
         self.graph = graph
         self.sink = sink
         self._handlers = handlers
-        self._documents: dict[int, DocumentPositions] = {}
+        self._documents: dict[int, Document] = {}
         self.elements: dict[int, Element] = {}
         """The element that a node is."""
         self.usage_classes: dict[int, Element] = {}
@@ -103,19 +103,18 @@ class Lowering(Verdicts):
             if member.kind in nodes.ANNOTATIONS:
                 self.lower(member, owner)
 
-    def assign_document(self, document: DocumentPositions, members: Iterable[Node]) -> None:
+    def assign_document(self, document: Document, members: Iterable[Node]) -> None:
         """Record that nodes belong to a document of the unit."""
         self._documents.update(dict.fromkeys(map(id, members), document))
 
     def document_of(self, node: Node) -> Document | None:
         """Return the document of the unit that contains the node; None for the library."""
-        positions = self._documents.get(id(node))
-        return None if positions is None else positions.document
+        return self._documents.get(id(node))
 
     @property
     def roots(self) -> list[Node]:
         """The root namespaces of the documents of the unit."""
-        return [positions.document.root for positions in self.documents]
+        return [document.root for document in self.documents]
 
     def resolve(self, node: Node, relation: Relation) -> Node | None:
         """Return the target of a relation of a node, in the unit or in the library."""
@@ -133,18 +132,18 @@ class Lowering(Verdicts):
 
     def subject_of(self, node: Node) -> Subject:
         """Return the node as the subject of a diagnostic."""
-        positions = self._documents.get(id(node))
+        document = self._documents.get(id(node))
         name = nodes.qualified_name_of(node)
-        if positions is None:
+        if document is None:
             return Subject(name)
-        return Subject(name, place=Place(positions.path, positions.ordinal_of(node)))
+        return Subject(name, place=Place(document.path, document.ordinal_of(node)))
 
     def is_misplaced(self, node: Node) -> bool:
         """Whether the parser reported that the node is not allowed in its owner (SM195)."""
-        positions = self._documents.get(id(node))
-        if positions is None:
+        document = self._documents.get(id(node))
+        if document is None:
             return False
-        place = Place(positions.path, offset=positions.byte_of(node.start))
+        place = Place(document.path, offset=document.byte_offsets.byte_of(node.start))
         return self.sink.has_reported(("SM195",), place)
 
     # -- order of work -------------------------------------------------------------------------
@@ -192,10 +191,10 @@ class Lowering(Verdicts):
         self, node: Node, kind: Kind, name: str, owner: Element | None, **attrs: AttrValue
     ) -> Element:
         """Add a further element for the node, at its location."""
-        positions = self._documents.get(id(node))
+        document = self._documents.get(id(node))
         source, ordinal = "", -1
-        if positions is not None:
-            source, ordinal = positions.path, positions.ordinal_of(node)
+        if document is not None:
+            source, ordinal = document.path, document.ordinal_of(node)
         id_ = self._names.add(kind, name, owner, source)
         owner_id = None if owner is None else owner.id
         attributes = _drop_empty(attrs)

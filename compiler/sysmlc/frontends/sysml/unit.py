@@ -17,7 +17,7 @@ from sysmlc.frontends.sysml.unread_members import report_losses
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.query.activities import pin_subkind
 from sysmlc.language.library import SHIPPED
-from sysmlc.language.tree import Document, DocumentPositions, Node
+from sysmlc.language.tree import Document, Node
 from sysmlc.support.interpreter import allow_recursion
 
 if TYPE_CHECKING:
@@ -37,11 +37,10 @@ def lower_unit(
     coverage: Coverage,
 ) -> None:
     """Add the elements of all documents to the graph and count the verdict of every node."""
-    positions = [DocumentPositions(document) for document in documents]
-    lowering = Lowering(positions, model, graph, sink, HANDLERS)
+    lowering = Lowering(documents, model, graph, sink, HANDLERS)
     indexes, depth = [], 0
-    for document in positions:
-        index, levels = _index_by_kind(document.document.root)
+    for document in documents:
+        index, levels = _index_by_kind(document.root)
         lowering.assign_document(document, chain.from_iterable(index.values()))
         indexes.append(index)
         depth = max(depth, levels)
@@ -59,7 +58,7 @@ def lower_unit(
     _set_pin_subkinds(graph)
     report_losses(lowering)
     _relate_errors(lowering)
-    for document, index in zip(positions, indexes, strict=True):
+    for document, index in zip(documents, indexes, strict=True):
         if not document.path.startswith(SHIPPED):
             count_verdicts(lowering, document, index, coverage)
 
@@ -185,12 +184,12 @@ def _relate_errors(lowering: Lowering) -> None:
     for diagnostic in list(lowering.sink):
         place = diagnostic.subject.place
         document = None if place is None else documents.get(place.file)
-        if place is None or document is None or not document.document.text:
+        if place is None or document is None or not document.text:
             continue
         if diagnostic.subject.id or not diagnostic.is_error:
             continue
-        character = document.character_at(place.offset)
-        element = _find_element_at(lowering, document.document.root, character)
+        character = document.byte_offsets.character_at(place.offset)
+        element = _find_element_at(lowering, document.root, character)
         if element is not None:
             lowering.sink.set_element(diagnostic, element.id)
 

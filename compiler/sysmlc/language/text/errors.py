@@ -1,12 +1,13 @@
 """Syntax errors, reported at their location with the expected tokens and advice."""
 
 from collections.abc import Collection
+from functools import cached_property
 
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.language.text import hints, rules
 from sysmlc.language.text.lexer import LexicalFault, Tokens
 from sysmlc.language.text.nesting import MAX_DEPTH
-from sysmlc.language.tree import byte_offset
+from sysmlc.language.tree import ByteOffsets
 from sysmlc.sources import Source
 
 _MAX_ERRORS = 100
@@ -54,10 +55,14 @@ class Errors:
         self._remaining -= 1
         if self._remaining < 0:
             return
-        place = Place(self._path, offset=byte_offset(self._tokens.text, self._source, offset))
+        place = Place(self._path, offset=self._byte_offsets.byte_of(offset))
         facts.setdefault("advice", "")
         notes = () if self._remaining else (_LAST_NOTE,)
         self._sink.report(rule, Subject(place=place), help="", notes=notes, cause="", **facts)
+
+    @cached_property
+    def _byte_offsets(self) -> ByteOffsets:
+        return ByteOffsets(self._tokens.text, self._source)
 
     def report_depth(self, start: int) -> None:
         """Report that the text is nested too deep, and suppress the errors that follow from it."""
