@@ -5,6 +5,7 @@ before and after, and what is assumed. All text of the model is escaped for Mark
 """
 
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import islice
 
 from sysmlc.logic.activities.token_graph import (
     ACTIVITY_REGION,
@@ -25,6 +26,11 @@ from sysmlc.support.escapes import escape_code, escape_markdown
 _STEPS = (NodeKind.ACTION, NodeKind.STRUCTURED)
 _SEQUENTIAL = (*_STEPS, NodeKind.INITIAL, NodeKind.DECISION, NodeKind.MERGE)
 _FINALS = (NodeKind.ACTIVITY_FINAL, NodeKind.FLOW_FINAL)
+_LISTED = (*_STEPS, NodeKind.ACTIVITY_FINAL)
+_MAX_PATHS = 100
+"""Most paths of control nodes behind a flow whose guards are listed."""
+_MANY_GUARDS = ("...",)
+"""Stands for the guards of too many paths."""
 _END = ""
 """Stands for the end among the ids of the nodes that follow."""
 _Branches = dict[tuple[str, ...], list[str]]
@@ -65,17 +71,14 @@ class ActivitySummary:
 
     def _iter_order(self, region: str, subject: str) -> Iterator[str]:
         """Yield the sentences about the steps directly in a region."""
-        starts: _Branches = {}
-        for edge in self._game.inside(region)[0]:
-            target = self._game.node(edge.target)
-            # A step that waits for another one, too, is not the first.
-            is_first = target.kind not in _STEPS or len(self._game.incoming(target)) == 1
-            if edge.marked and (is_first or not self._find_steps_before(target)):
-                self._follow(edge, (), starts, set())
+        marked = [edge for edge in self._game.inside(region)[0] if edge.marked]
+        starts = self._collect_branches(list(filter(self._leads_to_first, marked)))
         if starts:
             yield f"{subject} starts with {self._describe_branches(starts)}."
         steps = [node for node in self._game.members(region) if node.kind in _STEPS]
-        followers = {node.id: self._find_followers(node) for node in steps}
+        followers = {
+            node.id: self._collect_branches(self._game.outgoing(node), node.id) for node in steps
+        }
         continued: set[str] = set()
         for node in steps:
             if node.id in continued:
@@ -110,27 +113,63 @@ class ActivitySummary:
                 return chain
             chain.append(following[0])
 
-    def _find_followers(self, node: TokenNode) -> _Branches:
+    def _leads_to_first(self, edge: TokenEdge) -> bool:
+        """Whether a step at the end of the edge waits for no other step."""
+        target = self._game.node(edge.target)
+        is_alone = target.kind not in _STEPS or len(self._game.incoming(target)) == 1
+        return is_alone or not self._find_steps_before(target)
+
+    def _collect_branches(self, edges: Sequence[TokenEdge], origin: str = "") -> _Branches:
+        """Return the steps that tokens on the edges reach from the node *origin*, by guards.
+
+        If there are too many paths of control nodes, all steps are under ``_MANY_GUARDS``.
+        """
+        paths: list[tuple[tuple[str, ...], str | None]] = []
+        for edge in edges:
+            listed = list(islice(self._iter_paths(edge, origin), _MAX_PATHS + 1))
+            if len(listed) > _MAX_PATHS:
+                return {_MANY_GUARDS: self._find_reachable(edges)}
+            paths += listed
         branches: _Branches = {}
-        for edge in self._game.outgoing(node):
-            self._follow(edge, (), branches, {node.id})
+        for guards, id in paths:
+            if id is not None and id not in branches.setdefault(guards, []):
+                branches[guards].append(id)
         return branches
 
-    def _follow(
-        self, edge: TokenEdge, guards: tuple[str, ...], branches: _Branches, seen: set[str]
-    ) -> None:
-        """Add the steps that a token on the edge reaches through control nodes."""
-        if edge.guard is not None:
-            guards = (*guards, "" if edge.is_else else edge.guard.text)
-        target = self._game.node(edge.target)
-        if target.kind in _STEPS or target.kind is NodeKind.ACTIVITY_FINAL:
-            reached = branches.setdefault(guards, [])
-            id = target.id if target.kind in _STEPS else _END
-            if id not in reached:
-                reached.append(id)
-        elif target.id not in seen:
-            for following in self._game.outgoing(target):
-                self._follow(following, guards, branches, {*seen, target.id})
+    def _iter_paths(
+        self, edge: TokenEdge, origin: str
+    ) -> Iterator[tuple[tuple[str, ...], str | None]]:
+        """Yield the guards and the step of each path of control nodes; None without a step."""
+        worklist: list[tuple[TokenEdge, tuple[str, ...], frozenset[str]]] = [
+            (edge, (), frozenset([origin]))
+        ]
+        while worklist:
+            edge, guards, seen = worklist.pop()
+            if edge.guard is not None:
+                guards = (*guards, "" if edge.is_else else edge.guard.text)
+            target = self._game.node(edge.target)
+            following = [] if target.id in seen else self._game.outgoing(target)
+            if target.kind in _LISTED:
+                yield guards, target.id if target.kind in _STEPS else _END
+            elif following:
+                behind = seen | {target.id}
+                worklist += ((next_edge, guards, behind) for next_edge in reversed(following))
+            else:
+                yield guards, None
+
+    def _find_reachable(self, edges: Sequence[TokenEdge]) -> list[str]:
+        """Return the steps that tokens on the edges reach through control nodes."""
+        steps: list[str] = []
+        waiting, seen = list(reversed(edges)), set[str]()
+        while waiting:
+            target = self._game.node(waiting.pop().target)
+            if target.kind in _LISTED:
+                id = target.id if target.kind in _STEPS else _END
+                steps += [id] if id not in steps else []
+            elif target.id not in seen:
+                seen.add(target.id)
+                waiting += reversed(self._game.outgoing(target))
+        return steps
 
     def _find_waited(self, node: TokenNode) -> list[str]:
         """Return the steps that have to end before a step or the end, because of a join."""
@@ -162,8 +201,11 @@ class ActivitySummary:
         """Return the steps that follow, each with its guards; those after ``else`` come last."""
         texts = []
         for guards, ids in sorted(branches.items(), key=lambda branch: "" in branch[0]):
-            conditions = [_quote(guard) for guard in guards if guard]
+            conditions = [_quote(guard) for guard in dict.fromkeys(guards) if guard]
             steps = [_name(self._game.node(id)) if id != _END else "the end" for id in ids]
+            if guards == _MANY_GUARDS:
+                texts.append(f"{_join(steps, 'or')}, as the guards in between decide")
+                continue
             text = _join(steps) + (" at the same time" if len(steps) > 1 else "")
             text = f"{text} if {_join(conditions)}" if conditions else text
             texts.append(f"otherwise {text}" if "" in guards else text)

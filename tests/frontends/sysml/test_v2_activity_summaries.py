@@ -117,3 +117,34 @@ def test_names_cannot_break_the_page():
     steps = "first start; then action '</details> `*a*`\\n# B'; then done;"
     order = list_paragraphs(steps)["Order of the steps"]
     assert r"\</details> \`\*a\*\` # B" in order
+
+
+def decide_often(count):
+    """Return a chain of decisions whose branches meet again, before the action 'last'."""
+    names = [*(f"d{number}" for number in range(count)), "last"]
+    steps = [
+        f"decide {name}; if go then m{name}; else m{name}; merge m{name}; then {following};"
+        for name, following in zip(names, names[1:], strict=False)
+    ]
+    return " ".join(["first start then d0;", *steps, "action last; then done;"])
+
+
+@pytest.mark.parametrize(
+    ("count", "start"),
+    [
+        (1, "'last' if `go`, otherwise 'last'."),
+        (40, "'last', as the guards in between decide."),
+    ],
+)
+def test_guards_of_very_many_paths_are_not_listed(count, start):
+    paragraphs = list_paragraphs(decide_often(count), "in attribute go : Boolean;")
+    assert paragraphs["Order of the steps"].startswith(f"It starts with {start}")
+
+
+def test_a_path_of_very_many_decisions_is_followed():
+    count = 1500
+    steps = " ".join(f"decide d{n}; if go then d{n + 1};" for n in range(count))
+    paragraphs = list_paragraphs(
+        f"first start then d0; {steps} action d{count};", "in attribute go : Boolean;"
+    )
+    assert paragraphs["Order of the steps"].startswith(f"It starts with 'd{count}' if `go`.")

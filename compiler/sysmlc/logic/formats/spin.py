@@ -161,8 +161,6 @@ _INFIX = {
 _EXPRESSIONS = Notation({**{op: str(op) for op in Op}, Op.EQ: "==", Op.MOD: "%"}, lambda name: name)
 """Comparisons in SPIN's expression language, which is that of C."""
 _PREFIX = {Op.NOT: "!", Op.NEXT: "X ", Op.ALWAYS: "[]", Op.EVENTUALLY: "<>"}
-_EXPRESSIONS = Notation({**{op: str(op) for op in Op}, Op.EQ: "==", Op.MOD: "%"}, lambda name: name)
-"""Comparisons in SPIN's expression language, which is that of C."""
 _PROPOSITION = re.compile(r"!?(X )?(\{[^{}]*\}|\w+)")
 _SPIN_NAME = re.compile(r"[a-z_]\w*")
 MAX_PROPOSITIONS = 20_000
