@@ -1,5 +1,7 @@
 """The page of an activity's contract opens with what the activity does, in sentences."""
 
+from itertools import pairwise
+
 import pytest
 from reading_v2 import read
 
@@ -124,7 +126,7 @@ def decide_often(count):
     names = [*(f"d{number}" for number in range(count)), "last"]
     steps = [
         f"decide {name}; if go then m{name}; else m{name}; merge m{name}; then {following};"
-        for name, following in zip(names, names[1:], strict=False)
+        for name, following in pairwise(names)
     ]
     return " ".join(["first start then d0;", *steps, "action last; then done;"])
 
