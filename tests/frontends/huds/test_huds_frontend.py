@@ -15,8 +15,11 @@ from sysmlc.passes import pipeline
 from sysmlc.sources import Fault, Source, SourceError, load
 
 
-def attribute(key, text):
-    return f'<attribute key="{key}"><attribute key="value">{text}</attribute></attribute>'
+def attribute(key, *texts, dtype="str"):
+    values = "".join(
+        f'<attribute _dtype="{dtype}" key="value">{text}</attribute>' for text in texts
+    )
+    return f'<attribute key="{key}">{values}</attribute>'
 
 
 def stereotype(name, profile="SysML", **tags):
@@ -142,6 +145,32 @@ def test_behaviour_has_the_shape_that_xmi_gives():
     assert graph.owner(graph["tr"]) is graph["re"]
     assert graph.target(graph["tr"], Edge.TRIGGER) is graph["tg"]
     assert graph["tg"].attrs == {"subkind": "time", "when": "1s", "relative": True}
+
+
+@pytest.mark.parametrize(
+    ("dtype", "texts", "value"),
+    [
+        ("float", ["0.5"], 0.5),
+        ("float", ["1.0", "2.0"], (1.0, 2.0)),
+        ("int", ["-1"], -1),
+        ("boolean", ["true"], True),
+        ("str", ["0.5"], "0.5"),
+        ("float", ["INF"], "INF"),
+        ("int", ["9" * 5000], "9" * 5000),
+        ("int", ["many"], "many"),
+    ],
+)
+def test_the_value_of_a_slot_has_the_type_that_mtip_states(dtype, texts, value):
+    slot = data("Slot", "v", "i", "Slot", attribute("value", *texts, dtype=dtype), property="p")
+    read = Read(
+        packet(
+            data("Block", "b", name="Belt"),
+            data("ValueProperty", "p", "b", "speed"),
+            data("InstanceSpecification", "i", name="belt", classifiedBy="b"),
+            slot,
+        )
+    )
+    assert (read.graph["v"].name, read.graph["v"].attrs) == ("", {"value": value})
 
 
 def test_tagged_values_belong_to_their_stereotype():

@@ -162,7 +162,9 @@ class FileLowering:
             return
         id = self.graph_id(record.id)
         self._check_depth(id, owner)
-        element = Element(id, kind, record.value("name"), owner, record.ordinal, self.file)
+        # MTIP calls every slot "Slot"; slots have no names.
+        name = "" if kind is Kind.SLOT else record.value("name")
+        element = Element(id, kind, name, owner, record.ordinal, self.file)
         if subkind:
             element.attrs["subkind"] = subkind
         self.graph.add(element)

@@ -4,15 +4,26 @@ MTIP (Model Transformation Integration Plug-in) writes a flat list; ownership an
 relations are pairs of a name and an id inside the record.
 """
 
+import re
 from collections.abc import Iterator
+from math import isfinite
 from typing import NamedTuple
 
+from sysmlc.ir import AttrValue
 from sysmlc.sources import DEFAULT_LIMITS, Source
 from sysmlc.sources.xml import Parser, make_parser, parse, refuse_depth
 
 _READ_PARTS = frozenset({"value", "stereotypeName", "profileName", "taggedValueName"})
 """Parts of an attribute that are read; the others repeat types and ids of the exporting tool."""
-_Part = tuple[str, str]
+_INTEGER = re.compile(r"[+-]?[0-9]{1,4000}$")
+
+
+class _Part(NamedTuple):
+    """A part of an attribute: its key, its text and the type that MTIP states (``_dtype``)."""
+
+    key: str
+    text: str
+    type: str
 
 
 class Record(NamedTuple):
@@ -23,8 +34,8 @@ class Record(NamedTuple):
     """The type with its prefix, as in ``sysml.Block``."""
     id: str
     attributes: list[tuple[str, list[_Part]]]
-    """Names of attributes with their parts, which are pairs of a key and a text."""
-    relations: list[_Part]
+    """Names of attributes with their parts."""
+    relations: list[tuple[str, str]]
     """Names of relations with the id of their target."""
 
     @property
@@ -34,13 +45,16 @@ class Record(NamedTuple):
 
     def values(self, key: str) -> list[str]:
         """Return the texts of an attribute, in order."""
-        return [
-            text
-            for name, parts in self.attributes
-            if name == key
-            for part, text in parts
-            if part == "value"
-        ]
+        return [part.text for part in self._iter_values(key)]
+
+    def literals(self, key: str) -> list[AttrValue]:
+        """Return the values of an attribute, in order: numbers, Booleans and texts."""
+        return [_read_literal(part) for part in self._iter_values(key)]
+
+    def _iter_values(self, key: str) -> Iterator[_Part]:
+        for name, parts in self.attributes:
+            if name == key:
+                yield from (part for part in parts if part.key == "value")
 
     def value(self, key: str) -> str:
         """Return the first text of an attribute, or the empty string."""
@@ -56,7 +70,11 @@ class Record(NamedTuple):
 
     def list_stereotypes(self) -> list[tuple[str, str]]:
         """Return name and profile of the stereotypes that are applied, sorted."""
-        applied = (dict(parts) for key, parts in self.attributes if key == "stereotype")
+        applied = (
+            {part.key: part.text for part in parts}
+            for key, parts in self.attributes
+            if key == "stereotype"
+        )
         return sorted(
             {(parts.get("stereotypeName", ""), parts.get("profileName", "")) for parts in applied}
         )
@@ -64,11 +82,26 @@ class Record(NamedTuple):
     def iter_tagged_values(self, stereotype: str) -> Iterator[tuple[str, tuple[str, ...]]]:
         """Yield the tags of a stereotype and their values, without tags that have none."""
         for key, parts in self.attributes:
-            texts = dict(parts)
+            texts = {part.key: part.text for part in parts}
             if key == "stereotypeTaggedValue" and texts.get("stereotypeName") == stereotype:
-                values = tuple(text for part, text in parts if part == "value" and text.strip())
+                values = tuple(p.text for p in parts if p.key == "value" and p.text.strip())
                 if values and texts.get("taggedValueName"):
                     yield texts["taggedValueName"], values
+
+
+def _read_literal(part: _Part) -> AttrValue:
+    """Return the value of a part, or its text if JSON has no such number (``INF``)."""
+    if part.type == "boolean" and part.text in ("true", "false"):
+        return part.text == "true"
+    if part.type == "int" and _INTEGER.match(part.text):
+        return int(part.text)
+    if part.type == "float":
+        try:
+            number = float(part.text)
+        except ValueError:
+            return part.text
+        return number if isfinite(number) else part.text
+    return part.text
 
 
 def read_records(source: Source) -> list[Record]:
@@ -95,10 +128,11 @@ class _RecordReader:
         self._source, self._parser = source, xml_parser
         self._depth = self._count = self._ordinal = 0
         self._section = self._relation = self._type = self._id = ""
-        self._keys: list[str] = []
+        self._keys: list[tuple[str, str]] = []
+        """Keys and types of the open parts of an attribute."""
         self._attributes: list[tuple[str, list[_Part]]] = []
         self._parts: list[_Part] = []
-        self._relations: list[_Part] = []
+        self._relations: list[tuple[str, str]] = []
 
     def start(self, tag: str, values: dict[str, str]) -> None:
         """Handle the start of an XML element."""
@@ -107,7 +141,7 @@ class _RecordReader:
         self.texts.clear()
         if depth > 4:
             if self._section == "attributes":
-                self._keys.append(values.get("key", ""))
+                self._keys.append((values.get("key", ""), values.get("_dtype", "")))
             if depth > DEFAULT_LIMITS.depth:
                 refuse_depth(self._source, self._parser)
         elif depth == 4:
@@ -127,9 +161,9 @@ class _RecordReader:
         depth, section = self._depth, self._section
         self._depth = depth - 1
         if depth > 4 and section == "attributes":
-            key = self._keys.pop()
+            key, type = self._keys.pop()
             if key in _READ_PARTS and self.texts:
-                self._parts.append((key, "".join(self.texts)))
+                self._parts.append(_Part(key, "".join(self.texts), type))
         elif depth > 4 and tag == "id":
             self._relations.append((self._relation, "".join(self.texts)))
         elif depth == 4 and section == "id":

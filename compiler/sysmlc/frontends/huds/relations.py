@@ -121,7 +121,7 @@ def _complete_constraint(file: _FileLowering, record: Record, constraint: Elemen
 
 
 def _complete_slot(file: _FileLowering, record: Record, slot: Element) -> None:
-    values = record.values("value")
+    values = record.literals("value")
     if values:
         slot.attrs["value"] = values[0] if len(values) == 1 else tuple(values)
 
