@@ -284,3 +284,19 @@ def test_findings_are_accepted_one_by_one_before_they_are_merged(check, tmp_path
         "error[SM205 unresolved-name]: unknown name 'Tankk' (4 places)",
         "  --> tank.sysml:3:14 (b)",
     ]
+
+
+REPEATED_ID = """\
+Class a "NoJam" role="requirement" req_id="R1"
+Class b "Quiet" role="requirement" req_id="R1"
+Class c "Fast" role="requirement" req_id="R1"
+Class d "Light" role="requirement" req_id="R2"
+"""
+
+
+def test_requirements_with_one_id_are_one_finding(tmp_path):
+    path = tmp_path / "line.ir"
+    path.write_text(REPEATED_ID)
+    result = CliRunner().invoke(sysmlc, ["check", "--no-cache", str(path)])
+    assert list_heads(result.stderr.splitlines()) == ["warning[SM213"]
+    assert "requirement 'Fast' has the id R1, as 'NoJam' has (2 places)" in result.stderr

@@ -11,7 +11,7 @@ REPEATED_ID = rule(
     "repeated-requirement-id",
     Severity.WARNING,
     "requirement '{requirement}' has the id {id}, as '{first}' has",
-    help="give one of the two another id",
+    help="give each requirement an id of its own",
 )
 NO_ID = rule(
     "SM214",
@@ -75,7 +75,9 @@ def _report_repeated(graph: Graph, sink: Sink, id: str, requirements: list[Eleme
     first = graph.qualified_name(requirements[0])
     for requirement in requirements[1:]:
         name = graph.qualified_name(requirement)
-        sink.report(REPEATED_ID, graph.subject(requirement), id=id, requirement=name, first=first)
+        subject = graph.subject(requirement)
+        facts = {"id": id, "requirement": name, "first": first}
+        sink.report(REPEATED_ID, subject, cause=f"id {id}", **facts)
 
 
 def _check_copy(graph: Graph, sink: Sink, dependency: Element) -> None:
