@@ -173,6 +173,40 @@ def test_the_value_of_a_slot_has_the_type_that_mtip_states(dtype, texts, value):
     assert (read.graph["v"].name, read.graph["v"].attrs) == ("", {"value": value})
 
 
+def read_association(*properties, **types):
+    return Read(
+        packet(
+            data("Block", "g", name="Gate"),
+            data("Block", "b", name="Belt"),
+            data("Composition", "a", **types),
+            *properties,
+        )
+    ).graph
+
+
+def test_an_association_owns_the_end_that_no_class_owns():
+    """MTIP exports only the ends that classes own, and the types of both ends."""
+    belt = data("PartProperty", "p", "g", "belt", typedBy="b", association="a")
+    graph = read_association(belt, supplier="b", client="g")
+    _, end = graph.targets(graph["a"], Edge.END)
+    assert graph.owner(end) is graph["a"]
+    assert graph.targets(end, Edge.TYPED_BY) == [graph["g"]]
+
+
+def test_an_association_between_two_properties_owns_no_end():
+    belt = data("PartProperty", "p", "g", "belt", typedBy="b", association="a")
+    gate = data("ReferenceProperty", "q", "b", "gate", typedBy="g", association="a")
+    graph = read_association(belt, gate, supplier="b", client="g")
+    assert graph.targets(graph["a"], Edge.END) == [graph["p"], graph["q"]]
+
+
+@pytest.mark.parametrize("types", [{}, {"supplier": "b", "client": "b"}, {"client": "gone"}])
+def test_an_association_without_the_type_of_the_other_end_has_one_end(types):
+    belt = data("PartProperty", "p", "g", "belt", typedBy="b", association="a")
+    graph = read_association(belt, **types)
+    assert graph.targets(graph["a"], Edge.END) == [graph["p"]]
+
+
 def test_tagged_values_belong_to_their_stereotype():
     read = Read(packet(data("Class", "c", "", "C", stereotype("Cost", "Own", euro="5"))))
     (application,) = [element for element in read.graph if element.name == "Cost"]

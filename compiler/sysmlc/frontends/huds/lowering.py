@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 from sysmlc.diagnostics import Coverage, Place, Rule, Severity, Sink, Subject, Verdict, rule
 from sysmlc.frontends.huds import vocabulary as v
 from sysmlc.frontends.huds.records import Record, read_records
-from sysmlc.frontends.huds.relations import add_relations
+from sysmlc.frontends.huds.relations import add_association_ends, add_relations
 from sysmlc.ir import Edge, Element, Graph, Kind, list_items
 from sysmlc.ir.element import derived_id
 from sysmlc.sources import DEFAULT_LIMITS, Fault, Source, SourceError
@@ -88,7 +88,10 @@ class FileLowering:
                 self._mark_unsupported(record, REPEATED, record.id)
 
     def lower(self) -> None:
-        """Add all elements, then the relations and stereotypes of each record."""
+        """Add all elements, then the relations and stereotypes of each record.
+
+        The ends that associations own come last.
+        """
         for record in self._iter_owners_first():
             self._add_element(record)
         for record in self.records:
@@ -97,6 +100,7 @@ class FileLowering:
                 add_relations(self, record, element)
                 if element is not None:
                     _apply_stereotypes(self.graph, element, record)
+        add_association_ends(self)
 
     # -- ids and owners ----------------------------------------------------------------------------
 

@@ -60,6 +60,28 @@ def _add_edge(file: _FileLowering, record: Record, edge: Edge) -> None:
         _refer(file, edge, file.target_id(source), [target])
 
 
+def add_association_ends(file: _FileLowering) -> None:
+    """Add the ends that associations own, because MTIP exports only the ends that classes own.
+
+    An association with one end leads back to the owner of that end, which is the type of the
+    other end. MTIP states both types: they are the supplier and the client.
+    """
+    for record in file.by_id.values():
+        association = file.graph.get(file.target_id(record.id))
+        if association is None or association.kind is not Kind.ASSOCIATION:
+            continue
+        ends = file.graph.targets(association, Edge.END)
+        types = (*record.targets("supplier")[:1], *record.targets("client")[:1])
+        owners = [id for id in types if len(ends) == 1 and file.target_id(id) == ends[0].owner]
+        if owners:
+            id = derived_id(association.id, "end")
+            source, ordinal = association.source, record.ordinal
+            end = Element(id, Kind.PROPERTY, "", association.id, ordinal, source)
+            file.graph.add(end)
+            file.graph.connect(Edge.END, association, end)
+            _refer(file, Edge.TYPED_BY, end.id, owners[:1])
+
+
 # -- completions of single kinds -------------------------------------------------------------------
 
 
