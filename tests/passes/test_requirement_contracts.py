@@ -122,6 +122,18 @@ def test_a_constraint_in_another_language_is_reported():
     ]
 
 
+def test_a_condition_about_a_feature_with_several_values_is_reported():
+    model = build_tank('body="level < 9"').replace(
+        'Property level "level"', 'Property level "level" multiplicity="3"'
+    )
+    contracts, sink = derive(model)
+    assert contracts == []
+    assert list_messages(sink, "SM523") == [
+        "constraint 'never full' of requirement 'Safe' is in no contract: "
+        "'level' has several values"
+    ]
+
+
 def test_a_requirement_about_several_subjects_is_reported_once():
     special = '  Class d "Silo" role="block"\n    -> specializes c\n'
     sink = derive(build_tank('body="lid"', elements=special))[1]

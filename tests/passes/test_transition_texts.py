@@ -50,10 +50,12 @@ Package p "Plant"
 """
 
 
-def list_text_findings(guard="count > 3", effect="count := 1", language=""):
+def list_text_findings(
+    guard="count > 3", effect="count := 1", language="", model=TEXTS_OF_A_TRANSITION
+):
     """Return the findings about a guard and an effect, except the assumed range."""
     attributes = f'guard="{guard}"' + (f' guard_language="{language}"' if language else "")
-    text = TEXTS_OF_A_TRANSITION.replace("{guard}", attributes).replace("{effect}", effect)
+    text = model.replace("{guard}", attributes).replace("{effect}", effect)
     _, _, sink = derive_contracts(text)
     return [
         f"{diagnostic.rule.code}: {diagnostic.message}"
@@ -115,6 +117,26 @@ def test_a_guard_that_names_nothing_is_an_error(guard):
 def test_an_effect_that_a_contract_cannot_express_is_no_error(effect, reason):
     (finding,) = list_text_findings(effect=effect)
     assert finding.startswith(f"SM416: effect '{effect}' is not understood: {reason}; ")
+
+
+@pytest.mark.parametrize("multiplicity", ["3", "0..*", "2..4"])
+def test_a_feature_with_several_values_is_no_variable(multiplicity):
+    declaration = 'Property count "count"'
+    model = TEXTS_OF_A_TRANSITION.replace(
+        declaration, f'{declaration} multiplicity="{multiplicity}"'
+    )
+    guard, effect = list_text_findings(model=model)
+    assert guard.startswith("SM411: guard 'count > 3' has no formula: 'count' has several values; ")
+    assert effect.startswith("SM416: effect 'count := 1' is not understood: 'count' has several v")
+
+
+@pytest.mark.parametrize("multiplicity", ["1", "0..1"])
+def test_a_feature_with_one_value_is_a_variable(multiplicity):
+    declaration = 'Property count "count"'
+    model = TEXTS_OF_A_TRANSITION.replace(
+        declaration, f'{declaration} multiplicity="{multiplicity}"'
+    )
+    assert list_text_findings(model=model) == []
 
 
 @pytest.mark.parametrize(

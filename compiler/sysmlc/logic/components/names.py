@@ -122,7 +122,8 @@ class ComponentNames:
                 if feature.domain is None and not object_.path:
                     return None
                 if feature.domain is None:
-                    raise ComponentError(f"'{name}' has not finitely many values")
+                    several = "several values" if feature.has_several_values else "no finite type"
+                    raise ComponentError(f"'{name}' has {several}")
                 if feature.is_constant and feature.default is not None:
                     return Meaning(f.const(feature.default), feature.domain)
                 slot = tree.find_slot(object_, feature.element, feature.variable)

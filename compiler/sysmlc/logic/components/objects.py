@@ -261,7 +261,9 @@ class ObjectTree:
             feature.domain for _, feature in joined if feature.domain is not None
         ]
         if len(domains) < len(joined):
-            raise ComponentError(f"'{join_path(path, name)}' has not finitely many values")
+            is_several = any(feature.has_several_values for _, feature in joined)
+            obstacle = "several values" if is_several else "no finite type"
+            raise ComponentError(f"'{join_path(path, name)}' has {obstacle}")
         if any(domain != domains[0] for domain in domains):
             raise ComponentError(
                 f"'{join_path(path, name)}' is joined with a feature of other values"

@@ -24,6 +24,7 @@ from sysmlc.logic.expressions.expression import (
     name_of,
     print_expression,
 )
+from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.formula import Const, Formula, Op
 
 
@@ -72,6 +73,7 @@ class Symbol(Struct, frozen=True):
     formula: Formula
     domain: Domain | None
     number: int | None = None
+    has_several_values: bool = False
 
 
 Scope = Callable[[str], Symbol | None]
@@ -96,6 +98,14 @@ _CONNECTIVE: dict[str, Callable[[Formula, Formula], Formula]] = {
     "implies": f.implies,
     "xor": lambda left, right: f.negate(f.fold_iff(left, right)),
 }
+
+
+def make_symbol(feature: Feature) -> Symbol:
+    """Return the symbol of a feature: its value if it is a constant, else its variable."""
+    if feature.is_constant and feature.default is not None:
+        return Symbol(f.const(feature.default), feature.domain)
+    is_several = feature.has_several_values
+    return Symbol(f.var(feature.variable), feature.domain, has_several_values=is_several)
 
 
 def find_literal(context: Context, name: str) -> Symbol | None:
@@ -191,7 +201,8 @@ def _elaborate_name(
     if isinstance(expected, IntegerDomain) and symbol.number is not None:
         return _make_value(Const(symbol.number), IntegerDomain(symbol.number, symbol.number))
     if symbol.domain is None:
-        message = f"'{name}' has no finite type"
+        obstacle = "several values" if symbol.has_several_values else "no finite type"
+        message = f"'{name}' has {obstacle}"
         raise ElaborationError(Fault.UNSUPPORTED, message, name, expression.offset)
     return _make_value(symbol.formula, symbol.domain)
 

@@ -55,6 +55,8 @@ class Feature(Struct, frozen=True):
     """A default value that is not in the domain."""
     direction: str = ""
     """``in``, ``out`` or ``inout`` as the owner sees it; empty if the feature has none."""
+    has_several_values: bool = False
+    """Whether the multiplicity allows other than one value; such a feature has no domain."""
 
 
 class Access(NamedTuple):
@@ -77,6 +79,10 @@ def make_feature(
     An Integer without a range gets *assumed_range*. *constants* are the Integers that never change,
     by name; the bounds of ranges may name them. *access* is given if the name is dotted.
     """
+    bounds = query.bounds(element.attrs.get("multiplicity"))
+    if bounds is not None and bounds[1] != 1:
+        # One variable cannot stand for several values.
+        return Feature(element, variable, None, has_several_values=True)
     type_ = query.type_of(graph, element)
     family = [] if type_ is None else [type_, *query.generals(graph, type_)]
     type_names = _list_type_names(family)
@@ -143,6 +149,8 @@ def _assume_domain(
 
 def is_string(graph: Graph, feature: Feature) -> bool:
     """Whether the feature is a String whose values are not declared."""
+    if feature.has_several_values:
+        return False
     type_ = query.type_of(graph, feature.element)
     family = [] if type_ is None else [type_, *query.generals(graph, type_)]
     return feature.domain is None and bool(_list_type_names(family) & _STRING)

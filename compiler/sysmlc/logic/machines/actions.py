@@ -18,6 +18,7 @@ from sysmlc.logic.expressions.elaboration import (
     elaborate_condition,
     elaborate_value,
     find_literal,
+    make_symbol,
 )
 from sysmlc.logic.expressions.expression import (
     Assignment,
@@ -125,9 +126,7 @@ class ReadingContext:
         """Return the symbol for *name*: a property, an auxiliary variable or a literal."""
         feature = self.context.features.get(name)
         if feature is not None:
-            if feature.is_constant and feature.default is not None:
-                return Symbol(f.const(feature.default), feature.domain)
-            return Symbol(f.var(feature.variable), feature.domain)
+            return make_symbol(feature)
         # A condition without meaning is replaced by the name of an input, which is resolved here.
         for variable in self.auxiliary.values():
             if variable.name == name:
@@ -326,7 +325,8 @@ def _read_assignment(
     feature = reading.context.features.get(name)
     reason = _explain_name(reading, behaviour, text, name) if feature is None else ""
     if feature is not None and feature.domain is None and not feature.is_constant:
-        reason = f"'{name}' has no finite type"
+        obstacle = "several values" if feature.has_several_values else "no finite type"
+        reason = f"'{name}' has {obstacle}"
     if reason:
         return _read_opaque_effect(reading, text, behaviour, reason)
     if feature is None or feature.domain is None or feature.is_constant:

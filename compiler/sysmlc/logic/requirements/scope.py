@@ -64,7 +64,8 @@ class Scope(Struct, frozen=True):
         if feature is not None:
             constant = self.constants.get(feature.variable)
             formula = var(feature.variable) if constant is None else Const(constant)
-            return Symbol(formula, feature.domain)
+            several = feature.has_several_values
+            return Symbol(formula, feature.domain, has_several_values=several)
         variable = self.variables.get(name)
         if variable is None:
             return find_literal(self.context, name)

@@ -15,6 +15,7 @@ from sysmlc.logic.expressions.elaboration import (
     Symbol,
     elaborate_condition,
     find_literal,
+    make_symbol,
 )
 from sysmlc.logic.expressions.expression import Binary, Expression, ExpressionError
 from sysmlc.logic.expressions.features import Feature
@@ -216,9 +217,7 @@ def _find_symbol(context: Context, name: str) -> Symbol | None:
     feature = context.features.get(name) or context.features.get(name.removeprefix("self."))
     if feature is None:
         return find_literal(context, name)
-    if feature.is_constant and feature.default is not None:
-        return Symbol(f.const(feature.default), feature.domain)
-    return Symbol(f.var(feature.variable), feature.domain)
+    return make_symbol(feature)
 
 
 def _is_precondition(context: Context, formula: Formula) -> bool:

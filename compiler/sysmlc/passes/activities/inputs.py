@@ -26,6 +26,7 @@ from sysmlc.logic.expressions.elaboration import (
     Symbol,
     elaborate_condition,
     elaborate_value,
+    make_symbol,
 )
 from sysmlc.logic.expressions.expression import Expression, ExpressionError
 from sysmlc.logic.expressions.features import Feature
@@ -157,7 +158,7 @@ class Scope:
             return Symbol(declared[name], BooleanDomain())
         feature = self._feature(name)
         if feature is not None:
-            return Symbol(_feature_value(feature), feature.domain)
+            return make_symbol(feature)
         return self._find_literal(name)
 
     def _find_literal(self, name: str) -> Symbol | None:
@@ -181,12 +182,6 @@ class Scope:
 
 def _variable_names(formula: Formula) -> list[str]:
     return list(dict.fromkeys(variable.name for variable in variables(formula)))
-
-
-def _feature_value(feature: Feature) -> Formula:
-    if feature.is_constant and feature.default is not None:
-        return const(feature.default)
-    return var(feature.variable)
 
 
 # -- inputs ------------------------------------------------------------------------------------
