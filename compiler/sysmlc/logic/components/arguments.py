@@ -23,11 +23,11 @@ from sysmlc.logic.contract import (
     Source,
     Variable,
 )
+from sysmlc.logic.expressions.context import find_literal
 from sysmlc.logic.expressions.elaboration import (
     ElaborationError,
     Symbol,
     elaborate_value,
-    find_literal,
 )
 from sysmlc.logic.expressions.expression import ExpressionError, name_of
 from sysmlc.logic.expressions.parsing import parse_expression

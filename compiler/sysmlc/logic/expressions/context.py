@@ -15,6 +15,7 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, Kind, query
 from sysmlc.logic.contract import EnumerationDomain, IntegerDomain
 from sysmlc.logic.domains import describe
+from sysmlc.logic.expressions.elaboration import Symbol
 from sysmlc.logic.expressions.features import (
     Access,
     Feature,
@@ -34,6 +35,7 @@ from sysmlc.logic.expressions.named_elements import (
     find_port_values,
 )
 from sysmlc.logic.expressions.parsing import unquote
+from sysmlc.logic.formula import const, var
 from sysmlc.logic.identifiers import make_unique
 
 ASSUMED_RANGE = rule(
@@ -101,6 +103,24 @@ def variables_of(
     if classifier is None:
         return {}
     return _name_variables(_find_elements(graph, classifier, behaviour))
+
+
+def make_symbol(feature: Feature) -> Symbol:
+    """Return the symbol of a feature: its value if it is a constant, else its variable."""
+    if feature.is_constant and feature.default is not None:
+        return Symbol(const(feature.default), feature.domain)
+    is_several = feature.has_several_values
+    return Symbol(var(feature.variable), feature.domain, has_several_values=is_several)
+
+
+def find_literal(context: Context, name: str) -> Symbol | None:
+    """Return the symbol of an enumeration literal with a qualified name (``Mode::auto``)."""
+    entry = context.literals.get(name)
+    if entry is None or ("::" not in name and "." not in name):
+        return None
+    enumeration, identifier = entry
+    domain = context.enumerations.domains[enumeration]
+    return Symbol(const(identifier), domain, context.number(name))
 
 
 def describe_missing_range(id: str) -> str:

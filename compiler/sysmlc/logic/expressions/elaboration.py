@@ -9,7 +9,6 @@ from msgspec import Struct
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, IntegerDomain
-from sysmlc.logic.expressions.context import Context
 from sysmlc.logic.expressions.expression import (
     Binary,
     Conditional,
@@ -24,7 +23,6 @@ from sysmlc.logic.expressions.expression import (
     name_of,
     print_expression,
 )
-from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.formula import Const, Formula, Op
 
 
@@ -98,24 +96,6 @@ _CONNECTIVE: dict[str, Callable[[Formula, Formula], Formula]] = {
     "implies": f.implies,
     "xor": lambda left, right: f.negate(f.fold_iff(left, right)),
 }
-
-
-def make_symbol(feature: Feature) -> Symbol:
-    """Return the symbol of a feature: its value if it is a constant, else its variable."""
-    if feature.is_constant and feature.default is not None:
-        return Symbol(f.const(feature.default), feature.domain)
-    is_several = feature.has_several_values
-    return Symbol(f.var(feature.variable), feature.domain, has_several_values=is_several)
-
-
-def find_literal(context: Context, name: str) -> Symbol | None:
-    """Return the symbol of an enumeration literal with a qualified name (``Mode::auto``)."""
-    entry = context.literals.get(name)
-    if entry is None or ("::" not in name and "." not in name):
-        return None
-    enumeration, identifier = entry
-    domain = context.enumerations.domains[enumeration]
-    return Symbol(f.const(identifier), domain, context.number(name))
 
 
 def elaborate_condition(expression: Expression, scope: Scope) -> Formula:

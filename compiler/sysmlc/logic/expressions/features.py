@@ -149,11 +149,10 @@ def _assume_domain(
 
 def is_string(graph: Graph, feature: Feature) -> bool:
     """Whether the feature is a String whose values are not declared."""
-    if feature.has_several_values:
-        return False
     type_ = query.type_of(graph, feature.element)
     family = [] if type_ is None else [type_, *query.generals(graph, type_)]
-    return feature.domain is None and bool(_list_type_names(family) & _STRING)
+    is_undeclared = feature.domain is None and not feature.has_several_values
+    return is_undeclared and bool(_list_type_names(family) & _STRING)
 
 
 def restrict_string(feature: Feature, domain: EnumerationDomain) -> Feature:

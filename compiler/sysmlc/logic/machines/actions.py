@@ -8,7 +8,7 @@ from sysmlc.ir import Edge, Element, Graph
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, Owner, Variable
 from sysmlc.logic.domains import describe
-from sysmlc.logic.expressions.context import Context, report_range
+from sysmlc.logic.expressions.context import Context, find_literal, make_symbol, report_range
 from sysmlc.logic.expressions.elaboration import (
     ELSEWHERE_ADVICE,
     FINITE_ADVICE,
@@ -17,8 +17,6 @@ from sysmlc.logic.expressions.elaboration import (
     Symbol,
     elaborate_condition,
     elaborate_value,
-    find_literal,
-    make_symbol,
 )
 from sysmlc.logic.expressions.expression import (
     Assignment,

@@ -10,8 +10,8 @@ from sysmlc.ir import Element, Graph, Kind
 from sysmlc.logic.components.names import ComponentNames, Meaning
 from sysmlc.logic.components.objects import ComponentError
 from sysmlc.logic.contract import Contract, Domain, Owner, Variable
-from sysmlc.logic.expressions.context import Context, context_of
-from sysmlc.logic.expressions.elaboration import Symbol, find_literal
+from sysmlc.logic.expressions.context import Context, context_of, find_literal
+from sysmlc.logic.expressions.elaboration import Symbol
 from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Var, prime, var, variables
 from sysmlc.logic.requirements.statements import (

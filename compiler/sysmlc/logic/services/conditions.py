@@ -8,14 +8,18 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Domain
-from sysmlc.logic.expressions.context import Context, context_of, report_range
+from sysmlc.logic.expressions.context import (
+    Context,
+    context_of,
+    find_literal,
+    make_symbol,
+    report_range,
+)
 from sysmlc.logic.expressions.elaboration import (
     ElaborationError,
     Fault,
     Symbol,
     elaborate_condition,
-    find_literal,
-    make_symbol,
 )
 from sysmlc.logic.expressions.expression import Binary, Expression, ExpressionError
 from sysmlc.logic.expressions.features import Feature

@@ -16,7 +16,7 @@ from sysmlc.logic.contract import (
     Owner,
     Variable,
 )
-from sysmlc.logic.expressions.context import context_of, report_range
+from sysmlc.logic.expressions.context import context_of, make_symbol, report_range
 from sysmlc.logic.expressions.elaboration import (
     ELSEWHERE_ADVICE,
     FINITE_ADVICE,
@@ -26,7 +26,6 @@ from sysmlc.logic.expressions.elaboration import (
     Symbol,
     elaborate_condition,
     elaborate_value,
-    make_symbol,
 )
 from sysmlc.logic.expressions.expression import Expression, ExpressionError
 from sysmlc.logic.expressions.features import Feature
