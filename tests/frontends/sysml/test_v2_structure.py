@@ -1,5 +1,6 @@
 """Structure of SysML v2 in the graph: definitions, usages, ports, connections, values."""
 
+import pytest
 from reading_v2 import read, read_classified
 
 PLANT = """
@@ -127,6 +128,32 @@ package P {
     line = reading.find_element("P::line")
     assert (str(line.kind), line.attrs["usage"]) == ("Class", True)
     assert reading.list_owned("P::line")[2] == "Connector"
+
+
+def read_slot(value):
+    return read(f"""
+package P {{
+    part def Row;
+    part def Table {{ part rows : Row[*]; }}
+    part left : Row;
+    part middle : Row;
+    part right : Row;
+    part table : Table {{ :>> rows = {value}; }}
+}}""")
+
+
+def test_a_sequence_of_instances_in_a_slot_refers_to_each_of_them_in_order():
+    reading = read_slot("(right, left, middle)")
+    rows = reading.graph.targets(reading.find_element("P::table::rows"), "references")
+    assert [row.name for row in rows] == ["right", "left", "middle"]
+    assert reading.find_element("P::table::rows").attrs == {}
+
+
+@pytest.mark.parametrize("value", ["(left, left)", "(left, middle.rows)", "left + middle"])
+def test_a_slot_with_other_values_has_the_text_of_the_expression(value):
+    slot = read_slot(value).find_element("P::table::rows")
+    assert slot.attrs["value_language"] == ""
+    assert "left" in slot.attrs["value"]
 
 
 def test_enumerations_and_values_that_name_their_literals():

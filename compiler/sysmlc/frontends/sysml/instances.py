@@ -154,12 +154,32 @@ def _set_interface_values(lowering: "Lowering", node: Node, slot: Element) -> No
 
 
 def _set_slot_value(lowering: "Lowering", slot: Element, value: Node) -> None:
-    """Set the value of a slot, or connect it to another instance of the unit."""
-    is_reference = value.kind == "FeatureReferenceExpression"
-    target = nodes.find_target(value, "Membership") if is_reference else None
-    is_literal = target is not None and target.kind == "EnumerationUsage"
-    if target is None or is_literal or lowering.document_of(target) is None:
+    """Set the value of a slot, or connect it to other instances of the unit."""
+    instances = _list_instances(lowering, value)
+    if not instances:
         values.set_value(lowering, slot, "value", value)
         return
     quantities.set_kind(lowering, slot, "value", value)
-    lowering.defer_until_elements(lambda: lowering.connect_node(Edge.REFERENCES, slot, target))
+    lowering.defer_until_elements(lambda: lowering.connect_nodes(Edge.REFERENCES, slot, instances))
+
+
+def _list_instances(lowering: "Lowering", value: Node) -> list[Node]:
+    """Return the instances of the unit to which a value, or each value of a sequence, refers.
+
+    The list is empty if a value is no such instance, or if an instance recurs: two elements have
+    at most one edge of a kind.
+    """
+    instances: list[Node] = []
+    expressions = [value]
+    while expressions:
+        expression = expressions.pop()
+        if expression.attributes.get("operator") == ",":
+            expressions.extend(reversed(nodes.list_arguments(expression)))
+            continue
+        is_reference = expression.kind == "FeatureReferenceExpression"
+        target = nodes.find_target(expression, "Membership") if is_reference else None
+        is_literal = target is not None and target.kind == "EnumerationUsage"
+        if target is None or is_literal or lowering.document_of(target) is None:
+            return []
+        instances.append(target)
+    return instances if len(set(instances)) == len(instances) else []
