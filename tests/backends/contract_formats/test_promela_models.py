@@ -154,7 +154,7 @@ def test_requirements_without_behaviour_have_no_model(tmp_path):
     ids=lambda model: model.path.stem,
 )
 def test_spin_agrees_with_the_oracle(model, tmp_path):
-    text = require(model, {fact.name: fact.ltl for fact in model.properties})
+    text = require(model)
     component = model.component.replace("::", ".")
     for name in (f"{component}.requirements", component):
         promela, _ = write_model(text, tmp_path, name)
