@@ -158,3 +158,24 @@ def test_every_step_of_the_player_is_a_step_of_the_derived_relation(model):
             following = random.choice(player.successors(now, draw()))
             assert all(evaluate.is_true(formula, now, following) for formula in steps)
             now = following
+
+
+def test_an_expectation_is_undecided_if_not_all_runs_are_followed(tmp_path):
+    names = [f"x{number}" for number in range(14)]
+    features = " ".join(f"attribute {name} : Boolean;" for name in names)
+    model = CELL.replace("action pick {", f"{features} action pick {{")
+    path = tmp_path / "model.sysml"
+    path.write_text(model.replace("if gripped do", f"if {' and '.join(names)} do"), "utf-8")
+    sink = Sink()
+    scenario = "component: P::Cell\nsteps:\n  - expect: {held: true}\n"
+    run_scenarios(compile_model(path).graph, Source("s.yaml", scenario.encode()), sink)
+    assert [diagnostic.rule.code for diagnostic in sink] == ["SM578"]
+
+
+def test_an_expectation_is_met_if_one_of_the_runs_that_are_followed_meets_it(play):
+    model = CELL.replace("action pick {", "attribute x : Boolean; action pick {")
+    report = play(
+        model.replace("if gripped do", "if x do"),
+        "component: P::Cell\nsteps:\n  - expect: {x: true}\n",
+    )
+    assert report.passed

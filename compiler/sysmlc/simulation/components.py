@@ -38,8 +38,8 @@ from sysmlc.logic.machines.reaction import Reaction, is_active
 from sysmlc.logic.machines.reader import MachineOptions
 from sysmlc.simulation.performances import PerformanceStep
 
-_MAX_FIRST_VALUES = 10_000
-"""Most combinations of the values of features without an initial value."""
+MAX_RUNS = 10_000
+"""Most runs followed at the same time if a diagram leaves choices."""
 _Options = dict[str, list[Literal]]
 """The values that a feature may get in a step, by its variable."""
 
@@ -97,7 +97,9 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
     # -- first step --------------------------------------------------------------------------------
 
     def initial(self, inputs: Mapping[str, Literal]) -> list[Valuation]:
-        valuations: list[Valuation] = []
+        return _limit_valuations(self._iter_first_valuations(inputs))
+
+    def _iter_first_valuations(self, inputs: Mapping[str, Literal]) -> Iterator[Valuation]:
         for features in self._list_first_values():
             before = {**inputs, **features}
             reactions = (
@@ -113,10 +115,9 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
                 for written in _choose_values(_merge_options(combination)):
                     after = {**before, **written}
                     for state in self._list_first_states(combination):
-                        valuations.append(
-                            self._complete(after, after, inputs, combination, state, is_first=True)
+                        yield self._complete(
+                            after, after, inputs, combination, state, is_first=True
                         )
-        return _drop_duplicates(valuations)
 
     def _list_first_values(self) -> Iterator[Valuation]:
         slots = [slot for slot in self.parts.tree.used_slots.values() if not slot.is_input]
@@ -125,7 +126,7 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
             for slot in slots
         )
         names = [slot.variable.name for slot in slots]
-        for row in islice(product(*choices), _MAX_FIRST_VALUES):
+        for row in product(*choices):
             yield dict(zip(names, row, strict=True))
 
     def _list_first_states(
@@ -133,22 +134,21 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
     ) -> Iterator[token_game.State]:
         """Yield the first states of the performances: those of services may already run."""
         by_machine = {id(reaction.machine): reaction for reaction in reactions}
-        running: list[set[str]] = [set()]
+        choices: list[list[bool]] = []
         for root in self.parts.roots:
             if root.machine is not None and root.state is not None:
                 reaction = by_machine[id(root.machine)]
                 machine = root.machine.machine
-                is_running = is_active(machine, reaction.reaction.store, root.state.id)
-                options = [is_running]
+                choices.append([is_active(machine, reaction.reaction.store, root.state.id)])
             else:
-                options = [True] if root.first == TRUE else [False, True]
-            running = [
-                ids | ({root.id} if is_running else set())
-                for ids in running
-                for is_running in options
-            ]
+                choices.append([True] if root.first == TRUE else [False, True])
         nothing = token_game.State(frozenset(), frozenset())
-        for ids in running:
+        for choice in product(*choices):
+            ids = {
+                root.id
+                for root, is_running in zip(self.parts.roots, choice, strict=True)
+                if is_running
+            }
             step = PerformanceStep(self._tokens, nothing, {}, evaluate.is_true)
             yield step.start_and_stop(ids, set())
 
@@ -157,6 +157,11 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
     def successors(
         self, now: Mapping[str, Literal], inputs: Mapping[str, Literal]
     ) -> list[Valuation]:
+        return _limit_valuations(self._iter_successors(now, inputs))
+
+    def _iter_successors(
+        self, now: Mapping[str, Literal], inputs: Mapping[str, Literal]
+    ) -> Iterator[Valuation]:
         state = token_game.state_of(self._tokens, now)
         step = PerformanceStep(self._tokens, state, now, evaluate.is_true)
         finished = step.list_finished()
@@ -169,7 +174,6 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
             list(self._list_reactions(machine, now, finished, writes))
             for machine in self.parts.machines
         ]
-        valuations: list[Valuation] = []
         for combination in product(*alternatives):
             options = _merge_options(combination)
             for name, choices in own_options.items():
@@ -179,12 +183,9 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
                 kept = {name: now[name] for name in self._features}
                 after = {**inputs, **kept, **written}
                 for following in states:
-                    valuations.append(
-                        self._complete(
-                            now, after, inputs, combination, following, finished=finished
-                        )
+                    yield self._complete(
+                        now, after, inputs, combination, following, finished=finished
                     )
-        return _drop_duplicates(valuations)
 
     def _list_writes(
         self, finished: set[str], now: Mapping[str, Literal]
@@ -373,6 +374,10 @@ def _choose_values(options: _Options) -> Iterator[Valuation]:
         yield dict(zip(options, row, strict=True))
 
 
-def _drop_duplicates(valuations: list[Valuation]) -> list[Valuation]:
+def _limit_valuations(iterator: Iterator[Valuation]) -> list[Valuation]:
+    """Return the distinct valuations, or, if there are too many, over ``MAX_RUNS`` of them."""
+    valuations = list(islice(iterator, MAX_RUNS + 1))
+    if len(valuations) > MAX_RUNS:
+        return valuations
     distinct = {frozenset(valuation.items()): valuation for valuation in valuations}
     return list(distinct.values())

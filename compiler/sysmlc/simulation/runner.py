@@ -8,6 +8,7 @@ from sysmlc.logic.contract import Owner, Variable
 from sysmlc.logic.domains import contains, describe
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.machines.interpreter import Valuation
+from sysmlc.simulation.components import MAX_RUNS
 from sysmlc.simulation.players import (
     Player,
     find_component_player,
@@ -18,6 +19,7 @@ from sysmlc.simulation.report import Difference, Report, Result, show_value
 from sysmlc.simulation.scenario import (
     COMPONENT,
     NOT_INPUT,
+    TOO_MANY_RUNS,
     VALUE,
     VARIABLE,
     Entry,
@@ -26,9 +28,6 @@ from sysmlc.simulation.scenario import (
 )
 from sysmlc.sources import Source
 from sysmlc.support.suggestions import did_you_mean
-
-_MAX_RUNS = 10_000
-"""Most runs followed at the same time if a diagram leaves choices."""
 
 _Trace = tuple[Valuation, ...]
 
@@ -55,7 +54,7 @@ def _play_scenario(
         for variable in player.variables
         if variable.owner is Owner.ENVIRONMENT
     }
-    return _follow_runs(scenario, player, resting_values)
+    return _follow_runs(scenario, player, resting_values, sink)
 
 
 # -- checks ------------------------------------------------------------------------------------
@@ -124,22 +123,32 @@ def _is_valid_entry(
 # -- runs --------------------------------------------------------------------------------------
 
 
-def _follow_runs(scenario: Scenario, player: Player, resting_values: Valuation) -> Result:
+def _follow_runs(
+    scenario: Scenario, player: Player, resting_values: Valuation, sink: Sink
+) -> Result:
     """Follow all runs of the diagram that show the expected values, step by step.
 
     If no run remains after a step, the result has that step as its difference, and as its trace the
-    run that shows most of the values expected in it.
+    run that shows most of the values expected in it. If some runs were not followed, that no run
+    remains is reported as undecided.
     """
+    is_complete = True
     inputs = dict(resting_values)
     traces: list[_Trace] = [()]
     for number, step in enumerate(scenario.steps):
         # Inputs that are not pulses retain their value until the scenario sets them again.
         inputs.update({name: resting_values[name] for name in player.pulses})
         inputs.update({entry.name: entry.value for entry in step.inputs})
-        traces = _extend_traces(player, traces, dict(inputs))
+        traces, has_all = _extend_traces(player, traces, dict(inputs))
+        is_complete &= has_all
         matching = [trace for trace in traces if _find_missed_entry(trace[-1], step.expect) is None]
         if not matching:
             trace, entry = _find_nearest(traces, step.expect)
+            if not is_complete:
+                location = scenario.subject(entry.location)
+                name, component = entry.name, player.component
+                sink.report(TOO_MANY_RUNS, location, name=name, component=component, limit=MAX_RUNS)
+                return Result(scenario.name, component, scenario.location.line, is_valid=False)
             actual = trace[-1].get(entry.name)
             difference = Difference(number, entry.name, entry.value, actual, entry.location.line)
             return Result(
@@ -165,14 +174,23 @@ def _input_names(player: Player) -> frozenset[str]:
     return frozenset(v.name for v in player.variables if v.owner is Owner.ENVIRONMENT)
 
 
-def _extend_traces(player: Player, traces: list[_Trace], inputs: Valuation) -> list[_Trace]:
-    """Extend each run by each possible step; retain one run for each valuation that is reached."""
+def _extend_traces(
+    player: Player, traces: list[_Trace], inputs: Valuation
+) -> tuple[list[_Trace], bool]:
+    """Extend each run by each possible step; retain one run for each valuation that is reached.
+
+    The second result is false if there are more runs than are followed.
+    """
+    has_all = True
     traces_by_state: dict[frozenset[tuple[str, Literal]], _Trace] = {}
     for trace in traces:
         valuations = player.successors(trace[-1], inputs) if trace else player.initial(inputs)
+        has_all &= len(valuations) <= MAX_RUNS
         for valuation in valuations:
             traces_by_state.setdefault(frozenset(valuation.items()), (*trace, valuation))
-    return list(traces_by_state.values())[:_MAX_RUNS]
+        if len(traces_by_state) > MAX_RUNS:
+            return list(traces_by_state.values())[:MAX_RUNS], False
+    return list(traces_by_state.values()), has_all
 
 
 def _find_missed_entry(valuation: Valuation, expect: Iterable[Entry]) -> Entry | None:

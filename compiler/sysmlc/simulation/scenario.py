@@ -68,6 +68,14 @@ LONG_TRACE = rule(
     "the expected trace has {lines} entries, but there are only {steps} steps",
     help="add steps (a step may be empty: {{}}), or use repeat",
 )
+TOO_MANY_RUNS = rule(
+    "SM578",
+    "too-many-runs",
+    Severity.ERROR,
+    "whether '{name}' can have this value is not decided: '{component}' has more than {limit} "
+    "possible runs, and not all were followed",
+    help="give its features initial values, or expect more values in earlier steps",
+)
 
 Values = Mapping[str, Literal]
 
