@@ -76,8 +76,8 @@ def _report_repeated(graph: Graph, sink: Sink, id: str, requirements: list[Eleme
     for requirement in requirements[1:]:
         name = graph.qualified_name(requirement)
         subject = graph.subject(requirement)
-        facts = {"id": id, "requirement": name, "first": first}
-        sink.report(REPEATED_ID, subject, cause=f"id {id}", **facts)
+        cause = f"id {id}"
+        sink.report(REPEATED_ID, subject, cause=cause, id=id, requirement=name, first=first)
 
 
 def _check_copy(graph: Graph, sink: Sink, dependency: Element) -> None:
