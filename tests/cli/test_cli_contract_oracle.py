@@ -8,6 +8,7 @@ import json
 import pytest
 
 from contract_oracle import list_models, require, satisfy
+from json_documents import Document, find_violations
 from long_runs import quick_first
 
 MODELS = list_models()
@@ -29,6 +30,7 @@ def check(file, workspace):
     """Return the result of the command, and the entries about each property by its name."""
     result = workspace.sysmlc("contracts", "check", "--format", "json", file)
     document = json.loads(result.stdout)
+    assert find_violations(Document(file, "sysmlc-diagnostics", document)) == []
     entries = {}
     for entry in document["requirements"]:
         entries.setdefault(entry["requirement"].rpartition("::R_")[2], []).append(entry)
