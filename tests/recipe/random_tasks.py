@@ -243,7 +243,9 @@ class Execution:
         while not interpreter.is_finished(self._tokens, self._state):
             running = [id for id in self._graph.assignments if id in self._state.running]
             if running:
-                self._finish(running[0])
+                self._step("")
+                for id in running:
+                    self._assign(*self._graph.assignments[id])
                 continue
             previous = self._state
             self._step("")
@@ -265,10 +267,6 @@ class Execution:
 
     def _finish(self, id: str) -> None:
         self._step(id)
-        if id in self._graph.assignments:
-            name, value = self._graph.assignments[id]
-            self._values[name] = self._values[name] + 1 if value is None else value
-            return
         self.runs[id] += 1
         if id in self._graph.outputs:
             name, limit = self._graph.outputs[id]
@@ -277,7 +275,11 @@ class Execution:
             self._values[name] = is_good
             self._failures[id] = 0 if is_good else failures + 1
 
+    def _assign(self, name: str, value: int | None) -> None:
+        self._values[name] = self._values[name] + 1 if value is None else value
+
     def _step(self, done: str) -> None:
+        """Play a step in which the service *done* ends, and all assignments that run."""
         inputs = {
             variable.name: self._values.get(variable.name, variable.name == f"done_{done}")
             for variable in self._tokens.inputs

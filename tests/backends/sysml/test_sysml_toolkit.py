@@ -18,7 +18,7 @@ from long_runs import quick_first
 EXAMPLES = sorted((ROOT / "examples").glob("*/*.uml"))
 ELEMENT_COUNTS = {
     "gate": 25,
-    "baygate-behaviour": 125,
+    "baygate-behaviour": 126,
     "four-tasks": 82,
     "lego-recipe": 181,
     "hall": 17,
