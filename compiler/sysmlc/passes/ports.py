@@ -334,9 +334,9 @@ def _has_explaining_type(graph: Graph, port: Element) -> bool:
     is not read. The missing file is reported, and its flow properties may state a direction.
     """
     # Without a tag, the direction of a vendor's port is a default value in the vendor's profile.
-    vendor_ports = _list_port_applications(graph, port) if port.role == "port" else []
-    untagged = (each for each in vendor_ports if "tag.direction" not in each.attrs)
-    if any(graph.target(each, Edge.INSTANCE_OF) is None for each in untagged):
+    applied = _list_port_applications(graph, port) if port.role == "port" else []
+    untagged = (use for use in applied if "tag.direction" not in use.attrs)
+    if any(graph.target(use, Edge.INSTANCE_OF) is None for use in untagged):
         return True
     type_ = type_of(graph, port)
     if type_ is None:

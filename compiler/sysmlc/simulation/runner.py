@@ -65,7 +65,7 @@ def _find_player(
 ) -> Player | None:
     """Return the player of the component: of the whole block, or else of its only behaviour."""
     name = scenario.component
-    matches = [known for known in players_by_name if _short_name(known) == name]
+    matches = [player for player in players_by_name if _short_name(player) == name]
     if name not in players_by_name and len(matches) == 1:
         name = matches[0]
     player = find_component_player(graph, name) or players_by_name.get(name)

@@ -113,7 +113,9 @@ class _Description:
             name,
             self.component.subject.id,
             tuple(self._list_variables(formulas, wiring.variables).values()),
-            tuple(replace(each, source=Source.DERIVED) for each in derive_assumptions(formulas)),
+            tuple(
+                replace(ending, source=Source.DERIVED) for ending in derive_assumptions(formulas)
+            ),
             tuple(
                 replace(conjunct, formula=substitute(conjunct.formula, ends), source=Source.DERIVED)
                 for conjunct in self._conjuncts
