@@ -81,6 +81,16 @@ def test_a_constraint_with_one_bound_gives_no_range():
     assert features["bay"].domain == IntegerDomain(0, 15)
 
 
+def test_zero_is_a_lower_bound_of_unsigned_types():
+    model = CLASS.replace("{members}", '  Constraint k body="bay <= 3"\n').replace("{default}", "")
+    natural, integer = model.replace("Integer", "Natural"), model
+    domains = [
+        context_of(graph, graph["c"]).features["bay"].domain
+        for graph in map(parse_text, (natural, integer))
+    ]
+    assert domains == [IntegerDomain(0, 3), IntegerDomain(0, 15)]
+
+
 def test_ranges_come_from_tagged_values_of_the_type():
     graph = parse_text(
         CLASS.replace("{members}", "").replace("{default}", "")

@@ -290,8 +290,11 @@ def _find_constrained_range(
     constants: Mapping[str, int],
     access: Access | None,
 ) -> Domain | None:
-    """Return the intersection of the bounds that constraints set; None if one side is open."""
-    low: int | None = None
+    """Return the intersection of the bounds that constraints set; None if one side is open.
+
+    Zero is a lower bound of every unsigned type.
+    """
+    low: int | None = 0 if _list_type_names(types) & _UNSIGNED else None
     high: int | None = None
     for names, body in _iter_constraints(graph, element, types, access):
         for op, bound in _iter_bounds(body, names, constants):
