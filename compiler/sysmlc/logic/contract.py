@@ -131,12 +131,14 @@ class Part(Struct, frozen=True):
     """A part with the contract of its type, in the variables of the whole.
 
     A variable that several parts share has one name in all contracts; a variable of one part has
-    the name of the part as a prefix (``gate.state``). ``origin`` is the id of the part.
+    the name of the part as a prefix (``gate.state``). ``origin`` is the id of the part. Operations,
+    actions and state machines of the whole count as parts, too.
     """
 
     name: str
     contract: Contract
     origin: str
+    is_behaviour: bool = False
 
 
 class Composite(Struct, frozen=True):

@@ -84,6 +84,8 @@ class CompositionVerdict(Struct, frozen=True):
 
     component: str
     parts: int
+    behaviours: int
+    """How many of the parts are behaviours of the block itself."""
     has_whole: bool
     """Whether the block itself guarantees something."""
     has_shared_variables: bool
@@ -102,14 +104,25 @@ class CompositionVerdict(Struct, frozen=True):
             return "the composition of its parts is not checked"
         if self.has_whole and self.has_shared_variables:
             if self.parts == 1:
-                return f"its part {'satisfies' if self.is_satisfied else 'violates'} its contract"
+                verb = "satisfies" if self.is_satisfied else "violates"
+                return f"{self._describe_parts()} {verb} its contract"
             verb = "satisfy" if self.is_satisfied else "violate"
-            return f"its {self.parts} parts together {verb} its contract"
+            return f"{self._describe_parts()} together {verb} its contract"
         if self.parts == 1:
-            return f"its part {'fits' if self.is_satisfied else 'does not fit'}"
+            return f"{self._describe_parts()} {'fits' if self.is_satisfied else 'does not fit'}"
         if self.is_satisfied and not self.has_shared_variables:
-            return f"its {self.parts} parts are not connected"
-        return f"its {self.parts} parts {'fit' if self.is_satisfied else 'do not fit'} together"
+            verb = "share no features" if self.behaviours else "are not connected"
+            return f"{self._describe_parts()} {verb}"
+        verb = "fit" if self.is_satisfied else "do not fit"
+        return f"{self._describe_parts()} {verb} together"
+
+    def _describe_parts(self) -> str:
+        if self.parts == 1:
+            return f"its {'behaviour' if self.behaviours else 'part'}"
+        if not self.behaviours:
+            return f"its {self.parts} parts"
+        is_all = self.behaviours == self.parts
+        return f"its {self.parts} {'behaviours' if is_all else 'parts and behaviours'}"
 
 
 def check_compositions(
@@ -140,6 +153,7 @@ def check_compositions(
         yield CompositionVerdict(
             composite.component,
             len(composite.parts),
+            sum(part.is_behaviour for part in composite.parts),
             has_whole,
             has_shared,
             is_satisfied,

@@ -295,7 +295,7 @@ def check_page(text):
 
 
 def test_the_actions_and_the_coordinator_of_a_machine_fit_together():
-    assert check_page(LOADER) == ([], "Cells::Loader: its 4 parts fit together")
+    assert check_page(LOADER) == ([], "Cells::Loader: its 4 behaviours fit together")
 
 
 @pytest.mark.parametrize(
@@ -309,7 +309,7 @@ def test_the_actions_and_the_coordinator_of_a_machine_fit_together():
 def test_missing_assumptions_of_a_machine_are_reported(missing, assumed):
     messages, verdict = check_page(LOADER.replace(missing, ";" if "{" in missing else " "))
     assert any(assumed in message for message in messages)
-    assert verdict == "Cells::Loader: its 4 parts do not fit together"
+    assert verdict == "Cells::Loader: its 4 behaviours do not fit together"
 
 
 DRAWN = """

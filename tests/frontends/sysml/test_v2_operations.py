@@ -160,16 +160,16 @@ def test_actions_a_coordinator_and_an_operation_fit_together(operation):
     lines = [f"action work : {operation};", "bind work.asked = asked;"]
     lines += [BOUND[action].replace("clamp", "work") for action in BOUND if action in able]
     verdict, diagnostics = check_composition(write_machine(able, "\n".join(lines)))
-    assert verdict == f"Cells::Machine: its {len(able) + 2} parts fit together"
+    assert verdict == f"Cells::Machine: its {len(able) + 2} behaviours fit together"
     assert diagnostics == []
 
 
 def test_two_arms_dismantle_what_comes():
-    assert check_composition(DISMANTLES) == ("Cells::Opener: its 3 parts fit together", [])
+    assert check_composition(DISMANTLES) == ("Cells::Opener: its 3 behaviours fit together", [])
 
 
 def test_two_arms_mount_what_comes():
-    assert check_composition(MOUNTS) == ("Cells::Mounter: its 2 parts fit together", [])
+    assert check_composition(MOUNTS) == ("Cells::Mounter: its 2 behaviours fit together", [])
 
 
 def test_a_step_ends_when_the_one_action_that_performs_it_is_executed():
@@ -194,7 +194,7 @@ def test_an_operation_whose_requests_nothing_reads_is_reported():
     """Its steps end when the actions are executed, which nobody asks for."""
     text = write_machine(ACTIONS, CLAMPS.replace("bind clamp.asked = asked;", ""))
     verdict, diagnostics = check_composition(text)
-    assert verdict == "Cells::Machine: its 6 parts do not fit together"
+    assert verdict == "Cells::Machine: its 6 behaviours do not fit together"
     assert {code for code, _ in diagnostics} == {"SM595", "SM596"}
 
 
@@ -213,11 +213,11 @@ def test_the_machine_of_the_page_fits_together_and_not_without_pieces():
         + read_page_example("    part def Loader")
         + "}"
     )
-    assert check_composition(text) == ("Cells::Loader: its 4 parts fit together", [])
+    assert check_composition(text) == ("Cells::Loader: its 4 behaviours fit together", [])
     waiting = text.replace("Supplied", "Picking, Placing")
     waiting = waiting.replace("bind pick.pos = piece;", "").replace("bind place.pos = space;", "")
     verdict, diagnostics = check_composition(waiting)
-    assert verdict == "Cells::Loader: its 4 parts do not fit together"
+    assert verdict == "Cells::Loader: its 4 behaviours do not fit together"
     assert {code for code, _ in diagnostics} == {"SM596"}
 
 
@@ -226,7 +226,7 @@ def test_an_operation_of_ones_own_is_performed_as_those_of_the_library_are():
     able = [action for action in ACTIONS if action in ("pick", "place")]
     lines = write_machine(able, "action swap : Swapping; bind swap.asked = asked;")
     text = lines.replace("part def Machine", f"{swap}\n    part def Machine")
-    assert check_composition(text) == ("Cells::Machine: its 4 parts fit together", [])
+    assert check_composition(text) == ("Cells::Machine: its 4 behaviours fit together", [])
 
 
 def test_an_operation_inside_another_has_no_end_of_its_own_which_is_reported():
@@ -247,7 +247,7 @@ def test_an_operation_inside_another_has_no_end_of_its_own_which_is_reported():
 """
     text = lines.replace("part def Machine", f"{swap}{twice}\n    part def Machine")
     verdict, diagnostics = check_composition(text)
-    assert verdict == "Cells::Machine: its 4 parts fit together"
+    assert verdict == "Cells::Machine: its 4 behaviours fit together"
     assert diagnostics == [
         (
             "SM508",

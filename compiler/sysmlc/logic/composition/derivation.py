@@ -115,7 +115,12 @@ def _make_composite(block: Block, whole: Member | None, sink: Sink) -> Composite
         component=query.component_name(block.graph, block.element),
         origin=block.element.id,
         parts=tuple(
-            Part(member.name, rename_contract(member, wires), member.origin)
+            Part(
+                member.name,
+                rename_contract(member, wires),
+                member.origin,
+                block.graph[member.origin].kind not in (Kind.PROPERTY, Kind.PORT),
+            )
             for member in block.members
         ),
         wiring=tuple(derive_wiring(block, block.members, wires)),
