@@ -100,6 +100,8 @@ def test_dialects_in_one_unit_share_the_stub():
          "DataType", "SysML::Libraries::PrimitiveValueTypes::Complex"),
         ("ISO-80000.mdzip#_18_0beta_903028d_1388650184197_68200_89010", "DataType",
          "ISO-80000::ISO80000-3 Space and Time::Quantities::length::length[metre]"),
+        ("MTIP:not-exported#_11_5EAPbeta_be00301_1147937861492_957324_2636", "EnumerationLiteral",
+         "SysML::Libraries::Verdicts::VerdictKind::pass"),
     ],
 )  # fmt: skip
 def test_stubs_have_kind_and_qualified_name(href, kind, name):
