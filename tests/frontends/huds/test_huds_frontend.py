@@ -173,6 +173,54 @@ def test_the_value_of_a_slot_has_the_type_that_mtip_states(dtype, texts, value):
     assert (read.graph["v"].name, read.graph["v"].attrs) == ("", {"value": value})
 
 
+@pytest.mark.parametrize(
+    ("text", "type", "attrs"),
+    [
+        ("0.0", "Real", {"default": 0.0}),
+        ("8.0E-4", "Real", {"default": 0.0008}),
+        ("-2", "second", {"default": -2}),
+        ("true", "", {"default": True}),
+        ("true", "String", {"default": "true"}),
+        ("red", "c", {"default": "red", "default_instance": "r"}),
+        ("green", "c", {"default": "green", "default_language": ""}),
+        ("2 + 1", "Integer", {"default": "2 + 1", "default_language": ""}),
+        ("1E999", "Real", {"default": "1E999", "default_language": ""}),
+    ],
+)
+def test_a_default_is_the_literal_that_its_text_denotes_for_the_type(text, type, attrs):
+    default = attribute("defaultValue", text)
+    read = Read(
+        packet(
+            data("Block", "b", name="Belt"),
+            data(
+                "ValueProperty", "p", "b", "value", default, **({"typedBy": type} if type else {})
+            ),
+            data("Enumeration", "c", name="Colour"),
+            data("EnumerationLiteral", "r", "c", "red"),
+        )
+    )
+    assert read.graph["p"].attrs == attrs
+
+
+def test_a_slot_with_a_verdict_of_sysml_refers_to_the_literal_of_the_library():
+    read = Read(
+        packet(
+            data("Block", "b", name="Belt"),
+            data("ValueProperty", "p", "b", "verdict"),
+            data("InstanceSpecification", "i", name="belt", classifiedBy="b"),
+            data(
+                "Slot",
+                "v",
+                "i",
+                property="p",
+                instanceValue="_11_5EAPbeta_be00301_1147937861492_957324_2636",
+            ),
+        )
+    )
+    literal = read.graph.target(read.graph["v"], Edge.REFERENCES)
+    assert read.graph.qualified_name(literal) == "SysML::Libraries::Verdicts::VerdictKind::pass"
+
+
 def read_association(*properties, **types):
     return Read(
         packet(

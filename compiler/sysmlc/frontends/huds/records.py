@@ -16,6 +16,7 @@ from sysmlc.sources.xml import Parser, make_parser, parse, refuse_depth
 _READ_PARTS = frozenset({"value", "stereotypeName", "profileName", "taggedValueName"})
 """Parts of an attribute that are read; the others repeat types and ids of the exporting tool."""
 _INTEGER = re.compile(r"[+-]?[0-9]{1,4000}$")
+_REAL = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?$")
 
 
 class _Part(NamedTuple):
@@ -102,6 +103,15 @@ def _read_literal(part: _Part) -> AttrValue:
             return part.text
         return number if isfinite(number) else part.text
     return part.text
+
+
+def parse_literal(text: str) -> AttrValue:
+    """Return the truth value or finite number that a text denotes; None for another text."""
+    if text in ("true", "false"):
+        return text == "true"
+    if _INTEGER.match(text):
+        return int(text)
+    return float(text) if _REAL.match(text) and isfinite(float(text)) else None
 
 
 def read_records(source: Source) -> list[Record]:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable
 from typing import Protocol
 
 from sysmlc.frontends.huds import vocabulary as v
-from sysmlc.frontends.huds.records import Record
+from sysmlc.frontends.huds.records import Record, parse_literal
 from sysmlc.ir import Edge, Element, Graph, Kind, Reference
 from sysmlc.ir.element import derived_id
 
@@ -113,6 +113,36 @@ def _complete_property(file: _FileLowering, record: Record, property_: Element) 
                 property_.attrs["aggregation"] = "composite"
     if record.type.endswith("PartProperty"):
         property_.attrs["aggregation"] = "composite"
+    _complete_default(file, record, property_)
+
+
+def _complete_default(file: _FileLowering, record: Record, feature: Element) -> None:
+    """Read the default value of a feature as the literal that its text denotes.
+
+    MTIP writes the text of every value specification and not its type: "0.0" is the number in a
+    LiteralReal, and a text for a feature of type String is the string. A text that is no literal
+    of the type stays an expression.
+    """
+    text = feature.attrs.get("default")
+    if not isinstance(text, str):
+        return
+    type_id = record.find_target("typedBy")
+    enumeration = file.graph.get(file.target_id(type_id))
+    literal = None if enumeration is None else _find_literal(file.graph, enumeration, text)
+    if literal is not None:
+        feature.attrs["default_instance"] = literal.id
+    elif type_id != "String":
+        value = parse_literal(text)
+        if value is None:
+            return
+        feature.attrs["default"] = value
+    del feature.attrs["default_language"]
+
+
+def _find_literal(graph: Graph, enumeration: Element, name: str) -> Element | None:
+    """Return the literal with a name that an enumeration owns; None for any other type."""
+    members = graph.owned(enumeration) if enumeration.kind is Kind.ENUMERATION else ()
+    return next((member for member in members if member.name == name), None)
 
 
 def _complete_trigger(file: _FileLowering, record: Record, trigger: Element) -> None:
@@ -157,6 +187,8 @@ _FLOWS = frozenset({Kind.CONTROL_FLOW, Kind.OBJECT_FLOW, Kind.TRANSITION})
 _COMPLETIONS: dict[Kind, Callable[[_FileLowering, Record, Element], None]] = {
     Kind.CONNECTOR: _complete_connector,
     Kind.PROPERTY: _complete_property,
+    Kind.PORT: _complete_default,
+    Kind.PARAMETER: _complete_default,
     Kind.TRIGGER: _complete_trigger,
     Kind.CONSTRAINT: _complete_constraint,
     Kind.SLOT: _complete_slot,
