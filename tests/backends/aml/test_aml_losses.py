@@ -82,3 +82,19 @@ def test_the_unit_of_a_value_is_written_unless_bounds_have_another_one():
 def test_a_value_without_a_unit_has_not_the_unit_of_the_default_value():
     units, _ = list_units("")
     assert ("mass", "") in units
+
+
+def test_the_value_of_an_attribute_is_the_name_of_an_enumeration_literal():
+    texts, losses = save(
+        refine(
+            'Package p "Plant"\n'
+            '  Enumeration c "Colour"\n    EnumerationLiteral r "red"\n'
+            '  Class tank "Tank" role="block"\n'
+            '    Property paint "paint" role="value"\n      -> typed-by c\n'
+            '  Package h "Site" subkind="instance-hierarchy"\n'
+            '    Instance t1 "T1"\n      -> instance-of tank\n'
+            "      Slot s1\n        -> instance-of paint\n        -> references r\n"
+        )
+    )
+    assert "<Value>red</Value>" in "".join(texts.values())
+    assert [loss for loss in losses if "references" in loss] == []

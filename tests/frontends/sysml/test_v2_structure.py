@@ -170,6 +170,22 @@ package P {
     )
 
 
+@pytest.mark.parametrize(
+    ("value", "literals"),
+    [("Colour::red", ["red"]), ("(Colour::blue, Colour::red)", ["blue", "red"])],
+)
+def test_a_slot_refers_to_the_literals_of_an_enumeration_as_in_xmi(value, literals):
+    reading = read(f"""
+package P {{
+    enum def Colour {{ red; blue; }}
+    part def A {{ attribute c : Colour[*]; }}
+    part a : A {{ :>> c = {value}; }}
+}}""")
+    slot = reading.find_element("P::a::c")
+    assert [target.name for target in reading.graph.targets(slot, "references")] == literals
+    assert slot.attrs == {}
+
+
 def test_value_types_of_quantities_have_unit_and_quantity_kind():
     reading = read("""
 package P { attribute def Mass :> ISQ::MassValue { attribute :>> mRef = SI::kg; } }

@@ -17,7 +17,7 @@ from sysmlc.backends.aml.context import Context, File
 from sysmlc.backends.aml.header import add_description, write_header
 from sysmlc.backends.aml.interfaces import find_or_repeat, write_port_attributes
 from sysmlc.backends.aml.node import Node, format_value
-from sysmlc.ir import Edge, Element, Kind, list_items
+from sysmlc.ir import AttrValue, Edge, Element, Kind, list_items
 from sysmlc.ir.query.classifiers import name_value_unit
 
 _COPIED = frozenset({"DefaultValue", "Value", "RefSemantic", "Constraint", "Attribute"})
@@ -85,13 +85,26 @@ def write_slot(context: Context, unit: SystemUnit, slot: Element) -> None:
     else:
         node = _find_or_repeat_attribute(context, unit, [*path, feature])
         has_value = any(child.tag == "Value" for child in node.children)
-        value = slot.attrs.get("value")
+        value = _read_value(context, slot)
         if value is not None or not has_value:
             node.add_text("Value", format_value("" if value is None else value))
         if "value_unit" in slot.attrs or "default_unit" in feature.attrs:
             _write_value_unit(context, slot, feature, node)
     context.register(slot, node)
     write_header(context, slot, node)
+
+
+def _read_value(context: Context, slot: Element) -> AttrValue:
+    """Return the value of a slot: its literal value, or the names of enumeration literals.
+
+    References to other instances are no values of an attribute; the loss report lists them.
+    """
+    targets = context.graph.targets(slot, Edge.REFERENCES)
+    literals = [target for target in targets if target.kind is Kind.ENUMERATION_LITERAL]
+    for literal in literals:
+        context.mark_edge(Edge.REFERENCES, slot, literal)
+    names = tuple(literal.name for literal in literals)
+    return slot.attrs.get("value") if not names else names[0] if len(names) == 1 else names
 
 
 def _write_value_unit(context: Context, slot: Element, feature: Element, node: Node) -> None:

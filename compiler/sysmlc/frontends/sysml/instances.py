@@ -154,7 +154,7 @@ def _set_interface_values(lowering: "Lowering", node: Node, slot: Element) -> No
 
 
 def _set_slot_value(lowering: "Lowering", slot: Element, value: Node) -> None:
-    """Set the value of a slot, or connect it to other instances of the unit."""
+    """Set the value of a slot, or connect it to instances or enumeration literals of the unit."""
     instances = _list_instances(lowering, value)
     if not instances:
         values.set_value(lowering, slot, "value", value)
@@ -164,10 +164,10 @@ def _set_slot_value(lowering: "Lowering", slot: Element, value: Node) -> None:
 
 
 def _list_instances(lowering: "Lowering", value: Node) -> list[Node]:
-    """Return the instances of the unit to which a value, or each value of a sequence, refers.
+    """Return the instances and literals of the unit to which each value of a sequence refers.
 
-    The list is empty if a value is no such instance, or if an instance recurs: two elements have
-    at most one edge of a kind.
+    A value that is no sequence is the only one. The list is empty if a value refers to nothing of
+    the unit, or if an instance recurs: two elements have at most one edge of a kind.
     """
     instances: list[Node] = []
     expressions = [value]
@@ -178,8 +178,7 @@ def _list_instances(lowering: "Lowering", value: Node) -> list[Node]:
             continue
         is_reference = expression.kind == "FeatureReferenceExpression"
         target = nodes.find_target(expression, "Membership") if is_reference else None
-        is_literal = target is not None and target.kind == "EnumerationUsage"
-        if target is None or is_literal or lowering.document_of(target) is None:
+        if target is None or lowering.document_of(target) is None:
             return []
         instances.append(target)
     return instances if len(set(instances)) == len(instances) else []
