@@ -7,7 +7,7 @@ from internal_elements import list_facts
 from plants import list_units, load_unit, refine
 
 from sysmlc.backends.aml import write_files
-from sysmlc.backends.sysml.backend import print_document
+from sysmlc.backends.sysml import print_document
 from sysmlc.backends.uml import write_document
 from sysmlc.diagnostics import Sink
 from sysmlc.frontends.sysml import FRONTEND as SYSML

@@ -11,7 +11,7 @@ from text_difference_reasons import REASONS
 from text_differences import RoundTrip
 
 from examples.compiling import EXAMPLES, compile_example
-from sysmlc.backends.sysml.backend import LIBRARY, write_document
+from sysmlc.backends.sysml import LIBRARY, write_document
 from sysmlc.backends.sysml.printing import print_lines
 from sysmlc.frontends.sysml import FRONTEND
 from sysmlc.ir.compare import compare

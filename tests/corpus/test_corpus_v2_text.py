@@ -12,7 +12,7 @@ from plants import list_baygate
 from reading_corpus import lower
 from reported_losses import find_unreported
 
-from sysmlc.backends.sysml.backend import print_document, write_document
+from sysmlc.backends.sysml import print_document, write_document
 from sysmlc.backends.sysml.printing import print_lines
 from sysmlc.diagnostics import Severity, Sink
 from sysmlc.driver import Request, compile_model, select_backends

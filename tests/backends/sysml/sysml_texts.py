@@ -1,6 +1,6 @@
 """Graphs that are written as SysML v2 text."""
 
-from sysmlc.backends.sysml.backend import LIBRARY, print_document
+from sysmlc.backends.sysml import LIBRARY, print_document
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.xmi import FRONTEND
 from sysmlc.ir import Graph, parse_text

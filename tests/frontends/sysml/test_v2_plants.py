@@ -6,7 +6,7 @@ import pytest
 
 from examples.compiling import compile_example, compile_text, outputs
 from long_runs import quick_first
-from sysmlc.backends.sysml.backend import print_document
+from sysmlc.backends.sysml import print_document
 from sysmlc.diagnostics import Coverage, Severity, Sink
 from sysmlc.frontends.caex import FRONTEND as CAEX
 from sysmlc.frontends.sysml import FRONTEND

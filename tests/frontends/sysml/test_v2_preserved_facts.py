@@ -2,7 +2,7 @@
 
 from test_v2_roundtrip import read_back
 
-from sysmlc.backends.sysml.backend import print_document
+from sysmlc.backends.sysml import print_document
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Kind
 from sysmlc.ir.compare import compare

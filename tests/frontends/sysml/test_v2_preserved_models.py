@@ -3,7 +3,7 @@
 import pytest
 from test_v2_preserved_facts import graph_of, read_back_and_compare
 
-from sysmlc.backends.sysml.backend import write_document
+from sysmlc.backends.sysml import write_document
 
 METHOD = """
 Package p "Plant"

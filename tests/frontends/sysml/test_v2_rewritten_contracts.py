@@ -7,7 +7,7 @@ import pytest
 from reading_v2 import Reading
 
 from examples.compiling import ROOT
-from sysmlc.backends.sysml.backend import print_document
+from sysmlc.backends.sysml import print_document
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.compare import compare
 from sysmlc.logic.contract import Contract

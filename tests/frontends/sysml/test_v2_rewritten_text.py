@@ -4,7 +4,7 @@ import pytest
 from reading_v2 import Reading
 from test_v2_roundtrip import PASSES, list_differences
 
-from sysmlc.backends.sysml.backend import print_document
+from sysmlc.backends.sysml import print_document
 from sysmlc.diagnostics import Sink
 
 

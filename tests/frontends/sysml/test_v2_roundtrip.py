@@ -10,7 +10,7 @@ import pytest
 from dialects.random_models import random_model
 from examples.compiling import EXAMPLES, PLANT, compile_example
 from long_runs import quick_first
-from sysmlc.backends.sysml.backend import print_document
+from sysmlc.backends.sysml import print_document
 from sysmlc.backends.sysml.profiles import is_standard
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.sysml import FRONTEND
