@@ -68,15 +68,15 @@ class XmiFrontend:
 
     def list_companions(self, name: str) -> Sequence[str]:
         """Return Papyrus' notation file, or MagicDraw's entries with shapes."""
-        from sysmlc.frontends.xmi.diagrams import reading
+        from sysmlc.frontends.xmi.diagrams import list_companions
 
-        return reading.list_companions(name)
+        return list_companions(name)
 
     def read_drawings(
         self, sources: Sequence[Source], beside: Sequence[Source], graph: Graph, sink: Sink
     ) -> None:
         """Store the diagrams of the authors for the pass ``views``."""
-        from sysmlc.frontends.xmi.diagrams.reading import read_diagrams
+        from sysmlc.frontends.xmi.diagrams import read_diagrams
 
         ordered = sorted(sources, key=lambda source: source.name)
         models = [source for source in ordered if not is_snapshot(source)]
