@@ -3,9 +3,13 @@
 from collections.abc import Callable
 
 from sysmlc.diagnostics.renderers.json_documents import render_json, render_sarif
-from sysmlc.diagnostics.renderers.lines import render_concise, render_github, render_grouped
 from sysmlc.diagnostics.renderers.report import Finding, Report, make_report, merge_facts, shorten
-from sysmlc.diagnostics.renderers.text import render_text
+from sysmlc.diagnostics.renderers.text import (
+    render_concise,
+    render_github,
+    render_grouped,
+    render_text,
+)
 
 __all__ = [
     "FORMATS",
