@@ -4,8 +4,7 @@ import pytest
 from small_models import DECLARE_OR_IMPORT, list_name_errors, load_library, parse_texts
 
 from sysmlc.diagnostics import Place, Sink
-from sysmlc.language.names import resolve
-from sysmlc.language.names.resolution import CYCLE, NO_STANDARD_LIBRARY, TOO_DEEP
+from sysmlc.language.names import CYCLE, NO_STANDARD_LIBRARY, TOO_DEEP, resolve
 from sysmlc.language.names.unresolved import UNRESOLVED
 from sysmlc.language.text import parse
 from sysmlc.language.tree import Document, Node, locate

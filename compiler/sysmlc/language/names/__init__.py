@@ -1,6 +1,138 @@
-"""Name resolution: the elements that names denote, and the generals of elements."""
+"""Name resolution: the elements that names denote, and the generals of elements.
 
+``resolve`` resolves every reference of a model, and reports unresolved names and cycles.
+"""
+
+import gc
+import sys
+from collections.abc import Sequence
+
+from sysmlc.diagnostics import Severity, Sink, Subject, rule
+from sysmlc.language.library import SHIPPED, Library
 from sysmlc.language.names.model import Model
-from sysmlc.language.names.resolution import resolve, resolve_all
+from sysmlc.language.names.unresolved import report_unresolved
+from sysmlc.language.tree import Document, Node, Relation, find_root, make_subject
 
 __all__ = ["Model", "resolve", "resolve_all"]
+
+
+CYCLE = rule(
+    "SM206",
+    "specialization-cycle",
+    Severity.WARNING,
+    "'{name}' specialises itself{through}",
+    help="remove one specialisation of the cycle",
+)
+NO_STANDARD_LIBRARY = rule(
+    "SM207",
+    "no-standard-library",
+    Severity.WARNING,
+    "the standard library of SysML v2 is not installed; the core that sysmlc bundles replaces it",
+    help=(
+        "if names of the library are missing, get the library's files from the SysML v2 release "
+        "and name their folder with --library PATH or the environment variable SYSML_LIBRARY_PATH"
+    ),
+)
+TOO_DEEP = rule(
+    "SM208",
+    "names-too-deep",
+    Severity.ERROR,
+    "'{name}' is resolved through too many other names",
+    help="refer to the element directly",
+)
+
+_RECURSION_LIMIT = 20_000
+"""Recursion limit during resolution: names lead to names that lead to further names."""
+
+
+def resolve(documents: Sequence[Document], library: Library, sink: Sink) -> Model:
+    """Return the model of the documents with every reference resolved; report unresolved names."""
+    model = Model(documents, library)
+    resolve_all(model, sink)
+    return model
+
+
+def resolve_all(model: Model, sink: Sink) -> None:
+    """Resolve every reference that is not yet resolved, and report unresolved names."""
+    is_collecting, recursion_limit = gc.isenabled(), sys.getrecursionlimit()
+    # Resolution creates no garbage but many objects, which would trigger collections.
+    gc.disable()
+    # Names resolve by recursion, and a chain of aliases may be as long as a program writes it.
+    sys.setrecursionlimit(max(recursion_limit, _RECURSION_LIMIT))
+    try:
+        for document in model.documents:
+            # The bundled core lacks units that sysmlc's own libraries refer to. That is no fault of
+            # the model, and SM207 reports the missing library.
+            is_foreign = model.library.is_core and document.path.startswith(SHIPPED)
+            _resolve_document(document, model, Sink() if is_foreign else sink)
+        for document in model.documents:
+            _resolve_generals(document, model)
+        _report_cycles(model, sink)
+        if model.library.is_core:
+            _report_missing_library(model, sink)
+    finally:
+        sys.setrecursionlimit(recursion_limit)
+        if is_collecting:
+            gc.enable()
+
+
+def _resolve_document(document: Document, model: Model, sink: Sink) -> None:
+    for node in model.nodes(document):
+        for relation in node.relations:
+            if relation.reference.target is None:
+                _resolve_relation(document, node, relation, model, sink)
+
+
+def _resolve_relation(
+    document: Document, node: Node, relation: Relation, model: Model, sink: Sink
+) -> None:
+    if relation.reference in model.lookup.abandoned_references:
+        return
+    try:
+        if model.lookup.target(node, relation) is None:
+            report_unresolved(model, document, node, relation, sink)
+    # Thousands of aliases in a row, which no modeller writes.
+    except RecursionError:
+        model.lookup.abandon()
+        place = make_subject(document, node, relation.reference.start)
+        sink.report(TOO_DEEP, place, name=str(relation.reference))
+
+
+def _resolve_generals(document: Document, model: Model) -> None:
+    """Compute the generals of all nodes while the recursion limit is raised."""
+    lookup = model.lookup
+    for node in model.nodes(document):
+        try:
+            if node.relations:
+                lookup.generals(node)
+            lookup.redefined_by_position(node)
+        except RecursionError:
+            lookup.abandon()
+
+
+def _report_cycles(model: Model, sink: Sink) -> None:
+    reported: set[Node] = set()
+    for node in model.lookup.cycles:
+        document, cycle = model.document(node), model.lookup.find_cycle_path(node)
+        if document in model.documents and reported.isdisjoint({node, *cycle}):
+            reported.update((node, *cycle))
+            names = " and ".join(f"'{model.name(element)}'" for element in cycle)
+            place = make_subject(document, node, node.name_start)
+            through = f" through {names}" if names else ""
+            sink.report(CYCLE, place, name=model.name(node) or node.kind, through=through)
+
+
+def _report_missing_library(model: Model, sink: Sink) -> None:
+    """Report that the bundled core replaces the standard library, if a name of the library is used.
+
+    The diagnostic has no location: the installation lacks something, not a line of the model.
+    """
+    core = {document.root for document in model.library.loaded_documents()}
+    targets = (
+        relation.reference.target
+        for document in model.documents
+        for node in model.nodes(document)
+        for relation in node.relations
+    )
+    if any(target is not None and find_root(target) in core for target in targets):
+        sink.report(NO_STANDARD_LIBRARY, Subject())
