@@ -3,8 +3,8 @@
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
 from sysmlc.ir.text import parse_text
+from sysmlc.overlay import read_overlay
 from sysmlc.overlay.model import Refinement
-from sysmlc.overlay.reading import read_overlay
 from sysmlc.passes import pipeline
 from sysmlc.sources import Source
 

@@ -13,8 +13,8 @@ from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
 from sysmlc.ir.text import parse_text, print_text
 from sysmlc.ir.verify import verify
+from sysmlc.overlay import read_overlay
 from sysmlc.overlay.model import Refinement
-from sysmlc.overlay.reading import read_overlay
 from sysmlc.passes.overlay import Overlay
 from sysmlc.sources import Source
 
