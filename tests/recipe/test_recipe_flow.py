@@ -6,8 +6,7 @@ import pytest
 
 from sysmlc.recipe.durations import compute_duration
 from sysmlc.recipe.expression import make_variable
-from sysmlc.recipe.flow import find_cycles, list_forward_edges, sort_nodes
-from sysmlc.recipe.loops import add_loop_nodes
+from sysmlc.recipe.flow import add_loop_nodes, find_cycles, list_forward_edges, sort_nodes
 from sysmlc.recipe.model import FlowEdge, FlowGraph, Node, Range
 
 TIMES = {"a": (10, 20), "b": (5, 5), "c": (1, 100), "d": (7, 9)}

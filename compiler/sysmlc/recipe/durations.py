@@ -19,8 +19,7 @@ from sysmlc.recipe.executions import (
     TooManySituationsError,
     UnstructuredError,
 )
-from sysmlc.recipe.flow import STEPS
-from sysmlc.recipe.loops import find_early_ends
+from sysmlc.recipe.flow import STEPS, find_early_ends
 from sysmlc.recipe.model import (
     Derived,
     EndTime,

@@ -12,8 +12,13 @@ from typing import NamedTuple
 from msgspec import Struct
 
 from sysmlc.recipe.costs import Cost, Measures, Transition, compute_costs, compute_expected_time
-from sysmlc.recipe.flow import STEPS, find_reachable, list_forward_edges
-from sysmlc.recipe.loops import find_loop_cycles, fix_iterations
+from sysmlc.recipe.flow import (
+    STEPS,
+    find_loop_cycles,
+    find_reachable,
+    fix_iterations,
+    list_forward_edges,
+)
 from sysmlc.recipe.model import FlowEdge, FlowGraph, Node
 from sysmlc.recipe.valuation import CHOICES, Valuation, Variables, evaluate, merge_values, set_value
 

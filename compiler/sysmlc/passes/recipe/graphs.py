@@ -27,8 +27,7 @@ from sysmlc.passes.recipe.nodes import (
     step_kind,
 )
 from sysmlc.passes.recipe.profile import read_number
-from sysmlc.recipe.flow import find_reachable, sort_nodes
-from sysmlc.recipe.loops import add_loop_nodes
+from sysmlc.recipe.flow import add_loop_nodes, find_reachable, sort_nodes
 from sysmlc.recipe.model import FlowEdge, FlowGraph, Node
 
 _CALLED_LEVELS = {"service": "service", "function": "machine function"}

@@ -25,8 +25,8 @@ from sysmlc.passes.recipe.tasks import (
     find_material,
     find_precedence,
     list_steps,
+    read_limits,
 )
-from sysmlc.passes.recipe.time_limits import read_limits
 from sysmlc.recipe.derivation import derive
 from sysmlc.recipe.expression import iter_variables
 from sysmlc.recipe.model import (
