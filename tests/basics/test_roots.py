@@ -1,6 +1,6 @@
 """References of a model that could lead to files."""
 
-from sysmlc.sources.roots import Roots
+from sysmlc.sources.files import Roots
 
 
 def test_a_path_too_long_for_any_file_leads_nowhere(tmp_path):

@@ -5,8 +5,7 @@ import hashlib
 import pytest
 
 from sysmlc.sources import Source, SourceError, load
-from sysmlc.sources.encoding import convert_to_utf8, find_codec
-from sysmlc.sources.xml import make_parser, parse
+from sysmlc.sources.xml import convert_to_utf8, find_codec, make_parser, parse
 
 TEXT = '<?xml version="1.0" encoding="%s"?>\n<a name="%s"/>'
 

@@ -12,8 +12,7 @@ from msgspec import Struct
 from sysmlc.diagnostics.diagnostic import Place
 from sysmlc.diagnostics.xpath import find_xpaths, is_xml
 from sysmlc.sources import Source, SourceError
-from sysmlc.sources.encoding import find_codec
-from sysmlc.sources.xml import make_parser, parse
+from sysmlc.sources.xml import find_codec, make_parser, parse
 
 _EXCERPT = 200
 """Characters of a long line that an excerpt has on each side of the column."""

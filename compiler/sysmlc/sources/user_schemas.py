@@ -11,7 +11,7 @@ from typing import cast
 from lxml import etree
 from msgspec import Struct
 
-from sysmlc.sources.roots import Roots
+from sysmlc.sources.files import Roots
 from sysmlc.sources.source import Source
 from sysmlc.support.escapes import escape_undecodable
 

@@ -4,8 +4,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from sysmlc.sources import SourceError
-from sysmlc.sources.files import read_whole
-from sysmlc.sources.roots import Roots
+from sysmlc.sources.files import Roots, read_whole
 from sysmlc.sources.source import Limits
 from sysmlc.support import resources
 

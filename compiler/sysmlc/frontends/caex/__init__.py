@@ -12,7 +12,7 @@ from sysmlc.diagnostics import Coverage, Place, Sink
 from sysmlc.frontends.base import FileNames
 from sysmlc.ir import Graph
 from sysmlc.sources import Source
-from sysmlc.sources.encoding import find_codec
+from sysmlc.sources.xml import find_codec
 
 _HEAD = 1 << 14
 """Bytes that are searched for the root element."""
