@@ -16,9 +16,14 @@ from sysmlc.passes.classify.lineage import (
     find_meanings,
     meanings_of_sysml,
 )
-from sysmlc.passes.classify.relations import add_allocations, add_relations
 from sysmlc.passes.classify.requirements import check_requirements, complete_requirement
-from sysmlc.passes.classify.roles import STRUCTURED, role_by_stereotype, role_by_structure
+from sysmlc.passes.classify.roles import (
+    STRUCTURED,
+    add_allocations,
+    add_relations,
+    role_by_stereotype,
+    role_by_structure,
+)
 from sysmlc.passes.classify.tags import (
     HANDLERS,
     apply_tags,
