@@ -148,9 +148,12 @@ def _is_requirement_contract(contract: Contract) -> bool:
     return contract.component.endswith(SUFFIX)
 
 
-def _lint_within_limits(contract: Contract, place: Place, sink: Sink, options: Options) -> None:
+def _lint_within_limits(
+    contract: Contract, place: Place, sink: Sink, options: Options, *, has_behaviour: bool = False
+) -> None:
+    reduced, create_manager = reduce_contract(contract).contract, manager_factory(options)
     try:
-        lint(reduce_contract(contract).contract, place, sink, manager_factory(options))
+        lint(reduced, place, sink, create_manager, has_behaviour=has_behaviour)
     except LimitError as problem:
         reached = str(problem)
         sink.report(GIVEN_UP, place(contract.origin), component=contract.component, reached=reached)
@@ -178,7 +181,8 @@ def _decide_consistency(
     contract = _complete(requirements, behaviour, irreducible)
     verdict = decide(contract, place, sink, options)
     if verdict.is_realizable is not None:
-        _lint_within_limits(_without(requirements, irreducible), place, sink, options)
+        judged = _without(requirements, irreducible)
+        _lint_within_limits(judged, place, sink, options, has_behaviour=True)
     if verdict.is_realizable:
         check_viewpoints(contract, place, sink, options)
     return (

@@ -23,12 +23,27 @@ Place = Callable[[str], Subject]
 """Maps the origin of a contract or conjunct to the subject of diagnostics."""
 
 
-def lint(contract: Contract, place: Place, sink: Sink, create_manager: ManagerFactory) -> None:
+_LEFT_OPEN = (rules.NO_FRAME, rules.IDLE)
+"""Findings about what a contract leaves open, which a behaviour may decide."""
+
+
+def lint(
+    contract: Contract,
+    place: Place,
+    sink: Sink,
+    create_manager: ManagerFactory,
+    *,
+    has_behaviour: bool = False,
+) -> None:
     """Report suspicious properties of a contract; *create_manager* is called for each lint.
 
-    Raises OutsideGr1Error for a contract that GR(1) cannot express, LimitError.
+    *has_behaviour*: the contract states requirements on a component with a behaviour, which decides
+    what they leave open. Raises OutsideGr1Error for a contract that GR(1) cannot express,
+    LimitError.
     """
     for finding in _find_all(contract, create_manager):
+        if has_behaviour and finding.rule in _LEFT_OPEN:
+            continue
         origin = contract.origin if finding.conjunct is None else finding.conjunct.origin
         formula = "" if finding.conjunct is None else print_formula(finding.conjunct.formula)
         sink.report(
