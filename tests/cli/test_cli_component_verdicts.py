@@ -123,6 +123,26 @@ def test_what_an_entry_performs_may_change_the_initial_value(decide):
     assert decide(block, "!y", "G (x -> X x)") == ["not-decided", "holds"]
 
 
+DO = "exhibit state M { entry; then S; state S { do set; } transition first S then T; state T; }"
+
+
+def test_an_action_that_only_assigns_takes_one_step(decide):
+    block = FLAGS + "action set { assign y := true; }" + DO
+    formulas = ("F y", "G (state=T -> y)", "G (finished(set) -> X y)", "G !y")
+    assert decide(block, *formulas) == ["holds", "holds", "holds", "broken"]
+
+
+def test_an_action_with_another_text_is_ended_by_the_environment(decide):
+    block = FLAGS + 'action set { language "Java" /* lamp.on(); */ }' + DO
+    assert decide(block, "F (state=T)", "F y") == ["holds-if-actions-end", "broken"]
+
+
+def test_an_action_that_only_assigns_can_be_called(decide):
+    block = FLAGS + "action set { assign y := true; } perform action work { first start then s; "
+    block += "perform action s references set; then t; action t; then done; }"
+    assert decide(block, "F y", "G (running(t) -> y)", "G !y") == ["holds", "holds", "broken"]
+
+
 # -- what a part performs --------------------------------------------------------------------------
 
 SET_X = "action one { first start then s; action s assign x := true; then done; }"

@@ -15,7 +15,7 @@ from msgspec.structs import replace
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic.activities.token_graph import TokenGraph
-from sysmlc.logic.feature_writes import WriterIndex
+from sysmlc.logic.feature_writes import WriterIndex, takes_one_step
 from sysmlc.logic.requirements.statements import component_of
 from sysmlc.passes.activities import checks as activity_checks
 from sysmlc.passes.activities import construction as activity_tokens
@@ -188,7 +188,7 @@ def _list_played_actions(
     return (
         element
         for element in drawing.inside
-        if element.kind is Kind.ACTION and element.id in played
+        if element.kind in (Kind.ACTION, Kind.ACTIVITY) and element.id in played
     )
 
 
@@ -199,7 +199,7 @@ def _list_usages(graph: Graph, activity: Element) -> list[Element]:
     nothing else performs it.
     """
     is_elsewhere, is_abstract = _is_drawn_elsewhere(activity), activity.attrs.get("abstract")
-    if not (is_elsewhere or is_abstract):
+    if not (is_elsewhere or is_abstract) or _has_assignments_as_text(graph, activity):
         return [activity]
     performed = graph.sources(activity, Edge.METHOD)
     operations = [operation for operation in performed if not operation.attrs.get("external")]
@@ -214,6 +214,19 @@ def _is_drawn_elsewhere(activity: Element) -> bool:
     An opaque behaviour has a text body instead, and an external stub stands for another file.
     """
     return activity.subkind in ("opaque", "function") or activity.attrs.get("external") is True
+
+
+def _has_assignments_as_text(graph: Graph, activity: Element) -> bool:
+    """Whether an activity is a text of assignments, and no part of a transition or state.
+
+    Entries, exits and effects with such texts belong to the contract of their state machine. The do
+    behaviour of a state runs on its own.
+    """
+    if activity.attrs.get("external") or not takes_one_step(activity):
+        return False
+    owner = graph.owner(activity)
+    is_inside_machine = owner is not None and owner.kind in (Kind.STATE, Kind.TRANSITION)
+    return not is_inside_machine or bool(graph.sources(activity, Edge.DO))
 
 
 _STEPS = (Kind.ACTION, Kind.CONTROL, Kind.STRUCTURED)

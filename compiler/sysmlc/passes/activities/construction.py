@@ -196,7 +196,7 @@ def add_node(draft: Draft, node: Element) -> None:
 def _classify_node(draft: Draft, node: Element) -> NodeKind:
     if node.kind is Kind.CONTROL:
         return _classify_control(draft, node)
-    if node.kind is Kind.ACTION:
+    if node.kind in (Kind.ACTION, Kind.ACTIVITY):
         return NodeKind.ACTION
     if node.kind is Kind.STRUCTURED:
         return NodeKind.STRUCTURED

@@ -12,6 +12,7 @@ from msgspec import Struct
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic.activities.token_graph import ACTIVITY_REGION
+from sysmlc.logic.feature_writes import takes_one_step
 from sysmlc.passes.activities import rules
 from sysmlc.passes.activities.regions import (
     FLOWS,
@@ -73,7 +74,7 @@ class Drawing:
 
     def list_steps(self) -> list[Element]:
         """List the actions, structured nodes and control nodes outside of structured nodes."""
-        steps = (Kind.ACTION, Kind.STRUCTURED, Kind.CONTROL)
+        steps = (Kind.ACTION, Kind.STRUCTURED, Kind.CONTROL, Kind.ACTIVITY)
         candidates = (node for node in self.nodes if node.kind in steps)
         return [node for node in candidates if self.region[node.id] == ACTIVITY_REGION]
 
@@ -104,9 +105,15 @@ class Drawing:
 def read_drawing(graph: Graph, activity: Element, sink: Sink) -> Drawing:
     """Return the drawing of an activity.
 
-    Raises CannotPlayError if the activity can have no token graph; the reason has been reported.
+    An activity whose text consists of assignments is its own only step. Raises CannotPlayError if
+    the activity can have no token graph; the reason has been reported.
     """
     drawing = Drawing(activity, list(graph.subtree(activity)))
+    if takes_one_step(activity):
+        drawing.nodes.append(activity)
+        drawing.region[activity.id] = ACTIVITY_REGION
+        _name_nodes(drawing)
+        return drawing
     # Groups and expansion nodes are no regions: nodes in them belong to the region around them.
     groups = find_groups(graph, drawing.inside)
     expansion_nodes = find_expansion_nodes(graph, drawing.inside)
@@ -158,7 +165,7 @@ def _name_nodes(drawing: Drawing) -> None:
 def _describe_kind(node: Element) -> str:
     if node.kind is Kind.CONTROL:
         return _CONTROL_WORDS.get(node.subkind, node.subkind or "control node")
-    if node.kind is Kind.ACTION:
+    if node.kind in (Kind.ACTION, Kind.ACTIVITY):
         return _ACTION_WORDS.get(node.subkind, "action")
     return _WORDS[node.kind]
 
