@@ -51,7 +51,7 @@ def _configure(parser: Parser) -> Parser:
 
 
 def parse(source: Source, parser: Parser) -> None:
-    """Run *parser* over the whole source.
+    """Run *parser* over the whole source, and release its handlers.
 
     Raises SourceError, with the offset of the fault, for XML that is not well-formed, has a
     DOCTYPE, or has an encoding that cannot be read.
@@ -71,6 +71,10 @@ def parse(source: Source, parser: Parser) -> None:
         unreadable = f"its encoding '{encoding}' cannot be read: {problem}"
         message, offset = find_encoding_fault(source.data) or (unreadable, 0)
         raise SourceError(message, source.name, offset) from None
+    finally:
+        # The parser and its handlers refer to one another; the garbage collector may be off.
+        parser.StartElementHandler = parser.EndElementHandler = None
+        parser.CharacterDataHandler = parser.StartNamespaceDeclHandler = None
 
 
 def refuse_depth(source: Source, parser: Parser, limits: Limits = DEFAULT_LIMITS) -> NoReturn:

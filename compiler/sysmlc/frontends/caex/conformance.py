@@ -184,11 +184,7 @@ def _find_stray_texts(source: Source) -> list[tuple[str, int, str]]:
 
     expat.StartElementHandler, expat.EndElementHandler = start_element, end_element
     expat.CharacterDataHandler = add_text
-    try:
-        parse(source, expat)
-    finally:
-        # The parser and its handlers refer to one another; the garbage collector is off.
-        expat.StartElementHandler = expat.EndElementHandler = expat.CharacterDataHandler = None
+    parse(source, expat)
     return texts
 
 

@@ -257,13 +257,7 @@ class _ColumnReader:
     def run(self) -> None:
         """Parse the source and complete the columns. Raises SourceError."""
         self._set_handlers()
-        try:
-            parse(self._source, self._parser)
-        finally:
-            # The parser and its handlers refer to one another; the garbage collector is off.
-            self._parser.StartElementHandler = None
-            self._parser.EndElementHandler = None
-            self._parser.CharacterDataHandler = None
+        parse(self._source, self._parser)
         document = self.document
         document.has_stray_text = any(map(str.strip, self._stray_texts))
         local_names = {tag: tag.rpartition(SEPARATOR)[2] for tag in set(document.tags)}

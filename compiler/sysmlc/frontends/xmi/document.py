@@ -177,14 +177,7 @@ class _ColumnReader:
     def run(self) -> None:
         """Parse the source. Raises SourceError."""
         self._set_handlers()
-        try:
-            parse(self._source, self._parser)
-        finally:
-            # The parser and its handlers refer to one another; the garbage collector is off.
-            self._parser.StartElementHandler = None
-            self._parser.EndElementHandler = None
-            self._parser.CharacterDataHandler = None
-            self._parser.StartNamespaceDeclHandler = None
+        parse(self._source, self._parser)
         if self._breaks:
             self.document.ordinals = _number_elements(len(self.document.tags), self._breaks)
 

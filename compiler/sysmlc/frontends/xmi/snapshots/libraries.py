@@ -268,11 +268,7 @@ def _find_holders(source: Source, names: frozenset[str]) -> dict[str, dict[str, 
     xml_parser = make_parser()
     xml_parser.StartElementHandler = start
     xml_parser.EndElementHandler = lambda _: ids.pop()
-    try:
-        parse(source, xml_parser)
-    finally:
-        # The parser and its handlers refer to one another; the garbage collector is off.
-        xml_parser.StartElementHandler = xml_parser.EndElementHandler = None
+    parse(source, xml_parser)
     return dict(sorted(holders.items()))
 
 
