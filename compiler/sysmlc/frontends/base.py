@@ -1,14 +1,16 @@
 """The interface of front ends: detect files of a language and read them into the graph."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from collections.abc import Set as AbstractSet
-from typing import Protocol, runtime_checkable
+from typing import Protocol, TypeVar, runtime_checkable
 
 from msgspec import Struct
 
-from sysmlc.diagnostics import Coverage, Place, Sink
+from sysmlc.diagnostics import Coverage, Place, Rule, Sink, Subject
 from sysmlc.ir import Graph
-from sysmlc.sources import Source
+from sysmlc.sources import Fault, Source, SourceError
+
+_T = TypeVar("_T")
 
 
 class Frontend(Protocol):
@@ -96,3 +98,20 @@ class DiagramReader(Protocol):
         self, sources: Sequence[Source], beside: Sequence[Source], graph: Graph, sink: Sink
     ) -> None:
         """Store the diagrams of authors (``ir.pending.Drawing``) for the pass ``views``."""
+
+
+def read_or_report(
+    read: Callable[[Source], _T], source: Source, malformed: Rule, sink: Sink
+) -> _T | None:
+    """Return ``read(source)``, or report a damaged file by the rule *malformed* and return None.
+
+    Raises SourceError if the file exceeds the limits.
+    """
+    try:
+        return read(source)
+    except SourceError as problem:
+        if problem.fault is Fault.LIMIT:
+            raise
+        subject = Subject(source.name, place=Place(source.name, offset=problem.offset))
+        sink.report(malformed, subject, file=source.name, problem=problem.message)
+        return None

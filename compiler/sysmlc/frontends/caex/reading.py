@@ -7,7 +7,8 @@ import posixpath
 from collections.abc import Sequence
 from urllib.parse import unquote
 
-from sysmlc.diagnostics import Coverage, Place, Severity, Sink, Subject, Verdict, rule
+from sysmlc.diagnostics import Coverage, Severity, Sink, Verdict, rule
+from sysmlc.frontends.base import read_or_report
 from sysmlc.frontends.caex import libraries, rules
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.coverage import report_coverage
@@ -20,7 +21,7 @@ from sysmlc.frontends.caex.roles import lower_mappings, lower_roles
 from sysmlc.frontends.caex.types import Type
 from sysmlc.frontends.caex.vocabulary import LIBRARIES, Family
 from sysmlc.ir import Edge, Graph, Kind
-from sysmlc.sources import Fault, Source, SourceError
+from sysmlc.sources import Source
 from sysmlc.support.interpreter import pause_garbage_collection
 
 REPEATED_ALIAS = rule(
@@ -40,26 +41,16 @@ def read(sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage
     """
     ordered = sorted(sources, key=lambda source: source.name)
     with pause_garbage_collection():
-        documents = [
-            document for source in ordered if (document := _read_document(source, sink)) is not None
+        readings = [
+            read_or_report(read_document, source, rules.MALFORMED, sink) for source in ordered
         ]
+        documents = [document for document in readings if document is not None]
         standard_libraries = libraries.StandardLibraries()
         context = Context(documents, graph, sink, standard_libraries.provide)
         _lower_unit(context)
         report_coverage(context, coverage, ordered)
         context.release_nodes()
         standard_libraries.release_nodes()
-
-
-def _read_document(source: Source, sink: Sink) -> Document | None:
-    try:
-        return read_document(source)
-    except SourceError as problem:
-        if problem.fault is Fault.LIMIT:
-            raise
-        subject = Subject(source.name, place=Place(source.name, offset=problem.offset))
-        sink.report(rules.MALFORMED, subject, file=source.name, problem=problem.message)
-        return None
 
 
 def _lower_unit(context: Context) -> None:

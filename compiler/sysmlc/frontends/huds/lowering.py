@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Sequence
 
 from sysmlc.diagnostics import Coverage, Place, Rule, Severity, Sink, Subject, Verdict, rule
+from sysmlc.frontends.base import read_or_report
 from sysmlc.frontends.huds import vocabulary as v
 from sysmlc.frontends.huds.records import Record, read_records
 from sysmlc.frontends.huds.relations import add_association_ends, add_relations
@@ -54,14 +55,8 @@ def lower_files(sources: Sequence[Source], graph: Graph, sink: Sink, coverage: C
     A damaged file is reported and skipped. Raises SourceError if a file exceeds the limits.
     """
     for source in sorted(sources, key=lambda source: source.name):
-        try:
-            records = read_records(source)
-        except SourceError as problem:
-            if problem.fault is Fault.LIMIT:
-                raise
-            subject = Subject(source.name, place=Place(source.name, offset=problem.offset))
-            sink.report(MALFORMED, subject, file=source.name, problem=problem.message)
-        else:
+        records = read_or_report(read_records, source, MALFORMED, sink)
+        if records is not None:
             lowering = FileLowering(source.name, records, graph)
             lowering.lower()
             counts = coverage.file(source.name)

@@ -6,8 +6,9 @@ Every element of a file gets a verdict, and diagnostics report the elements that
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
-from sysmlc.diagnostics import Coverage, Place, Rule, Severity, Sink, Subject, Verdict, rule
+from sysmlc.diagnostics import Coverage, Rule, Severity, Sink, Subject, Verdict, rule
 from sysmlc.diagnostics.coverage import Loss
+from sysmlc.frontends.base import read_or_report
 from sysmlc.frontends.xmi import metaclasses, papyrus, rules, unknown_names
 from sysmlc.frontends.xmi.applications import lower_applications
 from sysmlc.frontends.xmi.attributes import set_deferred_attributes
@@ -21,7 +22,7 @@ from sysmlc.frontends.xmi.snapshots.entries import is_snapshot
 from sysmlc.frontends.xmi.unit import Unit
 from sysmlc.frontends.xmi.value_features import set_multiplicities
 from sysmlc.ir import Graph
-from sysmlc.sources import Fault, Source, SourceError
+from sysmlc.sources import Source
 from sysmlc.support.interpreter import pause_garbage_collection
 
 
@@ -35,7 +36,9 @@ def read(sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage
     models = [source for source in ordered if not is_snapshot(source)]
     snapshots = [source for source in ordered if is_snapshot(source)]
     with pause_garbage_collection():
-        documents = [_read_document(source, sink) for source in models]
+        documents = [
+            read_or_report(read_document, source, rules.MALFORMED, sink) for source in models
+        ]
         unit = Unit([document for document in documents if document is not None], graph)
         contexts = [lower_document(unit, file, sink) for file in unit.files]
         libraries.add_libraries(unit, contexts, models, snapshots, sink, coverage)
@@ -46,17 +49,6 @@ def read(sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage
             unknown_names.report_unknown_attributes(context)
             unknown_names.report_unknown_tags(context)
             report_coverage(context, sink, coverage)
-
-
-def _read_document(source: Source, sink: Sink) -> Document | None:
-    try:
-        return read_document(source)
-    except SourceError as problem:
-        if problem.fault is Fault.LIMIT:
-            raise
-        subject = Subject(source.name, place=Place(source.name, offset=problem.offset))
-        sink.report(rules.MALFORMED, subject, file=source.name, problem=problem.message)
-        return None
 
 
 def _connect(unit: Unit, contexts: list[Context]) -> None:
