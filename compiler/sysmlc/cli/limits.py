@@ -9,7 +9,7 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 
 import click
@@ -161,7 +161,22 @@ def add_limit_options(command: click.Command) -> None:
         for subcommand in command.commands.values():
             add_limit_options(subcommand)
     elif not any(parameter.name == "time_limit" for parameter in command.params):
-        command.params += [_time_limit_option(), _memory_limit_option()]
+        command.params += [
+            _make_limit_option(
+                "--time-limit",
+                DEFAULT_SECONDS,
+                "S",
+                LIMITS.set_time_option,
+                "End the command with exit code 2 after S seconds; 0 is no limit.",
+            ),
+            _make_limit_option(
+                "--memory-limit",
+                DEFAULT_GIBIBYTES,
+                "GIB",
+                LIMITS.set_memory_option,
+                "End the command with exit code 2 when it needs more memory; 0 is no limit.",
+            ),
+        ]
 
 
 def check_amount(_ctx: click.Context, _param: click.Parameter, value: float) -> float:
@@ -171,33 +186,21 @@ def check_amount(_ctx: click.Context, _param: click.Parameter, value: float) -> 
     return value
 
 
-def _time_limit_option() -> click.Option:
-    def set_limit(ctx: click.Context, parameter: click.Parameter, value: float) -> None:
-        LIMITS.set_time_option(check_amount(ctx, parameter, value))
+def _make_limit_option(
+    name: str, default: float, unit: str, set_limit: Callable[[float], None], help: str
+) -> click.Option:
+    """Return an option whose value, an amount in *unit*, is passed to *set_limit*."""
+
+    def check_and_set(ctx: click.Context, parameter: click.Parameter, value: float) -> None:
+        set_limit(check_amount(ctx, parameter, value))
 
     return click.Option(
-        ["--time-limit"],
+        [name],
         type=float,
-        callback=set_limit,
+        callback=check_and_set,
         expose_value=False,
-        default=DEFAULT_SECONDS,
+        default=default,
         show_default=True,
-        metavar="S",
-        help="End the command with exit code 2 after S seconds; 0 is no limit.",
-    )
-
-
-def _memory_limit_option() -> click.Option:
-    def set_limit(ctx: click.Context, parameter: click.Parameter, value: float) -> None:
-        LIMITS.set_memory_option(check_amount(ctx, parameter, value))
-
-    return click.Option(
-        ["--memory-limit"],
-        type=float,
-        callback=set_limit,
-        expose_value=False,
-        default=DEFAULT_GIBIBYTES,
-        show_default=True,
-        metavar="GIB",
-        help="End the command with exit code 2 when it needs more memory; 0 is no limit.",
+        metavar=unit,
+        help=help,
     )

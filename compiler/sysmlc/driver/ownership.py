@@ -14,7 +14,7 @@ from pathlib import Path
 
 from msgspec import Struct
 
-from sysmlc.support.output import OutputPathError, check_output_path, find_obstacle
+from sysmlc.support.output import OutputPathError, check_output_path, find_obstacle, read_mode
 
 MANIFEST = "manifest.json"
 PENDING = "manifest.pending.json"
@@ -61,7 +61,7 @@ def _read_manifest(file: Path) -> dict[str, str]:
     Entries with a wrong type or a path out of the folder are ignored. Raises ForeignManifestError
     and OSError.
     """
-    mode = _read_mode(file)
+    mode = read_mode(file)
     if mode is None:
         return {}
     if not stat.S_ISREG(mode):
@@ -116,13 +116,6 @@ def _open_without_waiting(path: str, flags: int) -> int:
     """Open a file that is not a link, without waiting for the writer of a pipe."""
     # A manifest of somebody else may list a pipe or a link. Windows has neither of the flags.
     return os.open(path, flags | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOFOLLOW", 0))
-
-
-def _read_mode(path: Path) -> int | None:
-    try:
-        return path.lstat().st_mode
-    except FileNotFoundError:
-        return None
 
 
 class Ownership(Struct, frozen=True):

@@ -3,7 +3,7 @@
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from sysmlc.ir.element import AttrValue, Element, as_items, derived_id, list_items
+from sysmlc.ir.element import AttrValue, Element, as_items, as_texts, derived_id, list_items
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
 from sysmlc.ir.pending import Reference
@@ -21,6 +21,7 @@ __all__ = [
     "Kind",
     "Reference",
     "as_items",
+    "as_texts",
     "derived_id",
     "list_items",
     "parse_text",

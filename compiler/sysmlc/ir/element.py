@@ -19,6 +19,11 @@ def as_items(value: AttrValue) -> tuple[AttrValue, ...]:
     return value if isinstance(value, tuple) else (value,)
 
 
+def as_texts(value: AttrValue) -> tuple[str, ...]:
+    """Return the items of a list value as texts; any other value is the only item."""
+    return tuple(map(str, as_items(value)))
+
+
 class Element:
     """One element of the model. It has identity and is changed only through its ``Graph``.
 

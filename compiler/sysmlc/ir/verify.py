@@ -11,7 +11,7 @@ _AT_MOST_ONE: dict[Kind, tuple[Edge, ...]] = {
     Kind.OBJECT_FLOW: (Edge.FLOW_SOURCE, Edge.FLOW_TARGET),
     Kind.TRANSITION: (Edge.FLOW_SOURCE, Edge.FLOW_TARGET),
 }
-_OWNERS: dict[Kind, frozenset[Kind]] = {
+OWNERS: dict[Kind, frozenset[Kind]] = {
     Kind.REGION: frozenset({Kind.STATE_MACHINE, Kind.STATE}),
     Kind.STATE: frozenset({Kind.REGION}),
     Kind.FINAL_STATE: frozenset({Kind.REGION}),
@@ -19,6 +19,7 @@ _OWNERS: dict[Kind, frozenset[Kind]] = {
     Kind.ENUMERATION_LITERAL: frozenset({Kind.ENUMERATION}),
     Kind.SLOT: frozenset({Kind.INSTANCE}),
 }
+"""Owners that elements of a kind may have; elements of other kinds may have any owner."""
 
 
 def verify(graph: Graph) -> list[str]:
@@ -43,7 +44,7 @@ def _check_owner(graph: Graph, element: Element, owner_id: str | None) -> Iterat
     owner = graph.owner(element)
     if element.owner != owner_id:
         yield f"{element!r} ({element.id}) is not owned by its owner {owner!r}"
-    allowed = _OWNERS.get(element.kind)
+    allowed = OWNERS.get(element.kind)
     if owner is not None and allowed is not None and owner.kind not in allowed:
         yield f"{element!r} ({element.id}) must not be owned by {owner!r}"
 

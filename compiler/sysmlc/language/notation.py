@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from sysmlc.language.text.builders.operators import PRECEDENCE, PRECEDENCE_LEVELS
 from sysmlc.language.text.lexer import quote_name
-from sysmlc.language.tree import Node, Reference
+from sysmlc.language.tree import Node, Reference, list_arguments
 
 _CONDITIONAL = -1
 """The level of ``if``, which binds less than all binary operators."""
@@ -40,10 +40,6 @@ def _write_operand(node: Node, level: int) -> str:
     return text if own_level >= level else f"({text})"
 
 
-def _list_arguments(node: Node) -> list[Node]:
-    return [member for member in node.members if member.membership == "ParameterMembership"]
-
-
 def _write_name(node: Node) -> str:
     """Return the name of the referent of an expression."""
     relation = next(
@@ -72,7 +68,7 @@ def _write_type(node: Node) -> str:
 
 
 def _write_operator(node: Node) -> tuple[str, int]:
-    operator, operands = str(node.attributes.get("operator", "")), _list_arguments(node)
+    operator, operands = str(node.attributes.get("operator", "")), list_arguments(node)
     if operator in _TYPE_OPERATORS:
         left_operands = [operand for operand in operands if operand.kind != "Feature"]
         left = f"{_write_operand(left_operands[0], PRECEDENCE[operator])} " if left_operands else ""
@@ -117,12 +113,12 @@ def _write_without_parentheses(node: Node) -> str:
 
 
 def _write_index(node: Node) -> tuple[str, int]:
-    base, index = _list_arguments(node)
+    base, index = list_arguments(node)
     return f"{_write_operand(base, _PRIMARY)}#({_write_without_parentheses(index)})", _PRIMARY
 
 
 def _write_chain(node: Node) -> tuple[str, int]:
-    base = _list_arguments(node)
+    base = list_arguments(node)
     if not base:
         raise _NoNotationError(node.kind)
     return f"{_write_operand(base[0], _PRIMARY)}.{_write_name(node)}", _PRIMARY

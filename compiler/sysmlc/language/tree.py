@@ -189,6 +189,11 @@ def find_root(node: Node) -> Node:
     return node
 
 
+def list_arguments(expression: Node) -> list[Node]:
+    """Return the operands, or the positional arguments."""
+    return [member for member in expression.members if member.membership == "ParameterMembership"]
+
+
 def make_subject(document: Document, node: Node, start: int) -> Subject:
     """Return ``node`` as the subject of a diagnostic at character ``start``, if that is known."""
     return Subject(node.name or "", place=locate(document, start if start >= 0 else node.start))

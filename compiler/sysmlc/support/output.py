@@ -55,17 +55,17 @@ def find_obstacle(folder: Path, path: str) -> Path | None:
     current = folder
     for parent in parents:
         current /= parent
-        mode = _read_mode(current)
+        mode = read_mode(current)
         if mode is None:
             return None
         if not stat.S_ISDIR(mode):
             return current
     target = current / name
-    mode = _read_mode(target)
+    mode = read_mode(target)
     return None if mode is None or stat.S_ISREG(mode) else target
 
 
-def _read_mode(path: Path) -> int | None:
+def read_mode(path: Path) -> int | None:
     """Return the mode of *path* without following a link; None if nothing exists there."""
     try:
         return path.lstat().st_mode

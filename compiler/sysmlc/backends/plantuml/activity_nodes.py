@@ -7,7 +7,7 @@ from msgspec import Struct
 from sysmlc.backends.plantuml import labels
 from sysmlc.backends.plantuml.relations import list_node_allocations
 from sysmlc.backends.plantuml.state_machine import format_trigger
-from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, as_items, list_items
+from sysmlc.ir import Edge, Element, Graph, Kind, as_texts, list_items
 from sysmlc.ir.query import has_generated_name
 from sysmlc.ir.query.classifiers import name_value_unit
 from sysmlc.support.plantuml_text import format_label, wrap_lines
@@ -65,16 +65,12 @@ def iter_handlers(graph: Graph, node: Element) -> Iterator[tuple[str, list[str]]
     """
     for handler in list_items(node.attrs.get("handlers")):
         parts = list_items(handler)
-        body, types = (_list_ids(parts[index]) if len(parts) > index else () for index in (0, 2))
+        body, types = (as_texts(parts[index]) if len(parts) > index else () for index in (0, 2))
         elements = (graph.get(id) for id in types)
         yield (
             next(iter(body), ""),
             [labels.name(element) for element in elements if element is not None],
         )
-
-
-def _list_ids(value: AttrValue) -> tuple[str, ...]:
-    return tuple(map(str, as_items(value)))
 
 
 def _look_of_control(graph: Graph, node: Element) -> Look:

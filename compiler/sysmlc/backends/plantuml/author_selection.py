@@ -4,7 +4,7 @@ from functools import cached_property
 
 from msgspec import Struct
 
-from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, as_items, list_items
+from sysmlc.ir import Edge, Element, Graph, Kind, as_texts, list_items
 
 FEATURES = frozenset(
     [
@@ -58,12 +58,12 @@ class Selection(Struct, frozen=True, dict=True):
     @cached_property
     def nesting(self) -> tuple[tuple[str, ...], ...]:
         """The ids along each path of nested shapes, outermost first."""
-        return tuple(map(_convert_to_texts, list_items(self.view.attrs.get("nesting"))))
+        return tuple(map(as_texts, list_items(self.view.attrs.get("nesting"))))
 
     @cached_property
     def listed(self) -> frozenset[str]:
         """The ids of elements that are only listed in a compartment of another shape."""
-        return frozenset(_convert_to_texts(self.view.attrs.get("listed", ())))
+        return frozenset(as_texts(self.view.attrs.get("listed", ())))
 
     @cached_property
     def relations(self) -> frozenset[tuple[str, ...]] | None:
@@ -72,7 +72,7 @@ class Selection(Struct, frozen=True, dict=True):
         The value is None if the tool does not list such lines.
         """
         entries = self.view.attrs.get("relations")
-        return frozenset(map(_convert_to_texts, entries)) if isinstance(entries, tuple) else None
+        return frozenset(map(as_texts, entries)) if isinstance(entries, tuple) else None
 
     @property
     def is_summary(self) -> bool:
@@ -93,7 +93,3 @@ class Selection(Struct, frozen=True, dict=True):
         True if the tool does not list such lines.
         """
         return self.relations is None or (edge.value, source, target) in self.relations
-
-
-def _convert_to_texts(value: AttrValue) -> tuple[str, ...]:
-    return tuple(map(str, as_items(value)))

@@ -7,7 +7,7 @@ from msgspec.structs import replace
 from sysmlc.backends.plantuml import labels, partitioning, use_case
 from sysmlc.backends.plantuml.boxes import make_box, make_stub
 from sysmlc.backends.plantuml.layout import arrange_boxes
-from sysmlc.backends.plantuml.relations import Relation, list_relations
+from sysmlc.backends.plantuml.relations import Relation, find_neighbours, list_relations
 from sysmlc.backends.plantuml.views import Aliases, Box, BoxView, Compartment, Diagram, Line
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.support.plantuml_text import escape_line, format_keyword_label, pad_label, wrap_lines
@@ -128,22 +128,21 @@ def _draw_package(
     lines = [relation for relation in candidates if relation.row not in in_rows]
     lines += _list_containments(graph, [graph[id] for id in ids])
     lines, rows = _fold_foreign_clients(lines, own_ids)
-    adjacency = find_neighbours(own_ids, lines)
-    parts = partitioning.partition(ids, adjacency)
+    parts = partitioning.partition(ids, find_neighbours(ids, lines))
     title = graph.qualified_name(about) if about is not None else "model"
     for index, part in enumerate(parts):
         shown = [graph[id] for id in part]
         inside = [r for r in lines if _belongs_to_part(r, set(part), own_ids)]
         inside += _list_property_lines(graph, shown, inside)
-        yield Diagram(
+        diagram = Diagram(
             kind="bdd",
-            name=partitioning.number_part(title, index, len(parts)),
+            name=title,
             frame=escape_line(f"bdd [package] {title}"),
             heading=("Block definition diagram", title),
             view=_build_view(graph, shown, inside, in_rows, rows),
             about=package or "",
-            footer=escape_line(partitioning.make_footer(index, len(parts), title)),
         )
+        yield partitioning.name_part(diagram, index, len(parts))
 
 
 def _is_between_boxes(graph: Graph, relation: Relation) -> bool:
@@ -162,19 +161,6 @@ def _list_containments(graph: Graph, classifiers: list[Element]) -> list[Relatio
         for owner, item in pairs
         if owner is not None and owner.kind in CLASSIFIERS
     ]
-
-
-def find_neighbours(ids: set[str], candidates: Iterable[Relation]) -> dict[str, list[str]]:
-    """Return the ids that are connected by relations with each of *ids*."""
-    adjacency: dict[str, list[str]] = {id: [] for id in sorted(ids)}
-    for relation in candidates:
-        for end, opposite_end in (
-            (relation.source, relation.target),
-            (relation.target, relation.source),
-        ):
-            if end in adjacency and end != opposite_end:
-                adjacency[end].append(opposite_end)
-    return adjacency
 
 
 def _belongs_to_part(relation: Relation, part: set[str], own: set[str]) -> bool:

@@ -48,17 +48,17 @@ def _draw_block(graph: Graph, block: Element, flows: tuple[FreeFlow, ...]) -> It
     parts = _partition(graph, block, block_connections)
     for index, (shown, inside) in enumerate(parts):
         drawing = _InternalBlockDrawing(graph, block, shown, inside)
-        yield Diagram(
+        diagram = Diagram(
             kind="ibd",
-            name=partitioning.number_part(title, index, len(parts)),
+            name=title,
             frame=escape_line(
                 f"ibd [{_format_keywords(graph, block)}] {_format_title(graph, block)}"
             ),
             heading=("Internal block diagram", title),
             view=drawing.build_view(),
             about=block.id,
-            footer=escape_line(partitioning.make_footer(index, len(parts), title)),
         )
+        yield partitioning.name_part(diagram, index, len(parts))
 
 
 def _format_keywords(graph: Graph, block: Element) -> str:
@@ -308,7 +308,7 @@ class _InternalBlockDrawing:
         )
 
     def _find_alias(self, path: Path) -> str:
-        key = (*path.parts, *path.ports, path.port) if path.port else path.parts
+        key = path.ids()
         return self.aliases[_make_key(key) if key else "frame"]
 
 

@@ -185,17 +185,17 @@ def _draw_block(
     parts = _partition([(property_.id,) for property_ in properties], block_bindings)
     for index, (shown, inside) in enumerate(parts):
         drawing = _ParametricDrawing(graph, block, shown, inside)
-        yield Diagram(
+        diagram = Diagram(
             kind="par",
-            name=partitioning.number_part(title, index, len(parts)),
+            name=title,
             frame=escape_line(
                 f"par [{' '.join(labels.keywords(graph, block))}] {labels.name(block)}"
             ),
             heading=("Parametric diagram", title),
             view=drawing.build_view(),
             about=block.id,
-            footer=escape_line(partitioning.make_footer(index, len(parts), title)),
         )
+        yield partitioning.name_part(diagram, index, len(parts))
 
 
 def _partition(
@@ -335,7 +335,7 @@ class _ParametricDrawing:
         return Line(source, "--", target, shows=binding.shows)
 
     def _find_alias(self, end: Path) -> str:
-        key = (*end.parts, *end.ports, end.port) if end.port else end.parts
+        key = end.ids()
         return self.aliases[_make_key(key) if key else "frame"]
 
 

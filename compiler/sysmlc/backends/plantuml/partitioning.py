@@ -4,7 +4,8 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from msgspec.structs import replace
 
-from sysmlc.backends.plantuml.views import GraphView, Line, Node, Note
+from sysmlc.backends.plantuml.views import Diagram, GraphView, Line, Node, Note
+from sysmlc.support.plantuml_text import escape_line
 
 MAX_BOXES = 40
 """The largest number of boxes in a diagram; pictures of real models with more were unreadable."""
@@ -60,14 +61,13 @@ def _iter_connected(
             queue.extend(adjacent)
 
 
-def number_part(name: str, index: int, count: int) -> str:
-    """Return the name of one part: *name* itself if there is only one."""
-    return name if count == 1 else f"{name}::{index + 1}-of-{count}"
-
-
-def make_footer(index: int, count: int, whole: str) -> str:
-    """Return the footer of part *index* of *whole*; an empty text if there is only one part."""
-    return "" if count == 1 else f"part {index + 1} of {count} of {whole}; grey: shown elsewhere"
+def name_part(diagram: Diagram, index: int, count: int) -> Diagram:
+    """Return the diagram with name and footer of part *index* of *count*, if it has several."""
+    if count == 1:
+        return diagram
+    number = f"{index + 1} of {count}"
+    footer = escape_line(f"part {number} of {diagram.name}; grey: shown elsewhere")
+    return replace(diagram, name=f"{diagram.name}::{number.replace(' ', '-')}", footer=footer)
 
 
 def split_view(view: GraphView, limit: int = MAX_BOXES) -> list[GraphView]:

@@ -3,7 +3,7 @@
 An allocation that no line can show is a row of a box (SysML 1.6 clause 15.3.1).
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from msgspec import Struct
 
@@ -46,6 +46,19 @@ def list_relations(graph: Graph) -> list[Relation]:
         *_iter_flows(graph),
         *_iter_template_bindings(graph),
     ]
+
+
+def find_neighbours(ids: Iterable[str], candidates: Iterable[Relation]) -> dict[str, list[str]]:
+    """Return the ids that are connected by relations with each of *ids*."""
+    adjacency: dict[str, list[str]] = {id: [] for id in ids}
+    for relation in candidates:
+        for end, opposite_end in (
+            (relation.source, relation.target),
+            (relation.target, relation.source),
+        ):
+            if end in adjacency and end != opposite_end:
+                adjacency[end].append(opposite_end)
+    return adjacency
 
 
 def _iter_generalizations(graph: Graph) -> Iterator[Relation]:

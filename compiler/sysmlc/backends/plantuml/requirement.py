@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 
 from sysmlc.backends.plantuml import block_definition, boxes, labels, partitioning
 from sysmlc.backends.plantuml.layout import arrange_boxes
-from sysmlc.backends.plantuml.relations import REQUIREMENT_ROLES, Relation
+from sysmlc.backends.plantuml.relations import REQUIREMENT_ROLES, Relation, find_neighbours
 from sysmlc.backends.plantuml.views import Aliases, Box, BoxView, Compartment, Diagram
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import is_requirement
@@ -86,20 +86,19 @@ def _draw_package(
         for relation in candidates
         if not {relation.source, relation.target}.isdisjoint(ids)
     ]
-    neighbours = block_definition.find_neighbours(set(ids), package_relations)
-    parts = partitioning.partition(ids, neighbours)
+    parts = partitioning.partition(ids, find_neighbours(ids, package_relations))
     title = graph.qualified_name(package) if package is not None else "model"
     for index, part in enumerate(parts):
         relations = [r for r in package_relations if {r.source, r.target} & set(part)]
-        yield Diagram(
+        diagram = Diagram(
             kind="req",
-            name=partitioning.number_part(title, index, len(parts)),
+            name=title,
             frame=escape_line(f"req [package] {title}"),
             heading=("Requirement diagram", title),
             view=_build_view(graph, [graph[id] for id in part], relations),
             about=package.id if package is not None else "",
-            footer=escape_line(partitioning.make_footer(index, len(parts), title)),
         )
+        yield partitioning.name_part(diagram, index, len(parts))
 
 
 def _build_view(graph: Graph, shown: list[Element], relations: list[Relation]) -> BoxView:

@@ -53,16 +53,16 @@ def draw_parts(
     qualified_name = graph.qualified_name(about)
     parts = split_view(view)
     for index, part in enumerate(parts):
-        yield Diagram(
+        diagram = Diagram(
             kind=kind,
-            name=partitioning.number_part(qualified_name, index, len(parts)),
+            name=qualified_name,
             frame=escape_line(f"{kind} {labels.name(about)}{signature}"),
             heading=(title, qualified_name),
             view=part,
             about=about.id,
-            footer=escape_line(partitioning.make_footer(index, len(parts), qualified_name)),
             details=details,
         )
+        yield partitioning.name_part(diagram, index, len(parts))
 
 
 def draw_whole(graph: Graph, machine: Element) -> GraphView:

@@ -3,7 +3,12 @@
 from collections.abc import Iterator, Sequence
 
 from sysmlc.backends.plantuml import labels, partitioning
-from sysmlc.backends.plantuml.relations import Relation, iter_use_case_relations, list_relations
+from sysmlc.backends.plantuml.relations import (
+    Relation,
+    find_neighbours,
+    iter_use_case_relations,
+    list_relations,
+)
 from sysmlc.backends.plantuml.views import (
     Aliases,
     Diagram,
@@ -82,9 +87,8 @@ def _draw_package(
         for actor in graph.of_kind(Kind.ACTOR)
         if labels.find_package(graph, actor) == package_id
     ]
-    parts = partitioning.partition(
-        [item.id for item in package_cases], _find_neighbours(package_cases, candidates)
-    )
+    ids = [use_case.id for use_case in package_cases]
+    parts = partitioning.partition(ids, find_neighbours(ids, candidates))
     title = graph.qualified_name(package) if package is not None else "model"
     for index, part in enumerate(parts):
         shown = [graph[id] for id in part]
@@ -93,29 +97,15 @@ def _draw_package(
             for r in candidates
             if {r.source, r.target} & _add_connected_actors(part, package_actors, candidates)
         ]
-        yield Diagram(
+        diagram = Diagram(
             kind="uc",
-            name=partitioning.number_part(title, index, len(parts)),
+            name=title,
             frame=escape_line(f"uc [package] {title}"),
             heading=("Use case diagram", title),
             view=build_view(graph, shown, package_actors if index == 0 else [], inside),
             about=package.id if package is not None else "",
-            footer=escape_line(partitioning.make_footer(index, len(parts), title)),
         )
-
-
-def _find_neighbours(
-    package_cases: list[Element], candidates: Sequence[Relation]
-) -> dict[str, list[str]]:
-    adjacency: dict[str, list[str]] = {item.id: [] for item in package_cases}
-    for relation in candidates:
-        for end, opposite_end in (
-            (relation.source, relation.target),
-            (relation.target, relation.source),
-        ):
-            if end in adjacency and end != opposite_end:
-                adjacency[end].append(opposite_end)
-    return adjacency
+        yield partitioning.name_part(diagram, index, len(parts))
 
 
 def _add_connected_actors(

@@ -4,6 +4,7 @@ import re
 from functools import cache
 
 from sysmlc.ir import Kind
+from sysmlc.ir.verify import OWNERS as OWNERS_IN_GRAPHS
 
 _WITHOUT_SUBKIND = {
     "Package": Kind.PACKAGE,
@@ -285,7 +286,7 @@ EVENT_TYPES = {
 An event is no element: its content becomes part of these triggers.
 """
 
-VALUE_TYPES = frozenset(
+LITERALS = frozenset(
     {
         "LiteralBoolean",
         "LiteralInteger",
@@ -293,6 +294,10 @@ VALUE_TYPES = frozenset(
         "LiteralString",
         "LiteralUnlimitedNatural",
         "LiteralNull",
+    }
+)
+VALUE_TYPES = LITERALS | frozenset(
+    {
         "InstanceValue",
         "ElementValue",
         "OpaqueExpression",
@@ -308,12 +313,7 @@ VALUE_TYPES = frozenset(
 """Metaclasses of value specifications (UML 2.5.1 clause 8)."""
 
 OWNERS: dict[Kind, frozenset[Kind]] = {
-    Kind.REGION: frozenset({Kind.STATE_MACHINE, Kind.STATE}),
-    Kind.STATE: frozenset({Kind.REGION}),
-    Kind.FINAL_STATE: frozenset({Kind.REGION}),
-    Kind.CONNECTOR_END: frozenset({Kind.CONNECTOR}),
-    Kind.ENUMERATION_LITERAL: frozenset({Kind.ENUMERATION}),
-    Kind.SLOT: frozenset({Kind.INSTANCE}),
+    **OWNERS_IN_GRAPHS,
     Kind.OPERAND: frozenset({Kind.FRAGMENT}),
     Kind.TEMPLATE_SUBSTITUTION: frozenset({Kind.TEMPLATE_BINDING}),
 }

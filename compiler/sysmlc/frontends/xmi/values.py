@@ -5,19 +5,10 @@ from math import isfinite
 from typing import NamedTuple
 
 from sysmlc.frontends.xmi.document import Document
+from sysmlc.frontends.xmi.metaclasses import LITERALS
 from sysmlc.frontends.xmi.vocabulary import TRUE
 from sysmlc.ir import AttrValue
 
-_LITERALS = frozenset(
-    {
-        "LiteralBoolean",
-        "LiteralInteger",
-        "LiteralReal",
-        "LiteralString",
-        "LiteralUnlimitedNatural",
-        "LiteralNull",
-    }
-)
 _LANGUAGE_RANKS = (
     frozenset({"", "kerml", "sysml", "sysmlv2", "sysml v2", "ocl", "ocl2.0", "ltl", "promela"}),
     frozenset({"english", "natural language", "text", "plain text"}),
@@ -72,7 +63,7 @@ def read_value(document: Document, row: int) -> Value:
 
 def _read(document: Document, row: int, nested: _NestedValues) -> Value:
     type_name = document.types[row]
-    if type_name in _LITERALS:
+    if type_name in LITERALS:
         return Value(_read_literal(type_name, document.get(row, "value")), is_literal=True)
     if type_name in _REFERRING:
         return _read_instance(document, row, _REFERRING[type_name])
@@ -202,7 +193,7 @@ def _read_leaf(document: Document, row: int) -> Value:
     if expression is None and document.types[row] in _TIMES:
         return _read_time(document, row, {})
     leaf = row if expression is None else expression
-    if document.types[leaf] in _LITERALS:
+    if document.types[leaf] in LITERALS:
         return _read(document, leaf, {})
     return read_opaque(document, leaf)
 

@@ -3,13 +3,12 @@
 from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, rule
-from sysmlc.language.checks.expressions import list_arguments
 from sysmlc.language.checks.findings import Finding, iter_stated, name_of
 from sysmlc.language.metaclasses import is_composite, kinds_of
 from sysmlc.language.names import Model
 from sysmlc.language.names.expression_results import find_named_element
 from sysmlc.language.names.implied import find_own_features
-from sysmlc.language.tree import Node
+from sysmlc.language.tree import Node, list_arguments
 
 TOO_MANY = rule(
     "SM248",

@@ -16,7 +16,7 @@ from sysmlc.language.names.expression_results import (
     find_result_parameter,
 )
 from sysmlc.language.names.implied import find_owning_type
-from sysmlc.language.tree import Node
+from sysmlc.language.tree import Node, list_arguments
 
 Value = bool | int | float | str
 EXPRESSIONS = kinds_of("Expression") - kinds_of("Usage")
@@ -54,11 +54,6 @@ _OPERATIONS: dict[str, Callable[[float, float], Value]] = {
     "==": op.eq,
     "!=": op.ne,
 }
-
-
-def list_arguments(expression: Node) -> list[Node]:
-    """Return the operands, or the positional arguments."""
-    return [member for member in expression.members if member.membership == "ParameterMembership"]
 
 
 def _find_value(feature: Node) -> Node | None:

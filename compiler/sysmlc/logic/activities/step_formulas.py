@@ -27,11 +27,6 @@ def token_at(edge: TokenEdge) -> Formula:
     return f.var(edge.variable)
 
 
-def is_else(edge: TokenEdge) -> bool:
-    """Whether the edge is taken only if no other branch is open."""
-    return edge.guard is not None and edge.guard.condition is None
-
-
 class StepFormulas:
     """Formulas of one token graph. The docstring of each method states what its formula means.
 
@@ -147,7 +142,7 @@ class StepFormulas:
         if guard.condition is not None:
             return guard.condition
         siblings = self.graph.outgoing(self.graph.node(edge.source))
-        return f.both(*(f.negate(self.guard_formula(s)) for s in siblings if not is_else(s)))
+        return f.both(*(f.negate(self.guard_formula(s)) for s in siblings if not s.is_else))
 
     def given_formula(self, edge: TokenEdge) -> Formula:
         """The source gives the edge a token, or may do so if it can choose between branches."""
@@ -327,6 +322,6 @@ def _can_choose(branches: list[TokenEdge], node: TokenNode) -> bool:
     # Several else branches are open together, although UML allows only one.
     if node.firing is not Firing.CHOICE:
         return False
-    else_branches = [branch for branch in branches if is_else(branch)]
+    else_branches = [branch for branch in branches if branch.is_else]
     guarded_count = len(branches) - len(else_branches)
     return len(else_branches) > 1 or (guarded_count > 1 and not node.exclusive)

@@ -27,7 +27,8 @@ from sysmlc.logic.printing import print_formula, print_literal
 from sysmlc.synthesis import rules
 from sysmlc.synthesis.algebra.fair_systems import FairSystem, Runs
 from sysmlc.synthesis.bdd.manager import Manager, ManagerFactory, Node
-from sysmlc.synthesis.games.game import Constraint, Game, make_game
+from sysmlc.synthesis.games.arena import nodes_of
+from sysmlc.synthesis.games.game import Game, make_game
 from sysmlc.synthesis.games.relational_product import Product
 from sysmlc.synthesis.games.solver import solve
 
@@ -266,7 +267,7 @@ def check_runs(contract: Contract, manager: Manager) -> Iterator[LintFinding]:
 def _check_game(contract: Contract, game: Game) -> Iterator[LintFinding]:
     manager = game.manager
     reachable = Runs(_system_of_game(game)).reachable
-    can_continue = Product(manager, _nodes_of(game.assumptions), game.next_inputs)(manager.true)
+    can_continue = Product(manager, nodes_of(game.assumptions), game.next_inputs)(manager.true)
     dead_ends = reachable & ~can_continue
     if dead_ends != manager.false:
         yield LintFinding(rules.DEADLOCK, detail=_describe_state(game, dead_ends))
@@ -280,8 +281,8 @@ def _system_of_game(game: Game) -> FairSystem:
     initial = game.manager.true
     for part in (*game.init_assumptions, *game.init_guarantees):
         initial = initial & part.node
-    parts = (*_nodes_of(game.assumptions), *_nodes_of(game.guarantees))
-    return FairSystem(game.symbols, initial, parts, _nodes_of(game.fairness))
+    parts = (*nodes_of(game.assumptions), *nodes_of(game.guarantees))
+    return FairSystem(game.symbols, initial, parts, nodes_of(game.fairness))
 
 
 def _is_always_restricted(game: Game, variable: Variable) -> bool:
@@ -294,7 +295,7 @@ def _is_always_restricted(game: Game, variable: Variable) -> bool:
     other_bits = [bit for bit in game.next_outputs if bit not in bits]
     # The states and next inputs in which every guarantee examined so far allows all values.
     unrestricted = manager.true
-    for node in _nodes_of(game.guarantees):
+    for node in nodes_of(game.guarantees):
         if not manager.support(node).isdisjoint(bits):
             unrestricted = unrestricted & _states_allowing_any_value(
                 game, variable, manager.exist(other_bits, node)
@@ -314,7 +315,7 @@ def _states_allowing_any_value(game: Game, variable: Variable, node: Node) -> No
 
 def _check_frame(game: Game, variable: Variable, states: Node) -> Iterator[LintFinding]:
     """Yield a finding if the output has no frame condition in *states*."""
-    product = Product(game.manager, _nodes_of(game.assumptions), game.next_inputs)
+    product = Product(game.manager, nodes_of(game.assumptions), game.next_inputs)
     unconstrained = _states_without_frame(game, variable)
     if _is_quantity(variable):
         condition = states & product(unconstrained)
@@ -343,7 +344,7 @@ def _states_without_frame(game: Game, variable: Variable) -> Node:
     manager = game.manager
     bits = game.symbols.bits(variable.name, primed=True)
     other_bits = [bit for bit in game.next_outputs if bit not in bits]
-    join = Product(manager, _nodes_of(game.guarantees), other_bits)
+    join = Product(manager, nodes_of(game.guarantees), other_bits)
     states = manager.true
     for value in values(variable.domain):
         code = manager.cube(game.symbols.code(variable.name, value, primed=True))
@@ -358,7 +359,3 @@ def _describe_state(game: Game, states: Node) -> str:
     values = symbols.decode(manager.pick(states, all_bits) or {})
     names = symbols.names(states) or tuple(values)
     return ", ".join(f"{name}={print_literal(values[name])}" for name in names)
-
-
-def _nodes_of(parts: tuple[Constraint, ...]) -> tuple[Node, ...]:
-    return tuple(part.node for part in parts)
