@@ -17,7 +17,6 @@ from sysmlc.logic.contract import EnumerationDomain, IntegerDomain
 from sysmlc.logic.domains import describe
 from sysmlc.logic.expressions.elaboration import Symbol
 from sysmlc.logic.expressions.features import (
-    Access,
     Feature,
     default_text,
     is_string,
@@ -35,6 +34,7 @@ from sysmlc.logic.expressions.named_elements import (
     find_port_values,
 )
 from sysmlc.logic.expressions.parsing import unquote
+from sysmlc.logic.expressions.ranges import Access
 from sysmlc.logic.formula import const, var
 from sysmlc.logic.identifiers import make_unique
 
