@@ -255,6 +255,88 @@ def test_an_association_without_the_type_of_the_other_end_has_one_end(types):
     assert graph.targets(graph["a"], Edge.END) == [graph["p"]]
 
 
+# -- facts that MTIP does not state ----------------------------------------------------------------
+
+
+def read_parameters(*records):
+    """Return the parameter and the direction of each node of an activity with these records."""
+    graph = Read(packet(data("Activity", "a", name="Track"), *records)).graph
+    nodes = [element for element in graph if element.kind == "ActivityParameter"]
+    return {
+        node.id: ([e.id for e in graph.targets(node, Edge.REFERENCES)], node.attrs.get("direction"))
+        for node in nodes
+    }
+
+
+def parameter(id, name, direction, type="t"):
+    return data("Parameter", id, "a", name, attribute("direction", direction), typedBy=type)
+
+
+def node(id, name, type="t"):
+    return data("ActivityParameterNode", id, "a", name, typedBy=type)
+
+
+def test_a_parameter_node_has_the_parameter_of_its_name_and_type():
+    assert read_parameters(
+        parameter("p", "speed", "in"),
+        parameter("q", "done", "out"),
+        node("n", "done"),
+        node("o", "speed"),
+    ) == {"n": (["q"], "out"), "o": (["p"], "in")}
+
+
+def test_a_renamed_parameter_node_has_the_only_parameter_that_fits_its_type_and_flows():
+    assert read_parameters(
+        parameter("p", "speed", "in"),
+        parameter("q", "done", "out"),
+        node("n", "result"),
+        data("Action", "x", "a"),
+        data("ObjectFlow", "f", "a", supplier="x", client="n"),
+    ) == {"n": (["q"], "out")}
+
+
+@pytest.mark.parametrize("name", ["speed", "other"])
+def test_a_parameter_node_to_which_no_single_parameter_fits_has_none(name):
+    parameters = (parameter("p", "speed", "in"), parameter("q", "speed", "in"))
+    assert read_parameters(*parameters, node("n", name)) == {"n": ([], None)}
+    assert read_parameters(parameter("p", "speed", "in", "u"), node("n", name)) == {"n": ([], None)}
+
+
+def test_a_behaviour_of_a_transition_is_its_effect():
+    graph = Read(
+        packet(
+            data("StateMachine", "sm", name="States"),
+            data("Region", "re", "sm"),
+            data("State", "s", "re", "up"),
+            data("Transition", "tr", "sm", supplier="s", client="s"),
+            data("OpaqueBehavior", "b", "tr", "lower"),
+            data("OpaqueBehavior", "c", "s", "check"),
+        )
+    ).graph
+    assert graph.targets(graph["tr"], Edge.EFFECT) == [graph["b"]]
+    assert graph.sources(graph["c"], Edge.EFFECT) == []
+
+
+def test_a_message_has_its_sort_and_lifelines():
+    graph = Read(
+        packet(
+            data("Interaction", "i", name="Scenario"),
+            data("Lifeline", "a", "i", "a"),
+            data("Lifeline", "b", "i", "b"),
+            data(
+                "Message",
+                "m",
+                "i",
+                more=attribute("messageSort", "synchCall"),
+                supplier="a",
+                client="b",
+            ),
+        )
+    ).graph
+    assert graph["m"].attrs == {"subkind": "synch-call"}
+    assert graph.target(graph["m"], Edge.FLOW_TARGET) is graph["b"]
+
+
 def test_tagged_values_belong_to_their_stereotype():
     read = Read(packet(data("Class", "c", "", "C", stereotype("Cost", "Own", euro="5"))))
     (application,) = [element for element in read.graph if element.name == "Cost"]

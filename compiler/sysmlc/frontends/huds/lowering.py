@@ -1,12 +1,18 @@
 """Lowers records to elements of the graph: owners first, then the relations between elements."""
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 
 from sysmlc.diagnostics import Coverage, Place, Rule, Severity, Sink, Subject, Verdict, rule
 from sysmlc.frontends.base import read_or_report
 from sysmlc.frontends.huds import vocabulary as v
 from sysmlc.frontends.huds.records import Record, read_records
-from sysmlc.frontends.huds.relations import add_association_ends, add_relations
+from sysmlc.frontends.huds.relations import (
+    add_association_ends,
+    add_effects,
+    add_parameters_of_nodes,
+    add_relations,
+)
 from sysmlc.ir import Edge, Element, Graph, Kind, list_items
 from sysmlc.ir.element import derived_id
 from sysmlc.sources import DEFAULT_LIMITS, Fault, Source, SourceError
@@ -85,7 +91,7 @@ class FileLowering:
     def lower(self) -> None:
         """Add all elements, then the relations and stereotypes of each record.
 
-        The ends that associations own come last.
+        Facts that MTIP does not state come last: they follow from the others.
         """
         for record in self._iter_owners_first():
             self._add_element(record)
@@ -96,6 +102,8 @@ class FileLowering:
                 if element is not None:
                     _apply_stereotypes(self.graph, element, record)
         add_association_ends(self)
+        add_effects(self.graph)
+        add_parameters_of_nodes(self)
 
     # -- ids and owners ----------------------------------------------------------------------------
 
@@ -234,6 +242,7 @@ class FileLowering:
 
 # -- attributes and stereotypes --------------------------------------------------------------------
 
+_CAPITAL = re.compile("[A-Z]")
 _WITH_MULTIPLICITY = frozenset({Kind.PROPERTY, Kind.PORT, Kind.PARAMETER, Kind.PIN})
 
 
@@ -245,6 +254,11 @@ def _store_multiplicity(element: Element, text: str) -> None:
 def _store_default(element: Element, text: str) -> None:
     element.attrs["default"] = text
     element.attrs["default_language"] = ""
+
+
+def _store_sort(element: Element, text: str) -> None:
+    """Store the sort of a message in the words of the graph: ``asynch-signal``."""
+    element.attrs["subkind"] = _CAPITAL.sub(lambda match: f"-{match[0].lower()}", text)
 
 
 def _make_text_handler(key: str) -> Callable[[Element, str], None]:
@@ -263,7 +277,7 @@ _ATTRIBUTES: dict[str, Callable[[Element, str], None]] = {
     "language": _make_text_handler("language"),
     "valueSpecification": _make_text_handler("body"),
     "documentation": _make_text_handler("documentation"),
-    "messageSort": _make_text_handler("message_sort"),
+    "messageSort": _store_sort,
     "text": _make_text_handler("text"),
     "id": _make_text_handler("req_id"),
 }

@@ -1,5 +1,6 @@
 """Lowers relations between records to references, which the pass ``resolve`` makes edges."""
 
+from collections import Counter
 from collections.abc import Callable, Iterable
 from typing import Protocol
 
@@ -80,6 +81,76 @@ def add_association_ends(file: _FileLowering) -> None:
             file.graph.add(end)
             file.graph.connect(Edge.END, association, end)
             _refer(file, Edge.TYPED_BY, end.id, owners[:1])
+
+
+def add_effects(graph: Graph) -> None:
+    """Connect transitions with their effects, which MTIP exports as behaviours that they own.
+
+    A transition owns no other behaviour (UML 2.5.1, Transition).
+    """
+    for behaviour in [element for element in graph if element.kind is Kind.ACTIVITY]:
+        owner = graph.owner(behaviour)
+        if owner is not None and owner.kind is Kind.TRANSITION:
+            graph.connect(Edge.EFFECT, owner, behaviour)
+
+
+# -- parameters of nodes ---------------------------------------------------------------------------
+
+
+def add_parameters_of_nodes(file: _FileLowering) -> None:
+    """Connect parameter nodes with their parameters, to which MTIP exports no relation.
+
+    A node has the type of its parameter (UML 2.5.1, ActivityParameterNode, same_type). Of the
+    parameters with this type, the parameter of the node is the only one with the same name, else
+    the only remaining one with a direction that the flows of the node allow. A node to which
+    several parameters fit has none in the graph.
+    """
+    by_owner: dict[str, tuple[list[Record], list[Record]]] = {}
+    leaving, arriving = set(), set()
+    for record in file.by_id.values():
+        if record.local_type == "ObjectFlow":
+            leaving.add(record.find_target("supplier"))
+            arriving.add(record.find_target("client"))
+        elif record.local_type in ("ActivityParameterNode", "Parameter"):
+            owned = by_owner.setdefault(record.find_target("hasParent"), ([], []))
+            owned[record.local_type == "Parameter"].append(record)
+
+    def allow_direction(node: Record, parameter: Record) -> bool:
+        direction = parameter.value("direction") or "in"
+        is_input = node.id not in leaving or direction in ("in", "inout")
+        return is_input and (node.id not in arriving or direction != "in")
+
+    for nodes, parameters in by_owner.values():
+        pairs = _pair_uniquely(nodes, parameters, _have_same_name)
+        other_nodes = [node for node in nodes if node.id not in pairs]
+        others = [parameter for parameter in parameters if parameter.id not in pairs.values()]
+        pairs |= _pair_uniquely(other_nodes, others, allow_direction)
+        for node_id, parameter_id in pairs.items():
+            node = file.graph.get(file.target_id(node_id))
+            if node is not None:
+                direction = file.by_id[parameter_id].value("direction")
+                is_output = direction in ("out", "return") or node_id in arriving
+                node.attrs["direction"] = "out" if is_output else "in"
+                _refer(file, Edge.REFERENCES, node.id, [parameter_id])
+
+
+def _have_same_name(node: Record, parameter: Record) -> bool:
+    return node.value("name") == parameter.value("name")
+
+
+def _pair_uniquely(
+    nodes: list[Record], parameters: list[Record], fits: Callable[[Record, Record], bool]
+) -> dict[str, str]:
+    """Return pairs of ids of the same type that fit each other and nothing else."""
+    pairs = [
+        (node.id, parameter.id)
+        for node in nodes
+        for parameter in parameters
+        if node.find_target("typedBy") == parameter.find_target("typedBy")
+        if fits(node, parameter)
+    ]
+    counts = Counter(id for pair in pairs for id in pair)
+    return {node: parameter for node, parameter in pairs if counts[node] == counts[parameter] == 1}
 
 
 # -- completions of single kinds -------------------------------------------------------------------
