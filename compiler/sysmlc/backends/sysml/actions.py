@@ -42,8 +42,11 @@ def write_control_node(writer: Writer, member: Member) -> list[Line]:
     return [Line(f"{keyword} {name}", body), *write_successions(writer, member)]
 
 
-def write_control_flow(_writer: Writer, _member: Member) -> list[Line]:
+def write_control_flow(writer: Writer, member: Member) -> list[Line]:
     """Write nothing: the node that a control flow leaves writes it as a succession."""
+    element = member.require_element()
+    if writer.graph.target(element, Edge.FLOW_SOURCE) is None:
+        return writer.drop(member, "flow-source")
     return []
 
 

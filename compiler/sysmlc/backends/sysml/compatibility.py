@@ -1,6 +1,7 @@
 """Specialisations, subsets and redefinitions of UML that SysML v2 does not allow."""
 
 from sysmlc.backends.sysml.plan import Member, Plan
+from sysmlc.backends.sysml.references import is_accessible
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import bounds, conforms, generals, type_of
 
@@ -73,3 +74,14 @@ def _upper_bound(feature: Element) -> float:
     if limits is None:
         return 1
     return float("inf") if limits[1] is None else limits[1]
+
+
+def is_lifeline_subset(plan: Plan, lifeline: Member, represented: Element) -> bool:
+    """Whether the bare name of a represented feature is allowed where the lifeline stands."""
+    feature = plan.find(represented)
+    return (
+        feature is not None
+        and feature.shape.is_usage
+        and feature.parent is not None
+        and is_accessible(plan, lifeline.parent, feature)
+    )

@@ -6,12 +6,14 @@ namespace declares.
 
 import re
 
+from sysmlc.backends.sysml.annotations import make_annotation
 from sysmlc.backends.sysml.expressions import format_expression
 from sysmlc.backends.sysml.library import UNITS
 from sysmlc.backends.sysml.plan import Member
-from sysmlc.backends.sysml.printing import quote_name
-from sysmlc.backends.sysml.references import look_up
+from sysmlc.backends.sysml.printing import Line, quote_name
+from sysmlc.backends.sysml.references import look_up, visible_members
 from sysmlc.backends.sysml.rules import TEXT_AS_NAME
+from sysmlc.backends.sysml.shapes import Shape
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import Edge, Element
 
@@ -87,7 +89,32 @@ def _declare(writer: Writer, scope: Member | None, element: Element, text: str, 
         namespace = namespace.parent
     if namespace is None:
         return quote_name(name)
-    return writer.declare_attribute(namespace, name, type_)
+    key = (namespace, text, type_)
+    if key not in writer.condition_names:
+        writer.condition_names[key] = _declare_attribute(writer, namespace, name, text, type_)
+    return writer.condition_names[key]
+
+
+def _declare_attribute(writer: Writer, namespace: Member, name: str, text: str, type_: str) -> str:
+    """Declare an attribute for a text and return its name as written.
+
+    Unless the name is the text and an identifier, a keyword tells readers that the attribute stands
+    for a text; metadata states the text if the name is another one.
+    """
+    visible = visible_members(writer.plan, namespace)
+    free_name, number = name, 2
+    while free_name in visible:
+        free_name, number = f"{name}_{number}", number + 1
+    attribute = writer.plan.add(Shape("attribute"), namespace, free_name, None)
+    attribute.is_declared = True
+    namespace.visible_names = None
+    words = f"attribute {quote_name(free_name)} : {writer.refer_to_library(namespace, type_)}"
+    if free_name != text or not free_name.isidentifier():
+        words = f"#{writer.refer_to_sysmlc(namespace, 'inWords')} {words}"
+    facts = {"name": text}
+    body = [make_annotation(writer, attribute, "Named", facts)] if free_name != text else []
+    namespace.added_lines.append(Line(words, body))
+    return quote_name(free_name)
 
 
 # -- triggers ------------------------------------------------------------------------------------

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from sysmlc.backends.sysml.compatibility import (
     is_incompatible,
     is_invalid_subset,
+    is_lifeline_subset,
     is_without_parameters,
 )
 from sysmlc.backends.sysml.references import is_accessible
@@ -75,7 +76,6 @@ _KINDS_THAT_EXPRESS = {
             Kind.VIEW,
         }
     ),
-    Edge.REPRESENTS: frozenset({Kind.INSTANCE, Kind.LIFELINE, Kind.PARTITION, Kind.VIEW}),
     Edge.EXTENDS: frozenset({Kind.USE_CASE, Kind.EXTEND}),
     Edge.ALLOCATED_TO: frozenset(Kind),
     Edge.BINDS: frozenset({Kind.PROPERTY, Kind.PORT}),
@@ -146,6 +146,14 @@ def _is_unexpressed_call(writer: Writer, action: Element, target: Element) -> bo
     return not _is_call(action) and not is_accessible(writer.plan, member, feature)
 
 
+def _is_unexpressed_represented(writer: Writer, source: Element, target: Element) -> bool:
+    """Whether a lifeline cannot subset the feature that it represents."""
+    member = writer.plan.find(source)
+    if source.kind is not Kind.LIFELINE or member is None:
+        return source.kind not in (Kind.INSTANCE, Kind.LIFELINE, Kind.PARTITION, Kind.VIEW)
+    return not is_lifeline_subset(writer.plan, member, target)
+
+
 def _is_call(action: Element) -> bool:
     """Whether an action calls, sends, accepts or starts its target."""
     return action.subkind.partition("-")[0] in ("call", "send", "broadcast", "accept", "start")
@@ -164,6 +172,7 @@ _CHECKS = {
     Edge.REALIZES: _is_unexpressed_realization,
     Edge.APPLIES: _is_never_expressed,
     Edge.CALLS: _is_unexpressed_call,
+    Edge.REPRESENTS: _is_unexpressed_represented,
 }
 _EDGES_TO_CHECK = tuple(
     dict.fromkeys((*(edge for edge in Edge if edge not in _EXPRESSED_EDGES), *_CHECKS))

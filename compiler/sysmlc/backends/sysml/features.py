@@ -194,6 +194,8 @@ def write_pin(writer: Writer, member: Member) -> list[Line]:
     element = member.require_element()
     head = make_feature_head(writer, member)
     _add_direction(head)
+    if element.kind is Kind.ACTIVITY_PARAMETER:
+        writer.record_approximation(element, "a parameter node without a parameter", "a parameter")
     parameter = _find_parameter(writer, element)
     if parameter is not None:
         _redefine_parameter(writer, member, parameter, head)

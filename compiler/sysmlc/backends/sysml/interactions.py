@@ -1,6 +1,7 @@
 """Interactions: lifelines as references to parts, messages between them, fragments around them."""
 
 from sysmlc.backends.sysml.annotations import make_annotation
+from sysmlc.backends.sysml.compatibility import is_lifeline_subset
 from sysmlc.backends.sysml.conditions import format_condition
 from sysmlc.backends.sysml.declarations import refer_to_type
 from sysmlc.backends.sysml.definitions import write_contents
@@ -16,7 +17,10 @@ _LIFELINE_KEYWORDS = {"part def": "part ", "item def": "part ", "port def": "por
 
 
 def write_lifeline(writer: Writer, member: Member) -> list[Line]:
-    """Write a lifeline: a reference to a part of the type that it represents."""
+    """Write a lifeline: a reference to a part of the type that it represents.
+
+    The lifeline subsets the represented feature if that is a feature of a namespace around it.
+    """
     element = member.require_element()
     head = f"ref part {quote_name(member.name)}"
     body = []
@@ -32,8 +36,12 @@ def write_lifeline(writer: Writer, member: Member) -> list[Line]:
                 head = f"ref {keyword}{quote_name(member.name)} : {type_name}"
                 if not keyword:
                     body = [make_annotation(writer, member, "Kind", {"name": "lifeline"})]
-        construct = "what a lifeline represents"
-        writer.record_approximation(element, construct, "a part of the same type")
+        if is_lifeline_subset(writer.plan, member, represented):
+            name = writer.refer_to(member.parent, element, Edge.REPRESENTS, represented)
+            head += "" if name is None else f" :> {name}"
+        else:
+            construct = "what a lifeline represents"
+            writer.record_approximation(element, construct, "a part of the same type")
     return [Line(head, body + write_contents(writer, member))]
 
 

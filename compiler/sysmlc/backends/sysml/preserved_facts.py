@@ -16,7 +16,7 @@ from sysmlc.backends.sysml.edge_coverage import iter_unexpressed_edges
 from sysmlc.backends.sysml.plan import Member
 from sysmlc.backends.sysml.printing import quote_name
 from sysmlc.backends.sysml.writer import Writer
-from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 
 _NEVER_PRESERVED = frozenset({"external", "library", "unresolved"})
 _PRESERVED_EDGES = tuple(
@@ -112,10 +112,17 @@ def _iter_part_facts(writer: Writer, part: Element, default_name: str) -> Iterat
 
 
 def _is_idle_parameter_node(writer: Writer, part: Element) -> bool:
-    """Whether no flow of the text tells a reader that a parameter has a node."""
-    edges = (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)
-    is_node = part.kind is Kind.ACTIVITY_PARAMETER
-    return is_node and not any(writer.graph.sources(part, edge) for edge in edges)
+    """Whether no flow of the text is sure to tell a reader that a parameter has a node.
+
+    A flow without a second end is omitted, and a flow over a control node may lead nowhere.
+    """
+    if part.kind is not Kind.ACTIVITY_PARAMETER:
+        return False
+    leaving = writer.graph.sources(part, Edge.FLOW_SOURCE)
+    arriving = writer.graph.sources(part, Edge.FLOW_TARGET)
+    ends = [writer.graph.target(flow, Edge.FLOW_TARGET) for flow in leaving]
+    ends += [writer.graph.target(flow, Edge.FLOW_SOURCE) for flow in arriving]
+    return all(end is None or end.kind is Kind.CONTROL for end in ends)
 
 
 def _iter_parts(writer: Writer, element: Element) -> Iterator[tuple[str, Element]]:
@@ -139,7 +146,7 @@ def _iter_parts(writer: Writer, element: Element) -> Iterator[tuple[str, Element
         children = graph.owned(regions[0])
     starts = [child for child in children if (child.kind, child.subkind) in _STARTS]
     for start in starts[:1]:
-        if graph.sources(start, Edge.FLOW_SOURCE):
+        if _has_complete_flow(graph, start):
             yield "start", start
     ends = [
         child
@@ -147,8 +154,17 @@ def _iter_parts(writer: Writer, element: Element) -> Iterator[tuple[str, Element
         if (child.kind, child.subkind) in _ENDS and writer.plan.find(child) is None
     ]
     for end in ends[:1]:
-        if graph.sources(end, Edge.FLOW_TARGET):
+        if _has_complete_flow(graph, end):
             yield "done", end
+
+
+def _has_complete_flow(graph: Graph, node: Element) -> bool:
+    """Whether a flow or transition with both ends leaves or enters a node: the text writes it."""
+    leaving = graph.sources(node, Edge.FLOW_SOURCE)
+    arriving = graph.sources(node, Edge.FLOW_TARGET)
+    return any(graph.targets(flow, Edge.FLOW_TARGET) for flow in leaving) or any(
+        graph.targets(flow, Edge.FLOW_SOURCE) for flow in arriving
+    )
 
 
 def _is_parameter_node(writer: Writer, element: Element) -> bool:

@@ -4,17 +4,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from sysmlc.backends.sysml.plan import Member, Plan
-from sysmlc.backends.sysml.printing import Line, quote_name
+from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.references import (
     format_element_reference,
     format_library_name,
     format_qualified_name,
     format_redefined_name,
     is_path_accessible,
-    visible_members,
 )
 from sysmlc.backends.sysml.rules import APPROXIMATED, UNREACHABLE, Losses
-from sysmlc.backends.sysml.shapes import Shape
 from sysmlc.ir import Edge, Element, Graph, Kind
 
 WriteMember = Callable[["Writer", Member], list[Line]]
@@ -59,6 +57,8 @@ class Writer:
     """Ids of elements that are written as public because the text refers to them."""
     caex_files: frozenset[str] = frozenset()
     """Files in AutomationML: metadata preserves the ids of their elements."""
+    condition_names: dict[tuple[Member, str, str], str] = field(default_factory=dict)
+    """Names of attributes that stand for texts, by namespace, text and type."""
     insertions: dict[Element, list[Line]] = field(default_factory=dict)
     """Elements in authors' texts with the lines of the members that passes added to them."""
     uses_library: bool = False
@@ -138,28 +138,6 @@ class Writer:
         return []
 
     # -- lines -----------------------------------------------------------------------------------
-
-    def declare_attribute(self, namespace: Member, name: str, type_: str) -> str:
-        """Declare an attribute whose name is a condition in words. Return its name as written.
-
-        A second declaration of the same name in the namespace reuses the first attribute.
-        """
-        visible = visible_members(self.plan, namespace)
-        for member in namespace.members:
-            if member.element is None and member.name == name:
-                return quote_name(member.name)
-        free_name, number = name, 2
-        while free_name in visible:
-            free_name, number = f"{name}_{number}", number + 1
-        attribute = self.plan.add(Shape("attribute"), namespace, free_name, None)
-        namespace.visible_names = None
-        type_name = self.refer_to_library(namespace, type_)
-        keyword = "attribute"
-        if not free_name.isidentifier():
-            keyword = f"#{self.refer_to_sysmlc(namespace, 'inWords')} attribute"
-        namespace.added_lines.append(Line(f"{keyword} {quote_name(free_name)} : {type_name}"))
-        attribute.is_declared = True
-        return quote_name(free_name)
 
     def write_members(self, namespace: Member) -> list[Line]:
         """Return the lines of all members of a namespace: those of the model, then added ones."""

@@ -35,7 +35,12 @@ _MemberHandler = Callable[[Lowering, Node, Element], object]
 
 
 def _lower_feature(lowering: Lowering, node: Node, owner: Element | None) -> None:
-    """Lower a structural usage."""
+    """Lower a structural usage.
+
+    A feature that stands for a condition in words has no element: the condition is its text.
+    """
+    if "InWords" in nodes.shipped_metadata_of(node):
+        return
     if node.kind == "OccurrenceUsage" and _is_interaction(node):
         definitions.lower_definition(lowering, node, owner, Kind.INTERACTION, "")
     elif owner is None or owner.kind in _PACKAGES:
@@ -162,10 +167,13 @@ def _lower_exhibited_state(lowering: Lowering, node: Node, owner: Element | None
 
 
 def _lower_case(lowering: Lowering, node: Node, owner: Element | None) -> None:
-    if owner is not None and owner.kind in ACTIVITIES:
+    """Lower a case, or its definition, to a step, an activity or an interaction."""
+    role = "test case" if node.kind.startswith("Verification") else ""
+    if _is_interaction(node):
+        definitions.lower_definition(lowering, node, owner, Kind.INTERACTION, role)
+    elif owner is not None and owner.kind in ACTIVITIES and node.kind.endswith("Usage"):
         actions.lower_action(lowering, node, owner)
     else:
-        role = "test case" if node.kind.startswith("Verification") else ""
         activities.lower_activity(lowering, node, owner, role)
 
 
@@ -206,6 +214,7 @@ HANDLERS: dict[str, Handler] = {
     "LibraryPackage": definitions.lower_package,
     "ItemDefinition": definitions.lower_item,
     "OccurrenceDefinition": definitions.lower_occurrence,
+    "VerificationCaseDefinition": _lower_case,
     "StateDefinition": states.lower_state_machine,
     "ConnectionDefinition": connections.lower_association,
     "InterfaceDefinition": connections.lower_association,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from sysmlc.frontends.sysml import annotations, nodes
 from sysmlc.frontends.sysml.connections import list_payloads
 from sysmlc.frontends.sysml.features import lower_property
-from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind, list_items
 from sysmlc.ir.algorithms import sort_topologically
 from sysmlc.ir.query.interactions import covered_lifelines, interaction_fragments
 from sysmlc.language.tree import Node
@@ -75,8 +75,12 @@ def _lower_lifeline(lowering: "Lowering", node: Node, owner: Element) -> None:
 def _connect_represented(lowering: "Lowering", node: Node, lifeline: Element) -> None:
     """Connect a lifeline to the feature it names, or to the only part of its type.
 
-    If several parts have the type, the one with the name of the lifeline counts.
+    If several parts have the type, the one with the name of the lifeline counts. The back end
+    ``sysml`` names a feature that the lifeline cannot subset in metadata, which is read later.
     """
+    preserved = list_items(annotations.metadata_value(node, "Kept", "attributes"))
+    if any(str(fact).startswith(Edge.REPRESENTS.value) for fact in preserved):
+        return
     reference = nodes.find_reference(node, "Redefinition", "ReferenceSubsetting", "Subsetting")
     if reference is not None:
         lowering.connect_node(Edge.REPRESENTS, lifeline, reference.target)

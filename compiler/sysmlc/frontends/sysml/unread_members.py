@@ -152,7 +152,10 @@ def _is_fact_of_owner(node: Node, owner: Node) -> bool:
     Such members are keywords, ends in bodies, empty actions of states, and cross features.
     """
     if node.kind == "MetadataUsage":
-        return bool(node.attributes.get("isPrefix")) and owner.kind != "MetadataUsage"
+        is_text = "InWords" in nodes.shipped_metadata_of(owner)
+        is_named = is_text and nodes.shipped_metadata_name(node) == "Named"
+        is_prefix = bool(node.attributes.get("isPrefix"))
+        return is_named or (is_prefix and owner.kind != "MetadataUsage")
     if node.kind == "Membership":
         return not node.name
     if node.kind == "Feature" and node.membership == "OwningMembership":

@@ -62,14 +62,22 @@ def expression_text(expression: Node | None, lowering: "Lowering") -> str:
     """Return an expression as text of our grammar.
 
     The back end ``sysml`` marks features that stand for a condition in words: the text is their
-    name.
+    name, or the name that metadata states.
     """
     if expression is None:
         return ""
     target = _referenced_feature(expression)
-    if target is not None and target.name and "InWords" in nodes.shipped_metadata_of(target):
-        return target.name
+    if target is not None and target.name:
+        metadata = nodes.shipped_metadata_of(target)
+        if "InWords" in metadata:
+            return _read_text(metadata["Named"]) if "Named" in metadata else target.name
     return _write(expression, lowering)
+
+
+def _read_text(named: Node) -> str:
+    """Return the value of the only attribute of metadata."""
+    expressions = (nodes.value_of(member) for member in named.members)
+    return next((str(constant_of(value)) for value in expressions if value is not None), "")
 
 
 def _write(expression: Node, lowering: "Lowering") -> str:
