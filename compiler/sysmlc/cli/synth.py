@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from sysmlc.cli.contract_files import ContractFile
     from sysmlc.cli.session import Settings
+    from sysmlc.config import Config
     from sysmlc.synthesis.controller_synthesis import Synthesis
     from sysmlc.synthesis.decision import Deadline, Options, Verdict
 
@@ -100,9 +101,7 @@ def command(
     SysML v2; with --play you take the part of the component against it.
     """
     from sysmlc.cli import session
-    from sysmlc.cli.contract_files import read_contracts
     from sysmlc.cli.progress import Progress
-    from sysmlc.logic.formats.lowering import rename_ambiguous_literals
     from sysmlc.synthesis import Limits
     from sysmlc.synthesis.decision import Options
 
@@ -113,10 +112,7 @@ def command(
     config = session.load_config((file,), settings)
     progress = Progress(settings.verbose)
     limits = Limits(nodes, LIMITS.memory, seconds or LIMITS.seconds)
-    contract_file = read_contracts(file, language, config, settings)
-    contract_file = replace(
-        contract_file, contracts=tuple(map(rename_ambiguous_literals, contract_file.contracts))
-    )
+    contract_file = _read_contracts(file, language, config, settings)
     options = Options(engine or "", limits, progress.note, is_explained=not is_decided_only)
     try:
         if is_played:
@@ -130,6 +126,18 @@ def command(
         session.fail(f"the library of decision diagrams cannot be loaded: {problem}")
     finally:
         progress.clear()
+
+
+def _read_contracts(
+    file: Path, language: str, config: "Config", settings: "Settings"
+) -> "ContractFile":
+    """Return the contracts of a file, in which no literal has the name of a variable."""
+    from sysmlc.cli.contract_files import read_contracts
+    from sysmlc.logic.formats.lowering import rename_ambiguous_literals
+
+    contract_file = read_contracts(file, language, config, settings)
+    contracts = tuple(map(rename_ambiguous_literals, contract_file.contracts))
+    return replace(contract_file, contracts=contracts)
 
 
 def _decide(
