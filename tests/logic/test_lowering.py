@@ -23,10 +23,12 @@ from sysmlc.logic.formats import lower
 from sysmlc.logic.formats.encodings import encode_as_bits, encode_as_integers
 from sysmlc.logic.formats.lowering import (
     TooManyValuesError,
-    eliminate_arithmetic,
     expand_comparison,
+    flatten_atom,
+    index_domains,
     rename_reserved,
     rewrite_atoms,
+    rewrite_contract_atoms,
     separate_steps,
 )
 from sysmlc.logic.formula import Apply, Const, Op, Var
@@ -34,6 +36,12 @@ from sysmlc.logic.infix import parse_formula
 from sysmlc.logic.printing import print_formula
 
 DOMAINS = {variable.name: variable.domain for variable in VARIABLES}
+
+
+def eliminate_arithmetic(contract):
+    """Rewrite comparisons so that each compares a variable with one of its values."""
+    variable_domains = index_domains(contract)
+    return rewrite_contract_atoms(contract, lambda atom: flatten_atom(atom, variable_domains))
 
 
 def index_of(variable, value):

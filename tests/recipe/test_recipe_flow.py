@@ -4,7 +4,8 @@ from random import Random
 
 import pytest
 
-from sysmlc.recipe.durations import compute_duration
+from sysmlc.recipe.costs import NodeCost
+from sysmlc.recipe.durations import compute_timing
 from sysmlc.recipe.expression import make_variable
 from sysmlc.recipe.flow import add_loop_nodes, find_cycles, list_forward_edges, sort_nodes
 from sysmlc.recipe.model import FlowEdge, FlowGraph, Node, Range
@@ -31,8 +32,9 @@ def build_graph(text: str, **bounds: int) -> FlowGraph:
 
 def compute_range(text: str, **bounds: int) -> tuple[float, float | None] | None:
     """Return the shortest and the longest time of a graph."""
-    duration = compute_duration(build_graph(text, **bounds), lambda node: Range(*TIMES[node.id[0]]))
-    return None if duration is None else (duration.min, duration.max)
+    graph = build_graph(text, **bounds)
+    timing = compute_timing(graph, lambda node: NodeCost(Range(*TIMES[node.id[0]])))
+    return None if timing is None else (timing.duration.min, timing.duration.max)
 
 
 @pytest.mark.parametrize(
@@ -56,7 +58,7 @@ def test_durations_equal_those_calculated_by_hand(text, bounds, expected):
 
 
 def test_a_graph_with_a_step_of_unknown_duration_has_no_duration():
-    assert compute_duration(build_graph("i>a a>f"), lambda node: None) is None
+    assert compute_timing(build_graph("i>a a>f"), lambda node: None) is None
 
 
 def list_run_times(graph: FlowGraph, limits: dict[str, int]) -> set[int]:

@@ -33,15 +33,13 @@ from sysmlc.recipe.model import (
 from sysmlc.recipe.tables import Tables
 from sysmlc.recipe.valuation import Variables
 
-Cost = Callable[[Node], Range | None]
-"""The duration of a node; None if it is unknown."""
 _NO_DURATION = Range(0, 0)
 
 
 # -- tasks, services and nodes -----------------------------------------------------------------
 
 
-def find_node_duration(node: Node, tables: Tables, machines: tuple[str, ...] = ()) -> Range | None:
+def _find_node_duration(node: Node, tables: Tables, machines: tuple[str, ...] = ()) -> Range | None:
     """Return the duration of a node on *machines*, or on any machine if none is given."""
     return _DURATIONS_BY_KIND.get(node.kind, _find_no_duration)(node, tables, machines)
 
@@ -81,7 +79,7 @@ def _compute_functions_duration(
 
 
 def _find_function_cost(node: Node, tables: Tables, machines: tuple[str, ...]) -> NodeCost | None:
-    duration = find_node_duration(node, tables, machines)
+    duration = _find_node_duration(node, tables, machines)
     if duration is None:
         return None
     # A service may hold a resource for functions that run at the same time.
@@ -117,7 +115,7 @@ def find_full_duration(derived: Derived) -> Range | None:
     """Return the duration of all executions of a task, those that end early included."""
     if derived.duration is None:
         return None
-    return join_ranges([derived.duration, *(end.duration for end in derived.ends)])
+    return _join_ranges([derived.duration, *(end.duration for end in derived.ends)])
 
 
 def find_task_timing(task: Task, tables: Tables, machines: tuple[str, ...]) -> "Timing | None":
@@ -135,7 +133,7 @@ def find_task_timing(task: Task, tables: Tables, machines: tuple[str, ...]) -> "
 
 
 def _find_service_cost(node: Node, tables: Tables, machines: tuple[str, ...]) -> NodeCost | None:
-    duration = find_node_duration(node, tables, machines)
+    duration = _find_node_duration(node, tables, machines)
     service = tables.find_service(node)
     if duration is None or service is None or service.kind != "machine":
         return None if duration is None else NodeCost(duration)
@@ -230,27 +228,14 @@ class Timing(Struct, frozen=True):
     @property
     def full_duration(self) -> Range:
         """The duration of all executions, those that end early included."""
-        return join_ranges([self.duration, *(end.duration for end in self.ends)])
+        return _join_ranges([self.duration, *(end.duration for end in self.ends)])
 
 
-def join_ranges(ranges: list[Range]) -> Range:
+def _join_ranges(ranges: list[Range]) -> Range:
     """Return the smallest range that contains all of *ranges*."""
     maxima = [span.max for span in ranges if span.max is not None]
     highest = max(maxima) if len(maxima) == len(ranges) else None
     return Range(min(span.min for span in ranges), highest)
-
-
-def compute_duration(graph: FlowGraph, cost: Cost) -> Range | None:
-    """Return the shortest and longest time of the executions of a graph without machines.
-
-    Return None for an unknown duration of a step, or if no final node is reachable.
-    """
-    timing = compute_timing(graph, lambda node: _to_node_cost(cost(node)))
-    return None if timing is None else timing.duration
-
-
-def _to_node_cost(duration: Range | None) -> NodeCost | None:
-    return None if duration is None else NodeCost(duration)
 
 
 def compute_timing(

@@ -57,7 +57,7 @@ def parse(source: Source, parser: Parser) -> None:
     DOCTYPE, or has an encoding that cannot be read.
     """
     try:
-        if not has_known_encoding(source.data):
+        if not _has_known_encoding(source.data):
             raise LookupError("unknown")
         parser.Parse(source.data, True)
     except expat.ExpatError as problem:
@@ -67,7 +67,7 @@ def parse(source: Source, parser: Parser) -> None:
         message = "it has a DOCTYPE, which is refused because entities can hide anything"
         raise SourceError(message, source.name, parser.CurrentByteIndex, Fault.REFUSED) from None
     except (ValueError, LookupError) as problem:
-        encoding = find_declared_encoding(source.data)
+        encoding = _find_declared_encoding(source.data)
         unreadable = f"its encoding '{encoding}' cannot be read: {problem}"
         message, offset = find_encoding_fault(source.data) or (unreadable, 0)
         raise SourceError(message, source.name, offset) from None
@@ -140,7 +140,7 @@ _NOT_FOR_FILES = frozenset(
 """Codecs of Python that are not made for files, and UTF-7, which can hide markup."""
 
 
-def find_declared_encoding(data: bytes) -> str:
+def _find_declared_encoding(data: bytes) -> str:
     """Return the encoding that the XML declaration names, or an empty text."""
     declaration = _DECLARATION.match(data[:1024])
     return declaration[1].decode("ascii") if declaration else ""
@@ -157,7 +157,7 @@ def find_codec(data: bytes) -> tuple[int, str]:
     for start, name in _UTF_16_STARTS:
         if data.startswith(start):
             return 0, name
-    return 0, _find_text_codec(find_declared_encoding(data)) or "latin-1"
+    return 0, _find_text_codec(_find_declared_encoding(data)) or "latin-1"
 
 
 def convert_to_utf8(source: Source) -> Source:
@@ -177,15 +177,15 @@ def convert_to_utf8(source: Source) -> Source:
     return Source(source.name, data, source.sha256)
 
 
-def has_known_encoding(data: bytes) -> bool:
+def _has_known_encoding(data: bytes) -> bool:
     """Whether the declaration names a known encoding of texts, or no encoding."""
-    return bool(_find_text_codec(find_declared_encoding(data)))
+    return bool(_find_text_codec(_find_declared_encoding(data)))
 
 
 def find_encoding_fault(data: bytes) -> tuple[str, int] | None:
     """Return why the bytes cannot be decoded, and the offset of the fault; None if they can."""
-    declared = find_declared_encoding(data)
-    if not has_known_encoding(data):
+    declared = _find_declared_encoding(data)
+    if not _has_known_encoding(data):
         return f"its encoding '{declared}' is unknown", data.find(declared.encode())
     mark, name = find_codec(data)
     try:

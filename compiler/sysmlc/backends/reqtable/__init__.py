@@ -51,7 +51,7 @@ class ReqTableBackend(Struct, frozen=True):
                 if text:
                     output.add(f"{path}.md", text, table.trace(), self.name)
         requirements = [row.element for table in tables.values() for row in table.rows]
-        report_open_requirements(graph, requirements, sink)
+        _report_open_requirements(graph, requirements, sink)
 
 
 BACKEND = ReqTableBackend()
@@ -131,7 +131,7 @@ UNVERIFIED = rule(
 )
 
 
-def report_open_requirements(graph: Graph, requirements: list[Element], sink: Sink) -> None:
+def _report_open_requirements(graph: Graph, requirements: list[Element], sink: Sink) -> None:
     """Report each requirement that nothing satisfies, and each that nothing verifies."""
     for open_rule, edge in ((UNSATISFIED, Edge.SATISFIES), (UNVERIFIED, Edge.VERIFIES)):
         closed = _find_closed(graph, requirements, edge)

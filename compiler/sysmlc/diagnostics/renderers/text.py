@@ -34,13 +34,13 @@ def render_text(report: Report, *, color: bool = False) -> str:
     blocks = ["\n".join(_format_block(finding, paint)) for finding in report.findings]
     if report.folded:
         blocks.append("\n".join(_format_folded(report.folded, paint)))
-    summary = format_summary(report)
+    summary = _format_summary(report)
     if report.folded:
         summary += "; --min-severity info shows each info"
     return "\n\n".join([*blocks, summary]) + "\n" if blocks else ""
 
 
-def format_summary(report: Report) -> str:
+def _format_summary(report: Report) -> str:
     """Return the line ``2 errors, 1 warning in 1 file``."""
     counts = report.summary()
     parts = [
@@ -167,7 +167,7 @@ def render_github(report: Report) -> str:
 
 
 def _join_lines(lines: list[str], report: Report) -> str:
-    return "\n".join([*lines, format_summary(report)]) + "\n" if lines else ""
+    return "\n".join([*lines, _format_summary(report)]) + "\n" if lines else ""
 
 
 def _format_line(finding: Finding, where: str) -> str:

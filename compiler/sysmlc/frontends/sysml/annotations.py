@@ -119,7 +119,7 @@ def lower_metadata(lowering: "Lowering", node: Node, owner: Element | None) -> N
             lambda: _connect_stereotype(lowering, application, definition)
         )
     for key, value in _iter_values(node):
-        set_tag(lowering, application, key, value)
+        _defer_tag(lowering, application, key, value)
 
 
 def _rename_owner(lowering: "Lowering", node: Node, owner: Element) -> None:
@@ -191,7 +191,7 @@ def _connect_stereotype(lowering: "Lowering", application: Element, definition: 
 # -- values of metadata ------------------------------------------------------------------------
 
 
-def set_tag(lowering: "Lowering", application: Element, key: str, value: Node) -> None:
+def _defer_tag(lowering: "Lowering", application: Element, key: str, value: Node) -> None:
     """Set a tagged value of an applied stereotype, once all elements exist."""
     lowering.defer_until_elements(lambda: _set_tag(lowering, application, f"tag.{key}", value))
 
@@ -263,7 +263,7 @@ def apply_levels(lowering: "Lowering", node: Node, element: Element) -> None:
             value = nodes.value_of(member)
             lowering.skipped.add(id(member))
             if value is not None:
-                set_tag(lowering, application, key, value)
+                _defer_tag(lowering, application, key, value)
 
 
 def _iter_level_members(node: Node) -> Iterator[tuple[Node, str]]:

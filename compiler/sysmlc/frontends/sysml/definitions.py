@@ -52,7 +52,7 @@ def lower_package(lowering: "Lowering", node: Node, owner: Element | None) -> No
         return
     kind, subkind = read_kind(node, Kind.PACKAGE)
     attributes = visibility_attributes(node) | foreign_attributes(node)
-    if members and all(map(external_attributes, members)):
+    if members and all(map(_external_attributes, members)):
         attributes["external"] = True
     name = nodes.name_of(node)
     package = lowering.add_element(node, kind, name, owner, subkind=subkind, **attributes)
@@ -154,7 +154,7 @@ def visibility_attributes(node: Node) -> dict[str, AttrValue]:
     return {"visibility": node.visibility} if node.visibility in ("private", "protected") else {}
 
 
-def external_attributes(node: Node) -> dict[str, AttrValue]:
+def _external_attributes(node: Node) -> dict[str, AttrValue]:
     """Return the attributes of an element that metadata marks as outside of the unit."""
     href = annotations.metadata_value(node, "External", "href")
     return {"external": True, "href": href} if href else {}
@@ -164,7 +164,7 @@ def foreign_attributes(node: Node) -> dict[str, AttrValue]:
     """Return the attributes that metadata preserves of an element of another notation."""
     if not nodes.shipped_metadata_of(node):
         return {}
-    return external_attributes(node) | _aml_attributes(node)
+    return _external_attributes(node) | _aml_attributes(node)
 
 
 def _aml_attributes(node: Node) -> dict[str, AttrValue]:

@@ -191,15 +191,6 @@ def _rename(formula: Formula, names: Mapping[str, str], literals: Mapping[str, s
 # -- comparisons -----------------------------------------------------------------------------------
 
 
-def eliminate_arithmetic(contract: Contract) -> Contract:
-    """Rewrite comparisons so that each compares a variable with one of its values.
-
-    Raises TooManyValuesError.
-    """
-    variable_domains = index_domains(contract)
-    return rewrite_contract_atoms(contract, lambda atom: flatten_atom(atom, variable_domains))
-
-
 def flatten_atom(atom: Formula, variable_domains: Domains) -> Formula:
     """Rewrite an atom into comparisons of variables with values. Raises TooManyValuesError."""
     match atom:
