@@ -57,10 +57,10 @@ class ActivitySummary:
         if stores:
             outputs = _list_variables("Its steps assign", [store.variable for store in stores])
         yield f"**Outputs.** {outputs}{self._describe_writes(stores)}"
-        order = " ".join(self._iter_order(ACTIVITY_REGION, "It"))
+        order = _join_sentences(self._iter_order(ACTIVITY_REGION, "It"))
         yield f"**Order of the steps.** {order or 'It has no steps.'}"
         for node in game.nodes:
-            inner = " ".join(self._iter_order(node.id, _name(node)))
+            inner = _join_sentences(self._iter_order(node.id, _name(node)))
             if node.kind is NodeKind.STRUCTURED and inner:
                 yield f"**Inside {_name(node)}.** {inner}"
         yield f"**Before.** {self._describe_start()}"
@@ -320,9 +320,13 @@ def _names_in(node: TokenNode) -> set[str]:
 
 def _name(node: TokenNode) -> str:
     """Return the name of a step; only a step without name needs its kind."""
-    return escape_markdown(
-        node.label.removeprefix("action ") if node.label.startswith("action '") else node.label
-    )
+    kind, quote, name = node.label.partition(" '")
+    has_plain_name = quote and kind in ("action", "structured node")
+    return escape_markdown(f"'{name}" if has_plain_name else node.label)
+
+
+def _join_sentences(sentences: Iterable[str]) -> str:
+    return " ".join(sentence[:1].upper() + sentence[1:] for sentence in sentences)
 
 
 def _list_variables(verb: str, listed: Sequence[Variable]) -> str:
