@@ -228,6 +228,68 @@ def test_an_output_without_attribute_changes_no_other_feature(decide):
 # -- wording -------------------------------------------------------------------------------------
 
 
+# -- values of called activities -------------------------------------------------------------------
+
+JOB = "perform action job {{ first start then a; perform action a references sense {{ {} }} {} }}"
+SENSE = (
+    "action sense { in attribute p : Boolean; out attribute r : Boolean := false; "
+    "first start then set; action set assign r := not p; then done; }"
+)
+
+
+def test_an_output_has_the_value_that_the_last_action_assigns_to_it(decide):
+    job = JOB.format("in attribute :>> p := false; out attribute :>> r = x;", "then done;")
+    verdicts = ["holds", "broken"]
+    assert decide(FLAGS + SENSE + job, "G (finished(a) -> X x)", "G !x") == verdicts
+
+
+def test_an_output_that_nothing_assigns_has_its_default(decide):
+    sense = SENSE.replace("assign r := not p", "")
+    job = JOB.format("in attribute :>> p := y; out attribute :>> r = x;", "then done;")
+    assert decide(FLAGS + sense + job, "G !x") == ["holds"]
+    sense = sense.replace(":= false", "")
+    assert decide(FLAGS + sense + job, "G !x") == ["broken"]
+
+
+def test_each_performance_has_its_own_variables(decide):
+    """The second performance starts with ``n`` false, as the first one."""
+    count = (
+        "action sense { attribute n : Boolean := false; first start then c; "
+        "action c assign n := not n; then p; action p assign x := n; then done; }"
+    )
+    job = JOB.format("", "then b; perform action b references sense; then done;")
+    formulas = ("G (finished(a) | finished(b) -> X x)", "G !x")
+    assert decide(FLAGS + count + job, *formulas) == ["holds", "broken"]
+
+
+def test_an_argument_is_a_parameter_of_the_activity_around_the_call(decide):
+    outer = (
+        "action outer { in attribute p : Boolean; out attribute r : Boolean; first start then i; "
+        "perform action i references sense { in attribute :>> p = p; out attribute :>> r = r; } "
+        "then done; }"
+    )
+    job = JOB.replace("sense", "outer").format(
+        "in attribute :>> p := y; out attribute :>> r = x;", "then done;"
+    )
+    assert decide(FLAGS + SENSE + outer + job, "G (finished(a) -> X x)", "G !x") == [
+        "holds",
+        "broken",
+    ]
+
+
+def test_a_feature_that_a_call_and_an_action_assign_has_the_values_of_both(decide):
+    output = "in attribute :>> p := false; out attribute :>> r = x;"
+    job = JOB.format(output, "then off; action off assign x := false; then done;")
+    formulas = ("G (finished(a) -> X x)", "G (finished(off) -> X !x)", "G !x")
+    assert decide(FLAGS + SENSE + job, *formulas) == ["holds", "holds", "broken"]
+
+
+def test_an_assigned_input_is_not_decided(decide):
+    sense = SENSE.replace("assign r := not p", "assign p := true; then t; action t assign r := p")
+    job = JOB.format("in attribute :>> p := y; out attribute :>> r = x;", "then done;")
+    assert decide(FLAGS + sense + job, "G !x") == ["not-decided"]
+
+
 def test_formulas_have_the_names_of_the_author(workspace, all_passes):
     cell = "part def Cell { part robot : Robot; perform action work { first start then take; "
     cell += "perform action take references robot.pick; then done; } }"

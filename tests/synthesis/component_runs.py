@@ -2,7 +2,8 @@
 
 A block has two Booleans, a state machine whose states perform activities, and may perform an
 activity by itself. A step of an activity is an elementary action, an assignment, a call of another
-activity, or a fork of two such steps and their join.
+activity, or a fork of two such steps and their join. An activity that only others call may have an
+input ``p`` and an output ``r``.
 """
 
 from collections.abc import Iterator
@@ -21,9 +22,12 @@ class Step(Struct, frozen=True):
     kind: str
     name: str
     feature: str = ""
-    value: bool = False
+    """What an assignment sets, or the output of a call."""
+    value: str = ""
     called: str = ""
     branches: tuple["Step", ...] = ()
+    argument: tuple[str, str] = ("", "")
+    """How the input of a call gets its value (``:=`` or ``=``), and the value."""
 
 
 class Move(Struct, frozen=True):
@@ -44,22 +48,25 @@ class Block(Struct, frozen=True):
     moves: tuple[Move, ...]
     own: str
     states: tuple[str, ...]
+    signatures: frozenset[str] = frozenset()
+    """The activities that have parameters."""
 
 
 def make_block(random: Random) -> Block:
     """Return a random block."""
     names = [f"a{number}" for number in range(3)]
+    signatures = frozenset(names[random.choice((1, 2, 3)) :])
     activities = {
         name: tuple(
-            _make_step(random, f"{name}s{position}", names[index + 1 :], can_fork=True)
+            _make_step(random, f"{name}s{position}", names[index + 1 :], signatures)
             for position in range(random.randint(1, 2))
         )
         for index, name in enumerate(names)
     }
     states = ("S0", "S1", "S2")[: random.randint(2, 3)]
     # Each activity is performed in one place, so that its name is unique; calls have copies.
-    roots = random.sample(names, 3)
-    do = {state: roots.pop() for state in states[:2] if random.random() < 0.7}
+    roots = random.sample([name for name in names if name not in signatures], 3 - len(signatures))
+    do = {state: roots.pop() for state in states[:2] if roots and random.random() < 0.7}
     moves = tuple(_make_move(random, states) for _ in range(random.randint(2, 3)))
     # A feature that nothing assigns counts as an input.
     moves += tuple(
@@ -68,10 +75,10 @@ def make_block(random: Random) -> Block:
         )
         for name in FEATURES
     )
-    own = roots.pop() if random.random() < 0.4 else ""
+    own = roots.pop() if roots and random.random() < 0.4 else ""
     used = _list_performed(activities, [*do.values(), own])
     performed = {name: activities[name] for name in names if name in used}
-    return Block(performed, do, moves, own, states)
+    return Block(performed, do, moves, own, states, signatures)
 
 
 def _list_performed(activities: dict[str, tuple[Step, ...]], roots: list[str]) -> set[str]:
@@ -86,16 +93,28 @@ def _list_performed(activities: dict[str, tuple[Step, ...]], roots: list[str]) -
     return used
 
 
-def _make_step(random: Random, name: str, others: list[str], *, can_fork: bool) -> Step:
-    kinds = ["elementary", "assign", *(["call"] if others else []), *(["fork"] * can_fork)]
-    kind = random.choice(kinds)
+def _make_step(
+    random: Random, name: str, others: list[str], signatures: frozenset, *, is_branch: bool = False
+) -> Step:
+    kinds = ["elementary", "assign", *(["call", "call"] if others else [])]
+    kind = random.choice([*kinds, *([] if is_branch else ["fork"])])
     if kind == "fork":
         branches = tuple(
-            _make_step(random, f"{name}{letter}", others, can_fork=False) for letter in "xy"
+            _make_step(random, f"{name}{letter}", others, signatures, is_branch=True)
+            for letter in "xy"
         )
         return Step(kind, name, branches=branches)
-    called = random.choice(others) if kind == "call" else ""
-    return Step(kind, name, random.choice(FEATURES), random.random() < 0.5, called)
+    has_parameters = name[:2] in signatures
+    # At most one action sets an output in a step.
+    targets = (*FEATURES, *(["r", "r"] if has_parameters and not is_branch else []))
+    values = ("true", "false", "b0", "not b1", *(["p", "not p", "r"] if has_parameters else []))
+    if kind != "call":
+        return Step(kind, name, random.choice(targets), random.choice(values))
+    called = random.choice(others)
+    if called not in signatures:
+        return Step(kind, name, called=called)
+    argument = random.choice((":=", "=")), random.choice(values)
+    return Step(kind, name, random.choice(("", *targets)), "", called, argument=argument)
 
 
 def _make_move(random: Random, states: tuple[str, ...]) -> Move:
@@ -115,7 +134,9 @@ def write_block(block: Block) -> str:
     lines += ["part def B {", *(f"attribute {name} : Boolean := false;" for name in FEATURES)]
     for name, steps in block.activities.items():
         own = "perform " if name == block.own else ""
-        lines += [f"{own}action {name} {{", *_write_steps(steps), "}"]
+        parameters = "in attribute p : Boolean; out attribute r : Boolean := false;"
+        lines += [f"{own}action {name} {{", *([parameters] if name in block.signatures else [])]
+        lines += [*_write_steps(steps), "}"]
     lines += ["exhibit state M {", "entry; then S0;"]
     for state in block.states:
         do = f" do {block.do[state]};" if state in block.do else ""
@@ -152,9 +173,12 @@ def _entry_of(step: Step) -> str:
 
 def _write_action(step: Step) -> str:
     if step.kind == "assign":
-        return f"action {step.name} assign {step.feature} := {str(step.value).lower()};"
+        return f"action {step.name} assign {step.feature} := {step.value};"
     if step.kind == "call":
-        return f"perform action {step.name} references {step.called};"
+        operator, value = step.argument
+        arguments = f"in attribute :>> p {operator} {value}; " if operator else ""
+        arguments += f"out attribute :>> r = {step.feature};" if step.feature else ""
+        return f"perform action {step.name} references {step.called} {{ {arguments} }}"
     return f"action {step.name};"
 
 
@@ -177,14 +201,24 @@ def list_actions(block: Block, *, is_elementary: bool = False) -> list[str]:
 
 # -- activities --------------------------------------------------------------------------------
 
-# A performance is a set of marks. A mark is a position and what is there: a token on the flow into
-# the step ("flow"), the performance of the step ("run", with the inner performance of a call), or a
-# token that waits for the join ("wait"). A position is the index of a step, and of a branch or -1.
+
+class Performance(Struct, frozen=True):
+    """A performance of an activity: its marks, and the values of its parameters.
+
+    A mark is a position and what is there: a token on the flow into the step ("flow"), the
+    performance of the step ("run", with the performance that a call has started), or a token that
+    waits for the join ("wait"). A position is the index of a step, and of a branch or -1. ``input``
+    is the value that was taken at the start, or None.
+    """
+
+    marks: frozenset
+    input: bool | None = None
+    output: bool = False
 
 
-def start(block: Block, name: str) -> frozenset:
+def start(input_value: bool | None = None) -> Performance:
     """Return the first state of a performance."""
-    return frozenset({(0, -1, "flow", None)})
+    return Performance(frozenset({(0, -1, "flow", None)}), input_value)
 
 
 def _step_at(steps: tuple[Step, ...], mark: tuple) -> Step:
@@ -192,9 +226,9 @@ def _step_at(steps: tuple[Step, ...], mark: tuple) -> Step:
     return step if mark[1] < 0 else step.branches[mark[1]]
 
 
-def list_running(block: Block, name: str, marks: frozenset, path: tuple) -> Iterator[tuple]:
+def list_running(block: Block, name: str, performance: Performance, path: tuple) -> Iterator[tuple]:
     """Yield the paths of the running actions of a performance, each with its step."""
-    for mark in marks:
+    for mark in performance.marks:
         if mark[2] == "run":
             step = _step_at(block.activities[name], mark)
             yield (*path, step.name), step
@@ -203,18 +237,19 @@ def list_running(block: Block, name: str, marks: frozenset, path: tuple) -> Iter
 
 
 def advance(
-    block: Block, name: str, marks: frozenset, path: tuple, ended: frozenset
-) -> tuple[frozenset, bool, list, set]:
-    """Return the next marks, whether the performance ends, its writes, and what ends inside.
+    block: Block, name: str, performance: Performance, path: tuple, ended: frozenset, scope: dict
+) -> tuple[Performance, bool, list, set]:
+    """Return the performance after a step, whether it ends, its writes, and what ends inside.
 
-    *ended* are the paths of the elementary actions that the environment ends in this step.
+    *ended* are the paths of the elementary actions that the environment ends in this step; *scope*
+    has the values of the features and of the parameters.
     """
-    steps = block.activities[name]
+    steps, marks = block.activities[name], performance.marks
     after, writes, finished = set(), [], set()
     for mark in marks:
         position, _, what, _ = mark
         if what == "run":
-            new_mark, new_writes, new_finished = _perform(block, steps, mark, path, ended)
+            new_mark, new_writes, new_finished = _perform(block, steps, mark, path, ended, scope)
             after.add(new_mark)
             writes += new_writes
             finished |= new_finished
@@ -222,37 +257,50 @@ def advance(
             waiting = [other for other in marks if other[0] == position and other[2] == "wait"]
             after.add(mark if len(waiting) < 2 else (position + 1, -1, "flow", None))
         else:
-            after |= _arrive(block, steps, mark)
+            after |= _arrive(steps, mark, scope)
     is_finished = any(position == len(steps) for position, *_ in after)
-    return frozenset() if is_finished else frozenset(after), is_finished, writes, finished
+    output = ([value for target, value in writes if target == "r"] or [performance.output])[0]
+    features = [(target, value) for target, value in writes if target != "r"]
+    marks = frozenset() if is_finished else frozenset(after)
+    return Performance(marks, performance.input, output), is_finished, features, finished
 
 
-def _arrive(block: Block, steps: tuple[Step, ...], mark: tuple) -> set[tuple]:
+def _arrive(steps: tuple[Step, ...], mark: tuple, scope: dict) -> set[tuple]:
     """Return the marks after a token on a flow has moved."""
     position, branch, _, _ = mark
     step = _step_at(steps, mark)
     if step.kind == "fork":
         return {(position, index, "flow", None) for index in range(2)}
-    content = start(block, step.called) if step.kind == "call" else None
+    operator, value = step.argument
+    input_value = evaluate(value, scope) if operator == ":=" else None
+    content = start(input_value) if step.kind == "call" else None
     return {(position, branch, "run", content)}
 
 
 def _perform(
-    block: Block, steps: tuple[Step, ...], mark: tuple, path: tuple, ended: frozenset
+    block: Block, steps: tuple[Step, ...], mark: tuple, path: tuple, ended: frozenset, scope: dict
 ) -> tuple[tuple, list, set]:
     """Return the mark after a step of a running action, what it writes and what ends in it."""
     position, branch, _, inner = mark
     step = _step_at(steps, mark)
     own_path = (*path, step.name)
     is_done = step.kind == "assign" or own_path in ended
-    content, finished = None, set()
-    writes = [(step.feature, step.value)] if step.kind == "assign" else []
+    content, finished, writes = None, set(), []
+    if step.kind == "assign":
+        writes.append((step.feature, evaluate(step.value, scope)))
     if step.kind == "call":
-        content, is_done, writes, finished = advance(block, step.called, inner, own_path, ended)
+        operator, value = step.argument
+        bound = evaluate(value, scope) if operator == "=" else inner.input
+        own_scope = {**scope, "p": bound, "r": inner.output}
+        content, is_done, writes, finished = advance(
+            block, step.called, inner, own_path, ended, own_scope
+        )
+        # The value of an output is written at the end, with what is assigned to it just now.
+        writes += [(step.feature, content.output)] if is_done and step.feature else []
     if not is_done:
         return (position, branch, "run", content), writes, finished
-    left = (position + 1, -1, "flow", None) if branch < 0 else (position, branch, "wait", None)
-    return left, writes, finished | {own_path}
+    following = (position + 1, -1, "flow", None) if branch < 0 else (position, branch, "wait", None)
+    return following, writes, finished | {own_path}
 
 
 # -- blocks ------------------------------------------------------------------------------------
@@ -263,15 +311,15 @@ class State(Struct, frozen=True):
 
     state: str
     values: tuple[bool, bool]
-    do: frozenset | None
+    do: Performance | None
     is_over: bool
-    own: frozenset | None
+    own: Performance | None
 
 
 def first_state(block: Block) -> State:
     """Return the state in the first step."""
-    do = start(block, block.do["S0"]) if "S0" in block.do else None
-    own = start(block, block.own) if block.own else None
+    do = start() if "S0" in block.do else None
+    own = start() if block.own else None
     return State("S0", (False, False), do, False, own)
 
 
@@ -279,8 +327,8 @@ def list_inputs(block: Block, state: State) -> Iterator[tuple[str, frozenset]]:
     """Yield the events and sets of ended actions that the environment may choose."""
     running = [
         (root, path)
-        for root, marks, name in _list_performances(block, state)
-        for path, step in list_running(block, name, marks, (root,))
+        for root, performance in _list_performances(block, state)
+        for path, step in list_running(block, root, performance, (root,))
         if step.kind == "elementary"
     ]
     paths = [path for _, path in running]
@@ -289,25 +337,25 @@ def list_inputs(block: Block, state: State) -> Iterator[tuple[str, frozenset]]:
     yield from product(("none", *events), map(frozenset, subsets))
 
 
-def _list_performances(block: Block, state: State) -> list[tuple[str, frozenset, str]]:
+def _list_performances(block: Block, state: State) -> list[tuple[str, Performance]]:
     performances = []
     if state.do is not None:
-        name = block.do[state.state]
-        performances.append((name, state.do, name))
+        performances.append((block.do[state.state], state.do))
     if state.own is not None:
-        performances.append((block.own, state.own, block.own))
+        performances.append((block.own, state.own))
     return performances
 
 
 def observe(block: Block, state: State, event: str, ended: frozenset) -> frozenset:
     """Return what is true in a step: state, values, event, running and finished actions."""
     facts = {f"state={state.state}", f"event={event}"}
-    facts |= {name for name, value in zip(FEATURES, state.values, strict=True) if value}
-    for root, marks, name in _list_performances(block, state):
+    values = dict(zip(FEATURES, state.values, strict=True))
+    facts |= {name for name in FEATURES if values[name]}
+    for root, performance in _list_performances(block, state):
         facts.add(f"running({root})")
-        _, is_finished, _, finished = advance(block, name, marks, (root,), ended)
+        _, is_finished, _, finished = advance(block, root, performance, (root,), ended, values)
         facts |= {f"finished({root})"} if is_finished else set()
-        for path, _ in list_running(block, name, marks, (root,)):
+        for path, _ in list_running(block, root, performance, (root,)):
             facts.add(f"running({'.'.join(path)})")
         facts |= {f"finished({'.'.join(path)})" for path in finished}
     return frozenset(facts)
@@ -318,8 +366,8 @@ def list_successors(block: Block, state: State, event: str, ended: frozenset) ->
     values = dict(zip(FEATURES, state.values, strict=True))
     do, do_ends, do_writes = state.do, False, []
     own, own_writes = state.own, []
-    for root, marks, name in _list_performances(block, state):
-        after, is_finished, writes, _ = advance(block, name, marks, (root,), ended)
+    for root, performance in _list_performances(block, state):
+        after, is_finished, writes, _ = advance(block, root, performance, (root,), ended, values)
         if root == block.own:
             own, own_writes = (None if is_finished else after), writes
         else:
@@ -332,7 +380,7 @@ def list_successors(block: Block, state: State, event: str, ended: frozenset) ->
                 successors.add(State(state.state, written, do, is_over, own))
             else:
                 target = move.target
-                new = start(block, block.do[target]) if target in block.do else None
+                new = start() if target in block.do else None
                 successors.add(State(target, written, new, False, own))
     return successors
 

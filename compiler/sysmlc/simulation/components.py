@@ -26,7 +26,6 @@ from sysmlc.logic.components.component import Component, Root
 from sysmlc.logic.components.derivation import ComponentBehaviour, describe_component
 from sysmlc.logic.components.machines import EVENT, PlacedMachine
 from sysmlc.logic.components.objects import ComponentError
-from sysmlc.logic.components.performances import PlacedWrite
 from sysmlc.logic.components.signals import derive_events
 from sysmlc.logic.contract import Conjunct, Owner, Variable
 from sysmlc.logic.domains import values
@@ -36,7 +35,13 @@ from sysmlc.logic.machines.interpreter import Valuation
 from sysmlc.logic.machines.machine import Vertex
 from sysmlc.logic.machines.reaction import Reaction, is_active
 from sysmlc.logic.machines.reader import MachineOptions
-from sysmlc.simulation.performances import PerformanceStep
+from sysmlc.simulation.performances import (
+    ParameterStep,
+    PerformanceStep,
+    bind_arguments,
+    evaluate_cases,
+    list_first_options,
+)
 
 MAX_RUNS = 10_000
 """Most runs followed at the same time if a diagram leaves choices."""
@@ -112,9 +117,11 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
                 for machine in self.parts.machines
             )
             for combination in product(*reactions):
-                for written in _choose_values(_merge_options(combination)):
-                    after = {**before, **written}
-                    for state in self._list_first_states(combination):
+                for state in self._list_first_states(combination):
+                    stored = list_first_options(self.parts.arguments, state.running)
+                    options = {**_merge_options(combination), **stored}
+                    for written in _choose_values(options):
+                        after = {**before, **written}
                         yield self._complete(
                             after, after, inputs, combination, state, is_first=True
                         )
@@ -165,11 +172,12 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
         state = token_game.state_of(self._tokens, now)
         step = PerformanceStep(self._tokens, state, now, evaluate.is_true)
         finished = step.list_finished()
-        writes = list(self._list_writes(finished, now))
+        parameters = ParameterStep(self.parts.arguments, now, finished)
+        writes = list(self._list_writes(finished, now, parameters))
         own_options: _Options = {}
-        for write, value in writes:
-            if self._root_of(write).machine is None:
-                own_options.setdefault(self._name(write), []).append(value)
+        for name, value, root in writes:
+            if root.machine is None:
+                own_options.setdefault(name, []).append(value)
         alternatives = [
             list(self._list_reactions(machine, now, finished, writes))
             for machine in self.parts.machines
@@ -178,44 +186,44 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
             options = _merge_options(combination)
             for name, choices in own_options.items():
                 options[name] = [*options.get(name, []), *choices]
-            states = list(self._list_states(state, now, finished, combination))
-            for written in _choose_values(options):
-                kept = {name: now[name] for name in self._features}
-                after = {**inputs, **kept, **written}
-                for following in states:
+            kept = {name: now[name] for name in self._features}
+            starts, stops = self._list_starts(state, now, finished, combination)
+            for following in self._list_states(state, now, starts, stops):
+                started = starts | (following.running - state.running)
+                stored = parameters.list_options(started)
+                for written in _choose_values({**options, **stored}):
+                    after = {**inputs, **kept, **written}
                     yield self._complete(
                         now, after, inputs, combination, following, finished=finished
                     )
 
     def _list_writes(
-        self, finished: set[str], now: Mapping[str, Literal]
-    ) -> Iterator[tuple[PlacedWrite, Literal]]:
+        self, finished: set[str], now: Mapping[str, Literal], parameters: ParameterStep
+    ) -> Iterator[tuple[str, Literal, Root]]:
+        """Yield what performances write: the variable of a feature, the value, the performance."""
+        slots = self.parts.tree.used_slots
+        roots = {root.id: root for root in self.parts.roots}
         for write in self.parts.performances.writes:
             if write.node in finished:
-                for condition, value in write.values:
-                    if evaluate.is_true(condition, now):
-                        yield write, evaluate.value_of(value, now)
-                        break
-
-    def _root_of(self, write: PlacedWrite) -> Root:
-        return next(root for root in self.parts.roots if root.id == write.root)
-
-    def _name(self, write: PlacedWrite) -> str:
-        return self.parts.tree.read_slot(write.slot).variable.name
+                value = evaluate_cases(write.values, now)
+                yield slots[write.slot].variable.name, value, roots[write.root]
+        for output, value in parameters.iter_outputs():
+            if isinstance(output.target, tuple):
+                yield slots[output.target].variable.name, value, roots[output.root]
 
     def _list_reactions(
         self,
         machine: PlacedMachine,
         now: Mapping[str, Literal],
         finished: set[str],
-        writes: list[tuple[PlacedWrite, Literal]],
+        writes: list[tuple[str, Literal, Root]],
     ) -> Iterator[_MachineReaction]:
         """Yield the reactions of a machine after what its do behaviours write in this step."""
         own_values = _select(machine, now)
         done_options: _Options = {}
-        for write, value in writes:
-            if self._root_of(write).machine is machine:
-                done_options.setdefault(self._name(write), []).append(value)
+        for name, value, root in writes:
+            if root.machine is machine:
+                done_options.setdefault(name, []).append(value)
         for root in self.parts.roots:
             if root.machine is machine and root.state is not None and root.state.done:
                 is_over = bool(now[root.over]) or root.id in finished
@@ -238,14 +246,14 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
         }
         return _MachineReaction(machine, reaction, {**done_options, **assigned})
 
-    def _list_states(
+    def _list_starts(
         self,
         state: token_game.State,
         now: Mapping[str, Literal],
         finished: set[str],
         reactions: tuple[_MachineReaction, ...],
-    ) -> Iterator[token_game.State]:
-        """Yield the states of the performances after one step with these reactions."""
+    ) -> tuple[set[str], set[str]]:
+        """Return the performances that start and those that are stopped in this step."""
         by_machine = {id(reaction.machine): reaction for reaction in reactions}
         starts: set[str] = set()
         stops: set[str] = set()
@@ -257,6 +265,16 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
             elif root.service and now[root.service]:
                 is_free = root.id not in state.running or root.id in finished
                 starts |= {root.id} if is_free else set()
+        return starts, stops
+
+    def _list_states(
+        self,
+        state: token_game.State,
+        now: Mapping[str, Literal],
+        starts: set[str],
+        stops: set[str],
+    ) -> Iterator[token_game.State]:
+        """Yield the states of the performances after one step."""
         worklist: list[list[int]] = [[]]
         states: dict[token_game.State, None] = {}
         while worklist:
@@ -305,7 +323,7 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
                     )
                     is_moved = entry.enters(root.state) or entry.leaves(root.state)
                     valuation[root.over] = is_over and not is_moved
-        return self._receive(valuation)
+        return bind_arguments(self.parts.arguments, self._receive(valuation))
 
     def _receive(self, valuation: Valuation) -> Valuation:
         """Return the valuation with the messages that are received in the step."""
@@ -318,7 +336,7 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
 def open_component(graph: Graph, subject: Element) -> ComponentPlayer | None:
     """Return the player of a block; None if not all that it does is known.
 
-    Parameters of calls and signals between parts are not played yet.
+    Signals between parts are not played yet.
     """
     name = query.component_name(graph, subject)
     try:
@@ -333,10 +351,7 @@ def open_component(graph: Graph, subject: Element) -> ComponentPlayer | None:
     except ComponentError:
         return None
     messages = dict(filter(None, map(_read_message, wiring.conjuncts)))
-    has_parameters = component.performances.locals or any(
-        copy.parameters for copy in component.performances.copies.values()
-    )
-    is_unclear = behaviour.gaps or has_parameters or component.performances.quiets
+    is_unclear = behaviour.gaps or component.performances.quiets
     if is_unclear or len(messages) < len(wiring.conjuncts):
         return None
     return ComponentPlayer(graph, component, behaviour, name, messages)

@@ -1,7 +1,14 @@
 """One step of the performances of a component, which others start and stop."""
 
+from collections.abc import Iterable, Iterator, Mapping
+
+from sysmlc.logic import domains, evaluate
 from sysmlc.logic.activities import interpreter as token_game
 from sysmlc.logic.activities.token_graph import Firing, NodeKind, TokenEdge, TokenNode
+from sysmlc.logic.components.arguments import Arguments, Output
+from sysmlc.logic.components.objects import Slot
+from sysmlc.logic.formula import Formula, Literal
+from sysmlc.logic.machines.interpreter import Valuation
 
 
 class PerformanceStep(token_game.TokenStep):
@@ -70,3 +77,96 @@ def _can_choose(node: TokenNode, branches: list[TokenEdge]) -> bool:
     else_count = sum(branch.is_else for branch in branches)
     guarded_count = len(branches) - else_count
     return else_count > 1 or (guarded_count > 1 and not node.exclusive)
+
+
+class ParameterStep:
+    """One step of the variables of called activities: arguments, outputs and stored attributes.
+
+    *finished* are the nodes that end in this step.
+    """
+
+    def __init__(
+        self, arguments: Arguments, now: Mapping[str, Literal], finished: set[str]
+    ) -> None:
+        self._arguments = arguments
+        self._now = now
+        self._finished = finished
+
+    def iter_outputs(self, target: Slot | str | None = None) -> Iterator[tuple[Output, Literal]]:
+        """Yield the outputs of the calls that end in this step, each with a possible value.
+
+        *target* selects the outputs that set one feature or variable.
+        """
+        for output in self._arguments.outputs:
+            if output.node in self._finished and target in (None, output.target):
+                for value in self._list_after(output.variable):
+                    now = {**self._now, output.variable: value}
+                    yield output, evaluate_cases(output.cases, now)
+
+    def list_options(self, started: Iterable[str]) -> dict[str, list[Literal]]:
+        """Return the values that each stored variable may have in the next step.
+
+        *started* are the nodes that start now. An attribute without a default may then have any
+        value.
+        """
+        options: dict[str, list[Literal]] = {}
+        for store, node in self._arguments.locals:
+            variable = store.variable
+            options[variable.name] = self._list_after(variable.name)
+            if node in started:
+                any_value = domains.values(variable.domain)
+                options[variable.name] = list(any_value if store.first is None else [store.first])
+        for argument in self._arguments.values:
+            if argument.is_bound:
+                continue
+            name = argument.variable.name
+            options.setdefault(name, [self._now[name]])
+            if argument.node in started:
+                options[name] = [evaluate_cases(argument.cases, self._now)]
+        return options
+
+    def _list_after(self, variable: str) -> list[Literal]:
+        """Return the values that a variable may have after the writes of this step."""
+        written = [
+            evaluate_cases(write.values, self._now)
+            for store, _ in self._arguments.locals
+            for write in store.writes
+            if store.variable.name == variable and write.node in self._finished
+        ]
+        written += [value for _, value in self.iter_outputs(variable)]
+        return written or [self._now[variable]]
+
+
+def list_first_options(arguments: Arguments, running: Iterable[str]) -> dict[str, list[Literal]]:
+    """Return the values that stored variables may have in the first step.
+
+    *running* are the nodes that run in it. Nothing reads a variable without value before its
+    activity starts, so that it has the least value until then.
+    """
+    options: dict[str, list[Literal]] = {}
+    for argument in arguments.values:
+        if not argument.is_bound:
+            options[argument.variable.name] = [domains.values(argument.variable.domain)[0]]
+    for store, node in arguments.locals:
+        any_value = domains.values(store.variable.domain)
+        any_value = any_value if node in running else any_value[:1]
+        options[store.variable.name] = list(any_value if store.first is None else [store.first])
+    return options
+
+
+def bind_arguments(arguments: Arguments, valuation: Valuation) -> Valuation:
+    """Return the valuation with the values of bound arguments (``=``)."""
+    for argument in arguments.values:
+        if argument.is_bound:
+            value = evaluate_cases(argument.cases, valuation)
+            valuation = {**valuation, argument.variable.name: value}
+    return valuation
+
+
+def evaluate_cases(cases: Iterable[tuple[Formula, Formula]], now: Mapping[str, Literal]) -> Literal:
+    """Return the value of the case whose condition is true."""
+    return next(
+        evaluate.value_of(value, now)
+        for condition, value in cases
+        if evaluate.is_true(condition, now)
+    )

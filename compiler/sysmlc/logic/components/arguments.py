@@ -1,23 +1,29 @@
-"""Arguments of calls: ``in`` values are taken at the start of an action, ``out`` values at its end.
+"""Variables of called activities: arguments, outputs, and what the activities store themselves.
 
-An argument with ``:=`` is latched at the start; one with ``=`` is bound during the whole
-performance (KerML distinguishes the initial value from the bound value).
+An ``in`` value is taken at the start of the call, an ``out`` value is written at its end. An
+argument with ``:=`` is latched at the start; one with ``=`` is bound during the whole performance
+(KerML distinguishes the initial value from the bound value). Each performance has variables of its
+own, which have their default values when it starts.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 
+from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.ir import Element, Kind
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
+from sysmlc.logic.activities.token_graph import Store
 from sysmlc.logic.components.objects import ComponentError, ComponentObject, ObjectTree, Slot
-from sysmlc.logic.components.performances import Copy, Performances
+from sysmlc.logic.components.performances import Copy, Performances, element_of_copy
+from sysmlc.logic.composition.structure import find_drawn_activity
 from sysmlc.logic.contract import (
     BooleanDomain,
     Class,
     Conjunct,
+    Domain,
+    EnumerationDomain,
     IntegerDomain,
     Owner,
     Source,
@@ -31,42 +37,269 @@ from sysmlc.logic.expressions.elaboration import (
 )
 from sysmlc.logic.expressions.expression import ExpressionError, name_of
 from sysmlc.logic.expressions.parsing import parse_expression
-from sysmlc.logic.feature_writes import find_bound_name
+from sysmlc.logic.feature_writes import WriterIndex, find_bound_name
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines.symbolic_path import split_by_range
+from sysmlc.logic.simplification import substitute
+
+Cases = list[tuple[Formula, Formula]]
+"""Values with their conditions, one of which holds."""
 
 
-@dataclass(slots=True)
-class Argument:
-    """An ``in`` parameter of a copy with the cases of its value."""
+class Argument(Struct, frozen=True):
+    """An ``in`` parameter of the call with a node, and the cases of its value."""
 
     variable: Variable
-    copy: Copy
-    cases: list[tuple[Formula, Formula]]
+    node: str
+    cases: Cases
     is_bound: bool
 
 
-@dataclass(slots=True)
+class Output(Struct, frozen=True):
+    """An ``out`` parameter of the call with a node, whose value is written when the call ends.
+
+    ``target`` is a feature, or a variable of the calling activity. ``cases`` are the cases of the
+    value, which is that of ``variable`` within the range of the target.
+    """
+
+    target: Slot | str
+    node: str
+    variable: str
+    cases: Cases
+    root: str
+
+
 class Arguments:
     """The values that pass between calls and the copies of what they call."""
 
-    values: list[Argument] = field(default_factory=list)
-    writes: list[tuple[Slot, str, Formula]] = field(default_factory=list)
-    """Slots that ``out`` parameters write, each with the node of the call and the value."""
-    origins: set[str] = field(default_factory=set)
-    """Ids of the call actions whose writes are described."""
-    gaps: dict[str, str] = field(default_factory=dict)
+    def __init__(self, tree: ObjectTree, performances: Performances, writers: WriterIndex) -> None:
+        """Read the arguments of all calls. Raises ComponentError."""
+        self._tree = tree
+        self._performances = performances
+        self.values: list[Argument] = []
+        """Arguments in the order in which bound values depend on one another."""
+        self.outputs: list[Output] = []
+        self.origins: set[str] = set()
+        """Ids of the call actions whose writes are described."""
+        self.gaps: dict[str, str] = {}
+        for copy in performances.copies.values():
+            for name, variable in tuple(copy.parameters.items()):
+                self._read_parameter(copy, name, variable)
+        # Inner calls first: what they write may be an output of the activity around them.
+        for copy in reversed(performances.copies.values()):
+            for name, pin in self._list_pins(copy).items():
+                if name not in copy.parameters and pin.attrs.get("direction") == "out":
+                    self._read_unassigned_output(copy, pin)
+        self._find_unread_writers(writers)
 
     @property
     def variables(self) -> list[Variable]:
-        """The variables of the described parameters."""
+        """The variables of the described ``in`` parameters."""
         return [argument.variable for argument in self.values]
 
+    @property
+    def locals(self) -> list[tuple[Store, str]]:
+        """The variables that performances store, each with the node that starts them."""
+        return self._performances.locals
+
+    # -- reading -----------------------------------------------------------------------------------
+
+    def _list_pins(self, copy: Copy) -> dict[str, Element]:
+        call = copy.caller.call
+        members = () if call is None else self._tree.graph.owned(call)
+        return {pin.name: pin for pin in members if pin.kind is Kind.PIN}
+
+    def _read_parameter(self, copy: Copy, name: str, variable: Variable) -> None:
+        if copy.caller.call is None:
+            return
+        element = self._tree.graph[variable.origin]
+        direction = element.attrs.get("direction", "in")
+        pin = self._list_pins(copy).get(name)
+        if element.kind is not Kind.PARAMETER:
+            if self._make_local(copy, name, variable) is None:
+                self.gaps[variable.name] = f"the check does not follow the value of '{name}'"
+        elif direction != "out":
+            self._add_argument(copy, pin, variable, is_input=direction == "in")
+        else:
+            self._make_local(copy, name, variable)
+            if pin is not None:
+                self._add_output(copy, pin, variable)
+
+    def _add_argument(
+        self, copy: Copy, pin: Element | None, variable: Variable, *, is_input: bool
+    ) -> None:
+        text = None if pin is None else pin.attrs.get("value")
+        # The graph has Booleans and numbers as values, in Python's words.
+        text = str(text).lower() if isinstance(text, bool) else text
+        cases = None if text is None else self._evaluate(copy, str(text), variable)
+        is_bound = pin is not None and pin.attrs.get("value_kind") != "initial"
+        if cases is None or not is_input or (is_bound and variable.owner is Owner.SYSTEM):
+            name = self._tree.graph[variable.origin].name
+            self.gaps[variable.name] = f"the check does not follow the value of '{name}'"
+            return
+        self._performances.inputs.pop(variable.name, None)
+        own = replace(variable, owner=Owner.SYSTEM)
+        self.values.append(Argument(own, copy.id, cases, is_bound))
+
+    def _read_unassigned_output(self, copy: Copy, pin: Element) -> None:
+        """Read an ``out`` parameter that the called action never assigns.
+
+        It has its default value, or any value, also if the parameter is not found.
+        """
+        try:
+            is_declared = self._find_own(copy, pin.name) is not None
+        except ComponentError:
+            is_declared = False
+        target = None if is_declared else self._find_target(copy, pin)
+        if target is None:
+            return
+        name = self._performances.name_variable(pin.name, copy.caller.prefix)
+        written = self._read_target(target)
+        value = replace(written, name=name, owner=Owner.ENVIRONMENT)
+        self._performances.inputs[name] = value
+        self._add_output(copy, pin, value)
+
+    def _add_output(self, copy: Copy, pin: Element, variable: Variable) -> None:
+        target = self._find_target(copy, pin)
+        if target is None:
+            return
+        cases = _fit_value(f.var(variable.name), variable.domain, self._read_target(target).domain)
+        if cases is not None:
+            assert copy.caller.call is not None
+            self.outputs.append(Output(target, copy.id, variable.name, cases, copy.root))
+            self.origins.add(copy.caller.call.id)
+
+    def _find_target(self, copy: Copy, pin: Element) -> Slot | str | None:
+        """Return the feature or the variable of the calling activity that an output sets."""
+        call, parent = copy.caller.call, copy.caller.parent
+        assert call is not None
+        assert parent is not None
+        path = find_bound_name(self._tree.graph, call, pin)
+        try:
+            name = None if path is None else name_of(parse_expression(path))
+        except ExpressionError:
+            return None
+        if name is None:
+            return None
+        variable = self._find_own(parent, name)
+        if variable is not None:
+            return self._make_local(parent, name, variable)
+        object_: ComponentObject | None = parent.caller.owner
+        type_name, _, own_name = name.rpartition("::")
+        while object_ is not None:
+            is_of_object = not type_name or object_.type_.name == type_name.rpartition("::")[2]
+            if is_of_object and own_name in self._tree.context(object_).features:
+                return self._tree.slot_of(object_.path, own_name)
+            object_ = object_.owner
+        return None
+
+    def _read_target(self, target: Slot | str) -> Variable:
+        if isinstance(target, tuple):
+            return self._tree.read_slot(target).variable
+        return next(store.variable for store, _ in self.locals if store.variable.name == target)
+
+    def _find_own(self, copy: Copy, name: str) -> Variable | None:
+        """Return the variable of a parameter or another attribute of an activity itself, or None.
+
+        An attribute that only arguments of inner calls name gets its variable here. Raises
+        ComponentError for one that has no finite values.
+        """
+        if name in copy.parameters:
+            return copy.parameters[name]
+        feature = self._tree.context_in(copy.caller.owner, copy.activity).features.get(name)
+        drawn = find_drawn_activity(self._tree.graph, copy.activity)
+        owner = None if feature is None else self._tree.graph.owner(feature.element)
+        if feature is None or owner not in (copy.activity, drawn):
+            return None
+        if feature.domain is None or feature.is_assumed:
+            raise ComponentError(f"'{name}' has no finite type")
+        own_name = self._performances.name_variable(feature.variable, copy.caller.prefix)
+        variable = Variable(own_name, Owner.ENVIRONMENT, feature.domain, feature.element.id)
+        self._performances.inputs[own_name] = copy.parameters[name] = variable
+        self._read_parameter(copy, name, variable)
+        return copy.parameters[name]
+
+    def _make_local(self, copy: Copy, name: str, variable: Variable) -> str | None:
+        """Let an activity store one of its attributes; return the variable, or None for inputs."""
+        if variable.owner is Owner.SYSTEM:
+            return variable.name
+        feature = self._tree.context_in(copy.caller.owner, copy.activity).features.get(name)
+        if feature is None or feature.direction in ("in", "inout") or feature.is_constant:
+            return None
+        self._performances.inputs.pop(variable.name, None)
+        own = replace(variable, owner=Owner.SYSTEM)
+        copy.parameters[name] = own
+        self.locals.append((Store(own, (), feature.default, local=True), copy.id))
+        return own.name
+
+    def _find_unread_writers(self, writers: WriterIndex) -> None:
+        """Record the variables of activities that something assigns in a way that is not read.
+
+        They may have any value in any step.
+        """
+        described = self.origins | {
+            element_of_copy(write.node) for store, _ in self.locals for write in store.writes
+        }
+        for copy in self._performances.copies.values():
+            for name, variable in copy.parameters.items():
+                element = self._tree.graph[variable.origin]
+                ids = {
+                    writer.id
+                    for writer in (
+                        *writers.iter_writers(element),
+                        *writers.iter_unclear_writers(element),
+                    )
+                }
+                if not ids <= described:
+                    reason = f"the check does not follow what is assigned to '{name}'"
+                    self.gaps.setdefault(variable.name, reason)
+
+    def _evaluate(self, copy: Copy, text: str, variable: Variable) -> Cases | None:
+        """Return the cases of the value of an argument; None if it is unknown."""
+        parent = copy.caller.parent
+        assert parent is not None
+        tree = self._tree
+
+        def find_symbol(name: str) -> Symbol | None:
+            own = self._find_own(parent, name)
+            if own is not None:
+                return Symbol(f.var(own.name), own.domain)
+            object_: ComponentObject | None = parent.caller.owner
+            while object_ is not None:
+                feature = tree.context(object_).features.get(name)
+                if feature is not None and feature.is_constant and feature.default is not None:
+                    return Symbol(f.const(feature.default), feature.domain)
+                if feature is not None:
+                    shared = tree.read_slot(tree.slot_of(object_.path, name)).variable
+                    return Symbol(f.var(shared.name), shared.domain)
+                object_ = object_.owner
+            return find_literal(tree.context(tree.root), name)
+
+        try:
+            result = elaborate_value(parse_expression(text), find_symbol, variable.domain)
+        except (ElaborationError, ExpressionError, ComponentError):
+            return None
+        fitted: Cases = []
+        for case in result.cases:
+            cases = _fit_value(case.value, result.domain, variable.domain)
+            if cases is None:
+                return None
+            fitted += [(f.both(case.condition, when), value) for when, value in cases]
+        return fitted
+
+    # -- steps -------------------------------------------------------------------------------------
+
     def derive(self, formulas: PerformanceFormulas) -> Iterator[Conjunct]:
-        """Yield when the parameters take their values."""
+        """Yield when parameters take their values, and the steps of stored variables."""
+        for store, node in self.locals:
+            if store.variable.name not in self.gaps:
+                yield from self._derive_local(formulas, store, node)
+        stored = {store.variable.name for store, _ in self.locals}
         for argument in self.values:
             origin, variable = argument.variable.origin, argument.variable
-            starts = formulas.begin_formula(argument.copy.id)
+            if variable.name in self.gaps:
+                continue
+            starts = formulas.begin_formula(argument.node)
             for case, value in argument.cases:
                 if argument.is_bound:
                     formula = f.implies(case, equals(variable, value))
@@ -74,10 +307,74 @@ class Arguments:
                     taken = equals(variable, value, is_next=True)
                     formula = f.implies(f.both(starts, case), taken)
                 yield Conjunct(formula, Class.SAFETY, origin, source=Source.DERIVED)
-            if not argument.is_bound:
+            if not argument.is_bound and variable.name not in stored:
                 kept = equals(variable, f.var(variable.name), is_next=True)
                 formula = f.implies(f.negate(starts), kept)
                 yield Conjunct(formula, Class.SAFETY, origin, source=Source.DERIVED)
+
+    def _derive_local(
+        self, formulas: PerformanceFormulas, store: Store, node: str
+    ) -> Iterator[Conjunct]:
+        """Yield the steps of a variable, which has its default value when its activity starts."""
+        variable, starts = store.variable, formulas.begin_formula(node)
+        writes = list(self._iter_writes(formulas, variable.name))
+        values = (f.both(when, equals(variable, value, is_next=True)) for when, value in writes)
+        is_kept = f.negate(f.either(*(when for when, _ in writes)))
+        keeps = f.both(is_kept, equals(variable, f.var(variable.name), is_next=True))
+        step = f.either(starts, *values, keeps)
+        yield Conjunct(step, Class.SAFETY, variable.origin, source=Source.DERIVED)
+        if store.first is not None and variable not in self.variables:
+            reset = equals(variable, f.const(store.first), is_next=True)
+            formula = f.implies(starts, reset)
+            yield Conjunct(formula, Class.SAFETY, variable.origin, source=Source.DERIVED)
+
+    def _iter_writes(
+        self, formulas: PerformanceFormulas, variable: str
+    ) -> Iterator[tuple[Formula, Formula]]:
+        """Yield the writes of a variable of an activity in this step, with their conditions."""
+        if variable in self.gaps:
+            return
+        for store, _ in self.locals:
+            for write in store.writes if store.variable.name == variable else ():
+                finishes = formulas.finish_formula(formulas.graph.node(write.node))
+                yield from ((f.both(finishes, when), value) for when, value in write.values)
+        for output in self.outputs:
+            if output.target == variable:
+                yield from self.iter_results(formulas, output)
+
+    def iter_results(
+        self, formulas: PerformanceFormulas, output: Output
+    ) -> Iterator[tuple[Formula, Formula]]:
+        """Yield what an output writes in this step, with the conditions.
+
+        The end of a call may be the end of an action inside that assigns the output: then its
+        value counts.
+        """
+        finishes = formulas.finish_formula(formulas.graph.node(output.node))
+        writes = list(self._iter_writes(formulas, output.variable))
+        is_kept = f.negate(f.either(*(when for when, _ in writes)))
+        for written, result in (*writes, (is_kept, f.var(output.variable))):
+            for when, value in output.cases:
+                substitution = {output.variable: result}
+                yield (
+                    f.both(finishes, written, substitute(when, substitution)),
+                    substitute(value, substitution),
+                )
+
+
+def _fit_value(value: Formula, domain: Domain, target: Domain) -> Cases | None:
+    """Return the cases of a value within the range of what gets it; None for other types."""
+    match domain, target:
+        case IntegerDomain(), IntegerDomain():
+            return [
+                (when, fitted) for when, fitted, _ in split_by_range(f.TRUE, value, target, domain)
+            ]
+        case EnumerationDomain(literals), EnumerationDomain(others):
+            return [(f.TRUE, value)] if set(literals) <= set(others) else None
+        case BooleanDomain(), BooleanDomain():
+            return [(f.TRUE, value)]
+        case _:
+            return None
 
 
 def equals(variable: Variable, value: Formula, *, is_next: bool = False) -> Formula:
@@ -86,126 +383,3 @@ def equals(variable: Variable, value: Formula, *, is_next: bool = False) -> Form
     if not isinstance(variable.domain, BooleanDomain):
         return f.eq(name, value)
     return f.fold_iff(name, value)
-
-
-def derive_arguments(tree: ObjectTree, performances: Performances) -> Arguments:
-    """Return the arguments of all calls. Raises ComponentError."""
-    arguments = Arguments()
-    for copy in performances.copies.values():
-        if copy.caller.call is None or copy.caller.parent is None:
-            continue
-        pins = {pin.name: pin for pin in tree.graph.owned(copy.caller.call) if pin.kind is Kind.PIN}
-        for name, variable in copy.parameters.items():
-            _read_parameter(tree, performances, arguments, copy, pins.get(name), variable)
-        for name, pin in pins.items():
-            if name not in copy.parameters and pin.attrs.get("direction") == "out":
-                _write_unknown_value(tree, performances, arguments, copy, pin)
-    return arguments
-
-
-def _write_unknown_value(
-    tree: ObjectTree, performances: Performances, arguments: Arguments, copy: Copy, pin: Element
-) -> None:
-    """Write the value of an ``out`` parameter that the called action never assigns."""
-    call = copy.caller.call
-    assert call is not None
-    path = find_bound_name(tree.graph, call, pin)
-    slot = None if path is None else _find_slot(tree, copy, path)
-    if slot is None:
-        return
-    name = performances.name_variable(pin.name, copy.caller.prefix)
-    value = replace(tree.read_slot(slot).variable, name=name, owner=Owner.ENVIRONMENT)
-    performances.inputs[name] = value
-    arguments.writes.append((slot, copy.id, f.var(name)))
-    arguments.origins.add(call.id)
-
-
-def _read_parameter(
-    tree: ObjectTree,
-    performances: Performances,
-    arguments: Arguments,
-    copy: Copy,
-    pin: Element | None,
-    variable: Variable,
-) -> None:
-    element = tree.graph[variable.origin]
-    direction = str(element.attrs.get("direction", "in"))
-    text = None if pin is None else pin.attrs.get("value")
-    call = copy.caller.call
-    assert call is not None
-    if direction == "out":
-        path = None if pin is None else find_bound_name(tree.graph, call, pin)
-        slot = None if path is None else _find_slot(tree, copy, path)
-        if slot is not None:
-            arguments.writes.append((slot, copy.id, f.var(variable.name)))
-            arguments.origins.add(call.id)
-        return
-    if variable.owner is Owner.SYSTEM:
-        return
-    cases = None if text is None else _evaluate(tree, copy, str(text), variable)
-    if pin is None or cases is None or direction != "in":
-        arguments.gaps[variable.name] = f"the check does not follow the value of '{element.name}'"
-        return
-    performances.inputs.pop(variable.name, None)
-    variable = replace(variable, owner=Owner.SYSTEM)
-    is_bound = pin.attrs.get("value_kind") != "initial"
-    arguments.values.append(Argument(variable, copy, cases, is_bound))
-
-
-def _find_slot(tree: ObjectTree, copy: Copy, text: str) -> Slot | None:
-    assert copy.caller.parent is not None
-    object_: ComponentObject | None = copy.caller.parent.caller.owner
-    try:
-        name = name_of(parse_expression(text)) or ""
-    except ExpressionError:
-        return None
-    if name in copy.caller.parent.parameters:
-        return None
-    type_name, _, own_name = name.rpartition("::")
-    while object_ is not None:
-        is_of_object = not type_name or object_.type_.name == type_name.rpartition("::")[2]
-        if is_of_object and own_name in tree.context(object_).features:
-            return tree.slot_of(object_.path, own_name)
-        object_ = object_.owner
-    return None
-
-
-def _evaluate(
-    tree: ObjectTree, copy: Copy, text: str, variable: Variable
-) -> list[tuple[Formula, Formula]] | None:
-    """Return the cases of the value of an argument; None if it is unknown."""
-    parent = copy.caller.parent
-    assert parent is not None
-
-    def find_symbol(name: str) -> Symbol | None:
-        own = parent.parameters.get(name)
-        if own is not None:
-            return Symbol(f.var(own.name), own.domain)
-        object_: ComponentObject | None = parent.caller.owner
-        while object_ is not None:
-            feature = tree.context(object_).features.get(name)
-            if feature is not None and feature.is_constant and feature.default is not None:
-                return Symbol(f.const(feature.default), feature.domain)
-            if feature is not None:
-                shared = tree.read_slot(tree.slot_of(object_.path, name)).variable
-                return Symbol(f.var(shared.name), shared.domain)
-            object_ = object_.owner
-        return find_literal(tree.context(tree.root), name)
-
-    try:
-        result = elaborate_value(parse_expression(text), find_symbol, variable.domain)
-    except (ElaborationError, ExpressionError, ComponentError):
-        return None
-    if type(result.domain) is not type(variable.domain):
-        return None
-    if not isinstance(variable.domain, IntegerDomain) or not isinstance(
-        result.domain, IntegerDomain
-    ):
-        return [(case.condition, case.value) for case in result.cases]
-    return [
-        (when, value)
-        for case in result.cases
-        for when, value, _ in split_by_range(
-            case.condition, case.value, variable.domain, result.domain
-        )
-    ]

@@ -12,6 +12,7 @@ from functools import cached_property
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
+from sysmlc.logic.components.arguments import Arguments
 from sysmlc.logic.components.machines import PlacedMachine, find_machines, place_machine
 from sysmlc.logic.components.objects import ComponentError, ComponentObject, ObjectTree
 from sysmlc.logic.components.performances import ActionPath, Caller, Performances
@@ -98,6 +99,11 @@ class Component:
         tokens = self.performances.build("", self.subject.id, (), ())
         starts = {root.id: root.start for root in self.roots}
         return PerformanceFormulas(tokens, starts, {root.id: root.stop for root in self.roots})
+
+    @cached_property
+    def arguments(self) -> Arguments:
+        """The values that pass between calls and what they call. Raises ComponentError."""
+        return Arguments(self.tree, self.performances, self.writers)
 
     # -- behaviours --------------------------------------------------------------------------------
 

@@ -14,7 +14,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.activities.assumptions import derive_assumptions
 from sysmlc.logic.activities.derivation import derive_run_update, derive_token_updates
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
-from sysmlc.logic.components.arguments import derive_arguments, equals
+from sysmlc.logic.components.arguments import equals
 from sysmlc.logic.components.component import Component, finish_name
 from sysmlc.logic.components.machines import (
     find_unread_features,
@@ -85,10 +85,12 @@ class _Description:
         self._machine_writes = [
             (machine, write) for machine in self.machines for write in machine.iter_writes()
         ]
-        self._outputs = derive_arguments(self.tree, self.performances)
+        self._arguments = component.arguments
         self._written = {write.slot for _, write in self._machine_writes}
         self._written |= {write.slot for write in self.performances.writes}
-        self._written |= {slot for slot, *_ in self._outputs.writes}
+        self._written |= {
+            output.target for output in self._arguments.outputs if isinstance(output.target, tuple)
+        }
 
     def _add(self, formula: Formula, class_: Class, origin: str, text: str = "") -> None:
         if formula != f.TRUE:
@@ -100,8 +102,8 @@ class _Description:
         self._derive_performances(formulas)
         for machine in self.machines:
             self._conjuncts += machine.iter_steps()
-        self._conjuncts += self._outputs.derive(formulas)
-        gaps = dict(self.performances.gaps) | self._outputs.gaps
+        self._conjuncts += self._arguments.derive(formulas)
+        gaps = dict(self.performances.gaps) | self._arguments.gaps
         writers = self._list_writers(formulas)
         gaps |= self._derive_updates(writers)
         gaps |= self._derive_starts(gaps)
@@ -181,33 +183,42 @@ class _Description:
         writers: dict[Slot, list[Writer]] = {}
         machine_of_root = {root.id: root.machine for root in self._roots}
         done_writes: dict[str, list[tuple[Slot, Formula, Formula]]] = {}
-        for write in self.performances.writes:
-            machine = machine_of_root.get(write.root)
-            finishes = formulas.finish_formula(formulas.graph.node(write.node))
-            for condition, value in write.values:
-                when = f.both(finishes, condition)
-                if machine is not None:
-                    done_writes.setdefault(machine.element.id + machine.owner.path, []).append(
-                        (write.slot, when, value)
-                    )
-                    later = [
-                        other.condition
-                        for owner, other in self._machine_writes
-                        if owner is machine and other.slot == write.slot
-                    ]
-                    when = f.both(when, f.negate(f.either(*later)))
-                writers.setdefault(write.slot, []).append(Writer(when, value, write.origin))
+        for slot, writer, root in self._iter_performed_writes(formulas):
+            machine = machine_of_root.get(root)
+            when = writer.condition
+            if machine is not None:
+                done_writes.setdefault(machine.element.id + machine.owner.path, []).append(
+                    (slot, when, writer.value)
+                )
+                later = [
+                    other.condition
+                    for owner, other in self._machine_writes
+                    if owner is machine and other.slot == slot
+                ]
+                when = f.both(when, f.negate(f.either(*later)))
+            writers.setdefault(slot, []).append(replace(writer, condition=when))
         for machine, machine_write in self._machine_writes:
             earlier = done_writes.get(machine.element.id + machine.owner.path, [])
             for condition, value in self._follow_writes(machine_write.value, earlier):
                 writers.setdefault(machine_write.slot, []).append(
                     Writer(f.both(machine_write.condition, condition), value, machine.element.id)
                 )
-        for slot, node, value in self._outputs.writes:
-            finishes = formulas.finish_formula(formulas.graph.node(node))
-            origin = formulas.graph.node(node).origin
-            writers.setdefault(slot, []).append(Writer(finishes, value, origin))
         return writers
+
+    def _iter_performed_writes(
+        self, formulas: PerformanceFormulas
+    ) -> Iterator[tuple[Slot, Writer, str]]:
+        """Yield each write of a feature by a performance, and the node of the performance."""
+        for write in self.performances.writes:
+            finishes = formulas.finish_formula(formulas.graph.node(write.node))
+            for condition, value in write.values:
+                writer = Writer(f.both(finishes, condition), value, write.origin)
+                yield write.slot, writer, write.root
+        for output in self._arguments.outputs:
+            if isinstance(output.target, tuple):
+                origin = formulas.graph.node(output.node).origin
+                for condition, value in self._arguments.iter_results(formulas, output):
+                    yield output.target, Writer(condition, value, origin), output.root
 
     def _follow_writes(
         self, value: Formula, earlier: list[tuple[Slot, Formula, Formula]]
@@ -246,7 +257,7 @@ class _Description:
                 initial = equals(feature.variable, Const(feature.default))
                 self._add(initial, Class.INIT, feature.variable.origin)
         for store, _ in self.performances.locals:
-            if store.first is not None:
+            if store.first is not None and store.variable.name not in gaps:
                 self._add(
                     equals(store.variable, Const(store.first)), Class.INIT, store.variable.origin
                 )
@@ -255,7 +266,7 @@ class _Description:
     def _derive_updates(self, writers: Mapping[Slot, list[Writer]]) -> dict[str, str]:
         """Add the next-state relation of each feature; return those with other writers."""
         index = self.component.writers
-        described = self._outputs.origins | {write.origin for write in self.performances.writes}
+        described = self._arguments.origins | {write.origin for write in self.performances.writes}
         described |= {id for machine in self.machines for id in machine.written}
         described -= self.component.released
         gaps = find_unread_features(self.tree, self.machines, self.component.writers)
@@ -295,7 +306,7 @@ class _Description:
     def _list_variables(
         self, formulas: PerformanceFormulas, events: list[Variable]
     ) -> dict[str, Variable]:
-        variables = [*events, *self.component.variables, *self._outputs.variables]
+        variables = [*events, *self.component.variables, *self._arguments.variables]
         for slot, feature in self.tree.used_slots.items():
             owner = Owner.SYSTEM if self._is_decided(slot) else Owner.ENVIRONMENT
             variables.append(replace(feature.variable, owner=owner))

@@ -177,7 +177,7 @@ class ObjectTree:
         """
         contexts = [self.context(object_)]
         if behaviour is not None:
-            contexts.insert(0, self._context_in(object_, behaviour))
+            contexts.insert(0, self.context_in(object_, behaviour))
         for context in contexts:
             for name, candidate in context.variables.items():
                 # A path comes first: an object around may have the feature, too.
@@ -202,7 +202,7 @@ class ObjectTree:
                     return path
         return ""
 
-    def _context_in(self, object_: ComponentObject, behaviour: Element) -> Context:
+    def context_in(self, object_: ComponentObject, behaviour: Element) -> Context:
         """Return what names mean in a behaviour of an object."""
         key = f"{object_.path} {behaviour.id}"
         if key not in self._contexts:

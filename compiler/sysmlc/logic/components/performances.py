@@ -66,6 +66,11 @@ class Copy:
     parameters: dict[str, Variable] = field(default_factory=dict)
     """Variables of the parameters by name."""
 
+    @property
+    def root(self) -> str:
+        """The node of the performance that contains the copy."""
+        return _COPY_SEPARATOR.join(self.id.split(_COPY_SEPARATOR)[:2])
+
 
 class PlacedWrite(Struct, frozen=True):
     """A write of a slot by a node of a performance; ``root`` is the id of the performance."""
@@ -274,9 +279,8 @@ class Performances:
         writes = [_rename_write(write, copy, ids) for write in store.writes]
         if slot is not None and self._tree.read_slot(slot).variable.name == name:
             for write in writes:
-                origin = write.node.rpartition(_COPY_SEPARATOR)[2]
-                root = _COPY_SEPARATOR.join(copy.id.split(_COPY_SEPARATOR)[:2])
-                self.writes.append(PlacedWrite(slot, write.node, write.values, origin, root))
+                origin = element_of_copy(write.node)
+                self.writes.append(PlacedWrite(slot, write.node, write.values, origin, copy.root))
         elif slot is None and name in self.inputs:
             variable = replace(self.inputs.pop(name), owner=Owner.SYSTEM)
             if element is not None:
@@ -361,6 +365,11 @@ class Performances:
         """Whether an activity is drawn with actions."""
         drawn = find_drawn_activity(self._graph, behaviour)
         return any(element.kind is Kind.ACTION for element in self._graph.owned(drawn))
+
+
+def element_of_copy(node: str) -> str:
+    """Return the id of the element of which a node of the token graph is a copy."""
+    return node.rpartition(_COPY_SEPARATOR)[2]
 
 
 def _is_call(element: Element) -> bool:

@@ -78,6 +78,8 @@ class _StoreTracker:
         self.assigned: dict[str, list[FeatureWrite]] = {}
         self.writes: dict[str, list[Write]] = {}
         self.refusals: dict[str, Refusal] = {}
+        self.set_by_calls: set[str] = set()
+        """Variables that outputs of calls set, too."""
         self.out_of_range_actions: set[str] = set()
         """Ids of actions that assign a value that is always out of range."""
         self.other_writers: dict[str, Element | None] = {}
@@ -101,6 +103,8 @@ class _StoreTracker:
                 stops.setdefault(name, []).extend(
                     when for when, _, is_bound in outcomes if is_bound
                 )
+            elif assignment.is_bound:
+                self.set_by_calls.add(name)
             else:
                 cases_of.pop(name, None)
                 reason = f"'{assignment.text}' is unknown, or has too many cases"
@@ -231,6 +235,8 @@ class _StoreTracker:
     def _find_refusal(self, name: str) -> Refusal | None:
         """Return the reason why the contract cannot track the variable, or None."""
         refusal = self._find_own_refusal(name)
+        if refusal is None and name in self.set_by_calls:
+            return UNKNOWN_VALUE
         if refusal is not None or self._is_local(self.features[name]):
             return refusal
         writer = self._find_other_writer(self.features[name])
