@@ -193,9 +193,7 @@ def test_the_reference_interpreter_satisfies_the_contracts(part):
         pipeline.run(graph, Sink())
         for token_graph in graph.derived(TokenGraph):
             contract = derive_repeated(token_graph)
-            run_interpreter(
-                replace(token_graph, handshake=None), contract, random.Random(seed)
-            )
+            run_interpreter(replace(token_graph, handshake=None), contract, random.Random(seed))
 
 
 def run_interpreter(token_graph, contract, dice):

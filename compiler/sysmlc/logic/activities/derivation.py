@@ -96,7 +96,9 @@ def list_variables(graph: TokenGraph) -> tuple[Variable, ...]:
     inputs = (name for name in (handshake.start, handshake.stop) if name) if handshake else ()
     outputs = (handshake.running, handshake.finished) if handshake else ()
     token_variables = [(edge.variable, edge.origin) for edge in graph.edges]
-    region_variables = [(name, _origin_of(graph, region)) for region, name in _list_completions(graph)]
+    region_variables = [
+        (name, _origin_of(graph, region)) for region, name in _list_completions(graph)
+    ]
     system_variables = (
         Variable(name, Owner.SYSTEM, BooleanDomain(), origin)
         for name, origin in (

@@ -10,7 +10,7 @@ from functools import cache
 
 from msgspec.structs import replace
 
-from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.concurrency import ConcurrencyRelation
 from sysmlc.logic.activities.step_formulas import StepFormulas
@@ -33,8 +33,12 @@ _Use = tuple[Edge, Element]
 def name_handshake(names: Names, activity: str) -> Handshake:
     """Return a handshake with all its variables, for an activity of this name."""
     base = identifier(activity or "activity")
-    roles = ("running", "finished", "start", "stop")
-    return Handshake(*(names.new(f"{role}_{base}") for role in roles))
+    return Handshake(
+        names.new(f"running_{base}"),
+        names.new(f"finished_{base}"),
+        names.new(f"start_{base}"),
+        names.new(f"stop_{base}"),
+    )
 
 
 def complete_handshakes(graph: Graph, games: list[TokenGraph]) -> Iterator[TokenGraph]:
@@ -140,8 +144,7 @@ class _Performers:
         if games is None:
             return True
         return any(
-            self._is_cut_off(game, game.node(call.id))
-            or self.can_be_stopped(game.activity, around)
+            self._is_cut_off(game, game.node(call.id)) or self.can_be_stopped(game.activity, around)
             for game in games
         )
 

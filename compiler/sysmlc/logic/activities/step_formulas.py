@@ -271,7 +271,6 @@ class StepFormulas:
             self.start_formula(node), f.negate(self.cleared_formula(node.region, {node.id}))
         )
 
-
     def _restart_formula(self) -> Formula:
         """The activity starts in the next step. A start while it runs has no effect."""
         handshake = self.graph.handshake
