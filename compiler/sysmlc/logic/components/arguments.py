@@ -211,6 +211,8 @@ class Arguments:
         owner = None if feature is None else self._tree.graph.owner(feature.element)
         if feature is None or owner not in (copy.activity, drawn):
             return None
+        if self._performances.find_slot(copy, feature.element, feature.variable) is not None:
+            return None
         if feature.domain is None or feature.is_assumed:
             raise ComponentError(f"'{name}' has no finite type")
         own_name = self._performances.name_variable(feature.variable, copy.caller.prefix)
