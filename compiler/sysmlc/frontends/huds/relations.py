@@ -29,6 +29,9 @@ def add_relations(file: _FileLowering, record: Record, element: Element | None) 
         return
     for relation, id in record.relations:
         edge = v.RELATIONS.get(relation)
+        if edge is Edge.TYPED_BY and element.kind is Kind.LIFELINE and record.targets("represents"):
+            # UML: only the represented element has a type, which MTIP repeats.
+            continue
         if edge is not None:
             kind = v.TARGET_KINDS.get(relation, Kind.CLASS)
             _refer(file, edge, element.id, [id], kind)

@@ -10,7 +10,7 @@ from sysmlc.frontends.sysml.definitions import (
     visibility_attributes,
 )
 from sysmlc.ir import AttrValue, Edge, Element, Kind, list_items
-from sysmlc.ir.query import generals
+from sysmlc.ir.query import BEHAVIORS, generals
 from sysmlc.language.tree import Node, Relation
 
 if TYPE_CHECKING:
@@ -142,8 +142,14 @@ def _connect_relation(lowering: "Lowering", feature: Element, relation: Relation
 
 
 def _connect_subsetted(lowering: "Lowering", feature: Element, target: Node | None) -> None:
-    """Connect a feature of the owner, or an inherited one, as subsetted; another as referenced."""
+    """Connect a feature of the owner, or an inherited one, as subsetted; another as referenced.
+
+    A behaviour of UML is no feature but a type.
+    """
     subsetted = lowering.element_of(target)
+    if subsetted is not None and subsetted.kind in BEHAVIORS and feature.kind is Kind.PROPERTY:
+        lowering.graph.connect(Edge.TYPED_BY, feature, subsetted)
+        return
     classifier = lowering.graph.owner(feature)
     declaring = None if subsetted is None else lowering.graph.owner(subsetted)
     if subsetted is None or classifier is None or declaring is None:

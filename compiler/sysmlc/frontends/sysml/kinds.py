@@ -48,6 +48,7 @@ KINDS_BY_METADATA = {
     "class": Kind.CLASS,
     "signal": Kind.SIGNAL,
     "profile": Kind.PROFILE,
+    "package": Kind.PACKAGE,
     "data-store": Kind.DATA_STORE,
     "object-node": Kind.OBJECT_NODE,
     "property": Kind.PROPERTY,
