@@ -33,6 +33,7 @@ from sysmlc.logic.contract import (
     Owner,
     Variable,
     drop_trivial,
+    equals,
 )
 from sysmlc.logic.formula import Const, Formula
 from sysmlc.logic.printing import print_formula, print_literal
@@ -313,7 +314,7 @@ def _derive_initial_value(store: Store) -> Iterator[Conjunct]:
     """Yield the initial value of a variable, if the model gives one."""
     if store.first is not None:
         text = f"At the start '{store.variable.name}' is {print_literal(store.first)}."
-        value = _equality(store, Const(store.first), is_next=False)
+        value = equals(store.variable, Const(store.first))
         yield Conjunct(value, Class.INIT, store.variable.origin, text)
 
 
@@ -336,10 +337,10 @@ def _derive_store_updates(formulas: StepFormulas, store: Store) -> Iterator[Conj
         )
     origin, name = store.variable.origin, store.variable.name
     if store.first is not None and restart != f.FALSE:
-        value = _equality(store, Const(store.first), is_next=True)
+        value = equals(store.variable, Const(store.first), is_next=True)
         text = f"'{name}' is {print_literal(store.first)} whenever {formulas.graph.label} starts."
         yield Conjunct(f.implies(restart, value), Class.SAFETY, origin, text)
-    unchanged = _equality(store, f.var(name), is_next=True)
+    unchanged = equals(store.variable, f.var(name), is_next=True)
     frame = f.implies(f.negate(f.either(*writing, restart)), unchanged)
     text = f"'{name}' keeps its value until an action writes another."
     yield Conjunct(frame, Class.SAFETY, origin, text)
@@ -370,7 +371,7 @@ def _derive_write(
     node, name = formulas.graph.node(write.node), store.variable.name
     for condition, value in write.values:
         write_case = f.both(write_formula, condition)
-        result = f.either(_equality(store, value, is_next=True), *simultaneous)
+        result = f.either(equals(store.variable, value, is_next=True), *simultaneous)
         cause = f"{node.label} is done{_describe_condition(condition)}"
         text = f"When {cause}, '{name}' becomes {_describe_value(write, value)}."
         yield Conjunct(f.implies(write_case, result), Class.SAFETY, node.origin, text)
@@ -388,14 +389,4 @@ def _write_formulas(formulas: StepFormulas, store: Store, write: Write) -> Itera
     """Yield, for each value, the formula that the write happens now and assigns the value."""
     write_formula = formulas.finish_formula(formulas.graph.node(write.node))
     for condition, value in write.values:
-        yield f.both(write_formula, condition, _equality(store, value, is_next=True))
-
-
-def _equality(store: Store, value: Formula, *, is_next: bool) -> Formula:
-    name = f.var(store.variable.name)
-    variable = f.prime(name) if is_next else name
-    if not isinstance(store.variable.domain, BooleanDomain):
-        return f.eq(variable, value)
-    if isinstance(value, Const):
-        return variable if value.value else f.negate(variable)
-    return f.fold_iff(variable, value)
+        yield f.both(write_formula, condition, equals(store.variable, value, is_next=True))

@@ -28,6 +28,7 @@ from sysmlc.logic.contract import (
     Owner,
     Source,
     Variable,
+    equals,
 )
 from sysmlc.logic.expressions.context import find_literal
 from sysmlc.logic.expressions.elaboration import (
@@ -377,11 +378,3 @@ def _fit_value(value: Formula, domain: Domain, target: Domain) -> Cases | None:
             return [(f.TRUE, value)]
         case _:
             return None
-
-
-def equals(variable: Variable, value: Formula, *, is_next: bool = False) -> Formula:
-    """Return the formula that a variable has a value, in this step or the next one."""
-    name = f.prime(f.var(variable.name)) if is_next else f.var(variable.name)
-    if not isinstance(variable.domain, BooleanDomain):
-        return f.eq(name, value)
-    return f.fold_iff(name, value)

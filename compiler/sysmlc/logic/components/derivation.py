@@ -14,7 +14,6 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.activities.assumptions import derive_assumptions
 from sysmlc.logic.activities.derivation import derive_run_update, derive_token_updates
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
-from sysmlc.logic.components.arguments import equals
 from sysmlc.logic.components.component import Component, finish_name
 from sysmlc.logic.components.machines import PlacedMachine, find_unread_features
 from sysmlc.logic.components.names import PlaceInBehaviour, iter_places
@@ -28,6 +27,7 @@ from sysmlc.logic.contract import (
     Owner,
     Source,
     Variable,
+    equals,
 )
 from sysmlc.logic.feature_writes import find_label
 from sysmlc.logic.formula import Const, Formula
