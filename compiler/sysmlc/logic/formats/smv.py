@@ -48,7 +48,7 @@ from sysmlc.logic.formats.writing import (
     print_ltl_conjunct,
     remove_primes,
 )
-from sysmlc.logic.formula import Apply, Formula, Op, Var
+from sysmlc.logic.formula import Apply, Formula, Literal, Op, Var
 from sysmlc.logic.identifiers import Names
 from sysmlc.logic.infix import FormulaReader, Term
 from sysmlc.logic.syntax import (
@@ -311,5 +311,10 @@ def _is_atom(formula: Formula) -> bool:
     return is_comparison or isinstance(formula, Var)
 
 
-_NOTATION = _SmvNotation({**LTL_WORDS, Op.RELEASE: "V"}, add_next_operator)
-_MODEL = Notation(LTL_WORDS, lambda name: f"next({name})")
+def _print_literal(value: Literal) -> str:
+    """Return a value; NuSMV takes ``true`` for the name of a variable."""
+    return str(value).upper() if isinstance(value, bool) else str(value)
+
+
+_NOTATION = _SmvNotation({**LTL_WORDS, Op.RELEASE: "V"}, add_next_operator, _print_literal)
+_MODEL = Notation(LTL_WORDS, lambda name: f"next({name})", _print_literal)
