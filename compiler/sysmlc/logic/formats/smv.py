@@ -100,7 +100,8 @@ _KEYWORDS = frozenset(
         "integer real word word1 bool signed unsigned extend resize sizeof uwconst swconst EX AX "
         "EF AF EG AG E F O G H X Y Z A U S V T BU EBF ABF EBG ABG case esac mod next init union "
         "in xor xnor self TRUE FALSE count abs max min COMPID NEXTWFF READ WRITE CONSTARRAY "
-        "Integer Real Word toint floor typeof FUN PARSYNTH pi sin cos exp tan ln clock time noncontinuous",
+        "Integer Real Word toint floor typeof FUN PARSYNTH pi sin cos exp tan ln clock time "
+        "noncontinuous",
     )
 )
 _RESERVED = _KEYWORDS | {*SYNTAX.prefix, *SYNTAX.infix, *BOOLEANS}
