@@ -183,6 +183,8 @@ def test_the_value_of_a_slot_has_the_type_that_mtip_states(dtype, texts, value):
         ("true", "String", {"default": "true"}),
         ("red", "c", {"default": "red", "default_instance": "r"}),
         ("green", "c", {"default": "green", "default_language": ""}),
+        ("spare", "b", {"default": "spare", "default_instance": "i"}),
+        ("twin", "b", {"default": "twin", "default_language": ""}),
         ("2 + 1", "Integer", {"default": "2 + 1", "default_language": ""}),
         ("1E999", "Real", {"default": "1E999", "default_language": ""}),
     ],
@@ -197,9 +199,42 @@ def test_a_default_is_the_literal_that_its_text_denotes_for_the_type(text, type,
             ),
             data("Enumeration", "c", name="Colour"),
             data("EnumerationLiteral", "r", "c", "red"),
+            data("InstanceSpecification", "i", name="spare", classifiedBy="b"),
+            data("InstanceSpecification", "t1", name="twin", classifiedBy="b"),
+            data("InstanceSpecification", "t2", name="twin", classifiedBy="b"),
         )
     )
     assert read.graph["p"].attrs == attrs
+
+
+@pytest.mark.parametrize(
+    ("default", "types", "findings"),
+    [
+        ("false", ["Boolean"], []),
+        ("", [], ["SM181 1 elements of type 'PrimitiveValueType' not read"]),
+        ("1", [], ["SM181 1 elements of type 'PrimitiveValueType' not read"]),
+    ],
+)
+def test_a_type_that_mtip_does_not_name_is_boolean_if_the_default_is(default, types, findings):
+    text = attribute("defaultValue", default)
+    record = data("ValueProperty", "p", "b", "free", text).replace(
+        "</relationships>",
+        "<typedBy><id></id><type>PrimitiveValueType</type></typedBy></relationships>",
+    )
+    read = Read(packet(data("Block", "b", name="Belt"), record))
+    assert [type.name for type in read.graph.targets(read.graph["p"], Edge.TYPED_BY)] == types
+    assert read.findings == findings
+
+
+def test_the_classifier_of_a_value_type_is_its_general():
+    read = Read(
+        packet(
+            data("ValueType", "v", name="Speed", classifiedBy="Real"),
+            data("InstanceSpecification", "i", name="slow", classifiedBy="v"),
+        )
+    )
+    assert [t.name for t in read.graph.targets(read.graph["v"], Edge.SPECIALIZES)] == ["Real"]
+    assert read.graph.targets(read.graph["i"], Edge.INSTANCE_OF) == [read.graph["v"]]
 
 
 def test_a_slot_with_a_verdict_of_sysml_refers_to_the_literal_of_the_library():

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property
 
 from sysmlc.diagnostics import Coverage, Place, Rule, Severity, Sink, Subject, Verdict, rule
 from sysmlc.frontends.base import read_or_report
@@ -126,6 +127,18 @@ class FileLowering:
         graph_id = self.graph_id(id)
         return graph_id if graph_id in self.graph else f"MTIP:not-exported#{id}"
 
+    @cached_property
+    def instances_by_name(self) -> dict[tuple[str, str], list[str]]:
+        """Graph ids of literals and instances by the id of their enumeration or type, and name."""
+        index: dict[tuple[str, str], list[str]] = {}
+        for record in self.by_id.values():
+            mapped = v.KINDS.get(record.local_type)
+            owns_literal = mapped is not None and mapped[0] is Kind.ENUMERATION_LITERAL
+            for type_id in record.targets("hasParent" if owns_literal else "classifiedBy"):
+                key = type_id, record.value("name")
+                index.setdefault(key, []).append(self.graph_id(record.id))
+        return index
+
     def _is_in_other_file(self, id: str) -> bool:
         element = self.graph.get(id)
         return element is not None and element.source != self.file
@@ -225,6 +238,11 @@ class FileLowering:
         self.verdicts[record.ordinal] = Verdict.APPROXIMATED
         key = LOOSE_END.code, record.local_type
         self._losses.setdefault(key, []).append(record)
+
+    def mark_unnamed_type(self, record: Record) -> None:
+        """Store that the type of a feature is primitive, but not which type it is."""
+        self.verdicts[record.ordinal] = Verdict.APPROXIMATED
+        self._losses.setdefault((UNSUPPORTED.code, "PrimitiveValueType"), []).append(record)
 
     def report_losses(self, sink: Sink) -> None:
         """Report the records that are not wholly read, once for each rule and type or id."""

@@ -16,9 +16,14 @@ class _FileLowering(Protocol):
     graph: Graph
     by_id: dict[str, Record]
 
+    @property
+    def instances_by_name(self) -> dict[tuple[str, str], list[str]]: ...
+
     def target_id(self, id: str) -> str: ...
 
     def mark_loose_end(self, record: Record, flow: Element, edge: Edge) -> None: ...
+
+    def mark_unnamed_type(self, record: Record) -> None: ...
 
 
 def add_relations(file: _FileLowering, record: Record, element: Element | None) -> None:
@@ -29,16 +34,31 @@ def add_relations(file: _FileLowering, record: Record, element: Element | None) 
         return
     for relation, id in record.relations:
         edge = v.RELATIONS.get(relation)
-        if edge is Edge.TYPED_BY and element.kind is Kind.LIFELINE and record.targets("represents"):
-            # UML: only the represented element has a type, which MTIP repeats.
-            continue
-        if edge is not None:
+        if edge is Edge.TYPED_BY and not id:
+            _add_unnamed_type(file, record, element)
+        elif edge is Edge.INSTANCE_OF and element.kind not in v.INSTANCES:
+            # MTIP repeats the general of a value type as its classifier.
+            _refer(file, Edge.SPECIALIZES, element.id, [id])
+        elif edge is not None:
             kind = v.TARGET_KINDS.get(relation, Kind.CLASS)
             _refer(file, edge, element.id, [id], kind)
     if element.kind in v.ENDS:
         _add_ends(file, record, element)
     if element.kind in _COMPLETIONS:
         _COMPLETIONS[element.kind](file, record, element)
+
+
+def _add_unnamed_type(file: _FileLowering, record: Record, feature: Element) -> None:
+    """Add the type of a feature whose primitive type MTIP does not name.
+
+    In the table of MTIP 2022x that has the names of primitive types by their ids, the id of Boolean
+    is misspelt, and those of Complex and Number are missing. A default of true or false shows that
+    the type is Boolean; otherwise the feature has no type, which is reported.
+    """
+    if record.value("defaultValue") in ("true", "false"):
+        _refer(file, Edge.TYPED_BY, feature.id, ["Boolean"])
+    else:
+        file.mark_unnamed_type(record)
 
 
 def _refer(
@@ -194,29 +214,22 @@ def _complete_default(file: _FileLowering, record: Record, feature: Element) -> 
     """Read the default value of a feature as the literal that its text denotes.
 
     MTIP writes the text of every value specification and not its type: "0.0" is the number in a
-    LiteralReal, and a text for a feature of type String is the string. A text that is no literal
-    of the type stays an expression.
+    LiteralReal, a text for a feature of type String is the string, and the name of an instance of
+    the type is the instance. Any other text stays an expression.
     """
     text = feature.attrs.get("default")
     if not isinstance(text, str):
         return
     type_id = record.find_target("typedBy")
-    enumeration = file.graph.get(file.target_id(type_id))
-    literal = None if enumeration is None else _find_literal(file.graph, enumeration, text)
-    if literal is not None:
-        feature.attrs["default_instance"] = literal.id
+    instances = file.instances_by_name.get((type_id, text), [])
+    if len(instances) == 1 and instances[0] in file.graph:
+        feature.attrs["default_instance"] = instances[0]
     elif type_id != "String":
         value = parse_literal(text)
         if value is None:
             return
         feature.attrs["default"] = value
     del feature.attrs["default_language"]
-
-
-def _find_literal(graph: Graph, enumeration: Element, name: str) -> Element | None:
-    """Return the literal with a name that an enumeration owns; None for any other type."""
-    members = graph.owned(enumeration) if enumeration.kind is Kind.ENUMERATION else ()
-    return next((member for member in members if member.name == name), None)
 
 
 def _complete_trigger(file: _FileLowering, record: Record, trigger: Element) -> None:

@@ -123,6 +123,9 @@ RELATIONS: dict[str, Edge] = {
 }
 """Relations that are an edge from the element to its target."""
 
+INSTANCES = frozenset({Kind.INSTANCE, Kind.SLOT})
+"""Kinds that are instances of something."""
+
 TARGET_KINDS: dict[str, Kind] = {
     "property": Kind.PROPERTY,
     "behavior": Kind.ACTIVITY,
