@@ -103,3 +103,26 @@ def test_a_flow_between_a_store_and_a_control_node_is_an_approximation():
 
     assert [loss[:5] for loss in find_losses(STORED.format(first="d"))] == ["SM734"]
     assert find_losses(STORED.format(first="x.in").partition("    ObjectFlow f2")[0]) == []
+
+
+REFERRING_TAG = """
+Package p "Plant"
+  Class a "A" role="block"
+    Application x "Mark" stereotype="Mark" namespace="urn:marks" tag.of="d"
+      -> subject a
+  Dependency d "{name}" subkind="dependency"
+    -> client a
+    -> supplier p
+"""
+
+
+def test_a_tag_that_refers_to_an_element_without_a_name_has_its_id():
+    texts, losses = write(refine(REFERRING_TAG.format(name="")))
+    assert "'of' = \"d\";" in texts["model.sysml"]
+    assert losses == [
+        "SM734 a tagged value that refers to an element without a name is written as its id "
+        "(1 in the text)"
+    ]
+    texts, losses = write(refine(REFERRING_TAG.format(name="needs")))
+    assert "'of' = \"Plant::needs\";" in texts["model.sysml"]
+    assert losses == []

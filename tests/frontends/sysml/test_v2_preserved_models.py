@@ -74,6 +74,40 @@ Package p "Plant"
       -> typed-by box
   DataType box "Box" role="value type"
 """
+OWN_UNIT = """
+Package p "Plant"
+  DataType v "Speed" role="value type"
+    -> references u
+    -> references q
+  Instance u "{unit}" role="unit" description="distance in an hour"
+  Instance q "velocity" role="quantity kind"
+  Class c "Car" role="block"
+    Property c.v "top" role="value" aggregation="composite" default=160.0
+      -> typed-by v
+"""
+VIEW = """
+Package p "Plant"
+  {kind} v "How to start" role="view"
+    Class v.g "Gate" role="block"
+"""
+BEHAVIOURS_AS_TYPES = """
+Package p "Plant"
+  Class c "Gate" role="block"
+    Property c.p "Run" role="reference"
+      -> typed-by m
+    Property c.q "walking" role="reference"
+      -> typed-by a
+    StateMachine m "Run"
+      Region m.r ""
+        State m.s "S"
+  Activity a "Walk"
+    Action a.x "x" subkind="opaque"
+"""
+MATRIX = """
+Package p "Plant"
+  Class c "Camera" role="block"
+    Property c.p "pixels" role="value" aggregation="composite" multiplicity="2x1024"
+"""
 INPUT_FLOW = """
 Package p "Plant"
   Activity run "Run"
@@ -103,6 +137,13 @@ Package p "Plant"
         NO_TEXT,
         NO_BODY,
         EXPANSION,
+        VIEW.format(kind="Package"),
+        VIEW.format(kind="Class"),
+        BEHAVIOURS_AS_TYPES,
+        MATRIX,
+        MATRIX.replace("2x1024", "2..1024"),
+        OWN_UNIT.format(unit="km/hr"),
+        OWN_UNIT.format(unit="leagues a day"),
     ],
 )
 def test_it_comes_back(text):

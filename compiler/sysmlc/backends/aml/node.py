@@ -1,6 +1,7 @@
 """XML elements of CAEX 3.0, and values in the lexical forms of XML Schema."""
 
 import math
+import re
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -8,8 +9,9 @@ from lxml import etree
 
 from sysmlc.ir import AttrValue
 from sysmlc.sources.caex_vocabulary import NAMESPACE, ORDER
-from sysmlc.support.escapes import replace_illegal_in_xml
 
+_ILLEGAL = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""Characters outside the production Char (XML 1.0, 2.2)."""
 _UNORDERED = frozenset({"AdditionalInformation"})
 """Elements that may hold any XML, so that their children stay in the author's order."""
 
@@ -58,7 +60,7 @@ def print_document(root: Node) -> tuple[str, int]:
 
     def make_legal(text: str) -> str:
         nonlocal replaced
-        legal, count = replace_illegal_in_xml(text)
+        legal, count = _ILLEGAL.subn("\ufffd", text)
         replaced += count
         return legal
 

@@ -2,8 +2,9 @@
 
 from collections.abc import Iterator, Mapping
 
+from sysmlc.backends.sysml.attribute_coverage import is_measure
 from sysmlc.backends.sysml.plan import Member
-from sysmlc.backends.sysml.preserved_facts import has_complete_flow, list_unexpressed_facts
+from sysmlc.backends.sysml.preserved_facts import list_unexpressed_facts
 from sysmlc.backends.sysml.printing import (
     Line,
     format_comment,
@@ -60,8 +61,6 @@ _CAEX_ATTRIBUTES = {
     "default_value": "defaultValue",
 }
 """Feature of the metadata definition ``AutomationML`` by attribute."""
-_BEHAVIOUR_USAGES = ("action", "state")
-"""Keywords of usages that are read as behaviours of a classifier."""
 _STEPS = frozenset({Kind.ACTION, Kind.STRUCTURED, Kind.CONTROL})
 
 
@@ -106,7 +105,7 @@ def _format_value(value: AttrValue) -> str:
 def _iter_documentation(element: Element) -> Iterator[Line]:
     """Yield the description of an AutomationML feature as documentation."""
     text = element.attrs.get("description")
-    if text:
+    if text and not is_measure(element):
         yield Line("doc", text=format_comment(str(text)))
 
 
@@ -180,8 +179,8 @@ def _iter_kind(writer: Writer, member: Member, element: Element) -> Iterator[Lin
     name = element.subkind if has_subkind else _KIND_NAMES.get(element.kind)
     name = name or _name_plain_port(writer, element) or _name_operation(writer, element)
     name = name or _name_idle_activity(writer, member, element)
-    if element.kind is Kind.PACKAGE and member.shape.is_definition:
-        # Views and viewpoints of SysML 1.3 and older may be packages.
+    if element.kind is Kind.PACKAGE and member.shape.keyword == "view def":
+        # A view was a package until SysML 1.3 and is a class since SysML 1.4.
         name = name or "package"
     name = name or _name_reference(writer, member, element)
     domain = element.attrs.get("domain") if element.kind in _ITEMS else None
@@ -216,11 +215,8 @@ def _name_operation(writer: Writer, element: Element) -> str | None:
 
 
 def _name_reference(writer: Writer, member: Member, element: Element) -> str | None:
-    """Return ``property`` for a reference that would be read as a lifeline or a behaviour."""
+    """Return ``property`` for a reference of an interaction, which would be read as a lifeline."""
     owner = writer.graph.owner(element) if element.kind is Kind.PROPERTY else None
-    if owner is not None and member.shape.keyword in _BEHAVIOUR_USAGES:
-        is_classifier = owner.kind in CLASSIFIERS or owner.kind is Kind.STATE_MACHINE
-        return "property" if is_classifier else None
     if owner is None or owner.kind is not Kind.INTERACTION or member.shape.keyword == "ref":
         return None
     return "property" if element.attrs.get("aggregation") != "composite" else None
@@ -233,17 +229,8 @@ def _name_idle_activity(writer: Writer, member: Member, element: Element) -> str
     if owner is None or owner.kind not in CLASSIFIERS or element.attrs.get("body"):
         return None
     is_run = element in writer.graph.targets(owner, Edge.CLASSIFIER_BEHAVIOR)
-    has_steps = any(_is_written_step(writer, child) for child in writer.graph.owned(element))
+    has_steps = any(child.kind in _STEPS for child in writer.graph.owned(element))
     return None if is_run or has_steps else "activity"
-
-
-def _is_written_step(writer: Writer, node: Element) -> bool:
-    """Whether a node is a step of the text: a start or an end is one if a flow leads to it."""
-    if node.kind not in _STEPS:
-        return False
-    member = writer.plan.find(node)
-    is_named = member is not None and member.shape.keyword != "start"
-    return is_named or has_complete_flow(writer.graph, node)
 
 
 def _iter_partitions(writer: Writer, member: Member, element: Element) -> Iterator[Line]:
@@ -302,25 +289,35 @@ def _write_application(
             facts = {"attribute": key, "kind": application.name or "Application"}
             writer.losses.record(UNSAID_ATTRIBUTE, application, **facts)
             continue
-        body.append(Line(f"{quote_name(name)} = {_format_tag(writer, value)}"))
+        body.append(Line(f"{quote_name(name)} = {_format_tag(writer, application, value)}"))
     return Line(f"@{stereotype_name}", body, is_short=True)
 
 
-def _format_tag(writer: Writer, value: AttrValue) -> str:
-    """Return a tagged value; an id of an element becomes its qualified name in the text."""
+def _format_tag(writer: Writer, application: Element, value: AttrValue) -> str:
+    """Return a tagged value; an id of an element becomes its qualified name in the text.
+
+    An element without a name is named by its id, which is reported.
+    """
     if isinstance(value, tuple):
-        return f"({', '.join(_format_tag(writer, item) for item in value)})"
+        return f"({', '.join(_format_tag(writer, application, item) for item in value)})"
     if isinstance(value, str):
         element = writer.graph.get(value)
         # An id that equals the name is a text: ``prefix="SysML"`` in a profile called SysML.
         if element is None or element.name == value:
             return quote_string(value)
-        return quote_string(_join_text_names(writer, element))
+        name = _join_text_names(writer, element)
+        if name is None:
+            construct = "a tagged value that refers to an element without a name"
+            writer.record_approximation(application, construct, "its id")
+        return quote_string(name or value)
     return _format_value(value)
 
 
-def _join_text_names(writer: Writer, element: Element) -> str:
-    """Return the qualified name of an element, from the names that its owners have in the text."""
+def _join_text_names(writer: Writer, element: Element) -> str | None:
+    """Return the qualified name of an element, from the names that its owners have in the text.
+
+    Return None if the element itself has no name.
+    """
     if element.attrs.get("external"):
         return writer.graph.qualified_name(element)
     path = [element, *writer.graph.ancestors(element)]
@@ -329,4 +326,4 @@ def _join_text_names(writer: Writer, element: Element) -> str:
         step.name if member is None or member.element is not step else member.name
         for step, member in zip(path, members, strict=True)
     ]
-    return "::".join(name for name in reversed(names) if name)
+    return "::".join(name for name in reversed(names) if name) if names[0] else None

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 
-from sysmlc.backends.sysml.expressions import format_literal
+from sysmlc.backends.sysml.expressions import format_bounds, format_literal
 from sysmlc.backends.sysml.plan import Member
 from sysmlc.backends.sysml.profiles import is_standard
 from sysmlc.backends.sysml.writer import Writer
@@ -181,6 +181,12 @@ def _has_unexpressed_visibility(writer: Writer, _member: Member | None, element:
     return not is_known or element.id in writer.public_ids
 
 
+def _has_unexpressed_multiplicity(writer: Writer, member: Member | None, element: Element) -> bool:
+    """Whether a bound is no expression: ``492x21`` for the size of a matrix."""
+    text = str(element.attrs["multiplicity"])
+    return member is not None and format_bounds(writer, member.parent, text) is None
+
+
 def _has_unexpressed_default(writer: Writer, member: Member | None, element: Element) -> bool:
     """Whether the text lacks the default: of a port or a type, or a text that is no string."""
     default = element.attrs["default"]
@@ -193,6 +199,15 @@ def _has_unexpressed_default(writer: Writer, member: Member | None, element: Ele
     if "default_language" in element.attrs:
         return not default
     return not format_literal(writer, member.parent, element, default).startswith('"')
+
+
+def is_measure(element: Element) -> bool:
+    """Whether an element is a unit or quantity kind that the model defines itself."""
+    return element.role in ("unit", "quantity kind")
+
+
+def _is_measure(_writer: Writer, _member: Member | None, element: Element) -> bool:
+    return is_measure(element)
 
 
 def _has_empty_default(_writer: Writer, _member: Member | None, element: Element) -> bool:
@@ -247,8 +262,10 @@ _CHECKS: dict[str, _Check] = {
     "conjugated": _has_unexpressed_conjugation,
     "value": _is_enumeration_literal,
     "visibility": _has_unexpressed_visibility,
+    "multiplicity": _has_unexpressed_multiplicity,
     "default": _has_unexpressed_default,
     "default_instance": _is_never_expressed,
+    "description": _is_measure,
     "decision_input_flow": _is_never_expressed,
     "source_path": _has_unexpressed_path,
     "target_path": _has_unexpressed_path,

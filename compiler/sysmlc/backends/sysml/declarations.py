@@ -8,14 +8,13 @@ from sysmlc.backends.sysml.compatibility import (
     is_invalid_subset,
 )
 from sysmlc.backends.sysml.elided_elements import find_specific_feature, iter_types
-from sysmlc.backends.sysml.expressions import format_expression
+from sysmlc.backends.sysml.expressions import format_bounds
 from sysmlc.backends.sysml.library import find_scalar_type
 from sysmlc.backends.sysml.plan import Member, Plan
 from sysmlc.backends.sysml.printing import Line, quote_name
-from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import Edge, Element, Kind
-from sysmlc.ir.query import bounds, type_of
+from sysmlc.ir.query import type_of
 
 _VISIBILITIES = ("private", "protected")
 _REFERENTIAL_OWNERS = frozenset({"port", "attribute", "metadata"})
@@ -247,24 +246,9 @@ def refer_to_type(
 def format_multiplicity(writer: Writer, scope: Member | None, element: Element) -> str:
     """Return the multiplicity in brackets, with ``ordered`` and ``nonunique``; empty for none."""
     multiplicity = element.attrs.get("multiplicity")
-    text = ""
-    if multiplicity is not None:
-        text = _format_bounds(writer, scope, element, str(multiplicity))
+    text = "" if multiplicity is None else format_bounds(writer, scope, str(multiplicity)) or ""
     text += " ordered" if element.attrs.get("ordered") else ""
     return text + (" nonunique" if element.attrs.get("unique") is False else "")
-
-
-def _format_bounds(
-    writer: Writer, scope: Member | None, element: Element, multiplicity: str
-) -> str:
-    if bounds(multiplicity) is not None:
-        return f"[{multiplicity}]"
-    limits = [format_expression(writer, scope, part) for part in multiplicity.split("..")]
-    if all(limits):
-        return f"[{'..'.join(str(limit) for limit in limits)}]"
-    facts = {"attribute": "multiplicity", "kind": str(element.kind)}
-    writer.losses.record(UNSAID_ATTRIBUTE, element, **facts)
-    return ""
 
 
 def _redefine(writer: Writer, member: Member, head: Head) -> None:

@@ -3,6 +3,7 @@
 from sysmlc.backends.sysml.annotations import make_annotation, write_annotations
 from sysmlc.backends.sysml.comments import record_text_changes
 from sysmlc.backends.sysml.declarations import list_visibility, make_definition_head
+from sysmlc.backends.sysml.edge_coverage import has_own_measure
 from sysmlc.backends.sysml.library import (
     find_quantity,
     find_quantity_of_kind,
@@ -170,7 +171,7 @@ def write_value_type(writer: Writer, member: Member) -> list[Line]:
         if unit_name is not None:
             reference = writer.refer_to_library(member, unit_name)
             body.insert(0, Line(f"attribute :>> mRef = {reference}"))
-    elif unit is not None:
+    elif unit is not None and not has_own_measure(writer, element, unit):
         body.insert(0, _annotate_unit(writer, member, unit))
     return [Line(head.format(), body)]
 

@@ -8,6 +8,7 @@ from sysmlc.backends.sysml.compatibility import (
     is_lifeline_subset,
     is_without_parameters,
 )
+from sysmlc.backends.sysml.library import find_quantity
 from sysmlc.backends.sysml.references import is_accessible
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import Edge, Element, Kind
@@ -118,8 +119,19 @@ def _is_unexpressed_behavior(writer: Writer, _owner: Element, behaviour: Element
     return member is not None and member.shape.usage_keyword not in ("action", "state")
 
 
-def _is_unexpressed_reference(_writer: Writer, source: Element, target: Element) -> bool:
+def has_own_measure(writer: Writer, type_: Element, measure: Element) -> bool:
+    """Whether the unit or quantity kind of a value type is an instance in the text.
+
+    Metadata refers to it, unless the type is a quantity of ISQ: this states the unit by name.
+    """
+    is_instance = measure.kind is Kind.INSTANCE and writer.plan.find(measure) is not None
+    return is_instance and find_quantity(writer.graph, type_) is None
+
+
+def _is_unexpressed_reference(writer: Writer, source: Element, target: Element) -> bool:
     """Whether the text lacks a reference; a named constraint states all but its owner."""
+    if source.kind is Kind.DATA_TYPE:
+        return has_own_measure(writer, source, target)
     if source.kind is Kind.CONSTRAINT:
         return target.id == source.owner or not source.name
     return source.kind not in _KINDS_THAT_EXPRESS[Edge.REFERENCES]

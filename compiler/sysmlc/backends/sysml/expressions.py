@@ -12,7 +12,7 @@ from sysmlc.backends.sysml.printing import quote_name, quote_string
 from sysmlc.backends.sysml.references import find_by_model_name, format_reference, look_up
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
-from sysmlc.ir.query import generals, type_of
+from sysmlc.ir.query import bounds, generals, type_of
 from sysmlc.ir.query.classifiers import unit_of
 from sysmlc.logic.expressions import expression as syntax
 from sysmlc.logic.expressions.expression import POSTFIX, PRECEDENCE, UNARY
@@ -162,6 +162,14 @@ def _print_literal(value: bool | float | str) -> str:
 
 
 # -- values --------------------------------------------------------------------------------------
+
+
+def format_bounds(writer: Writer, scope: Member | None, multiplicity: str) -> str | None:
+    """Return a multiplicity in brackets; None if a bound is neither a number nor an expression."""
+    if bounds(multiplicity) is not None:
+        return f"[{multiplicity}]"
+    limits = [format_expression(writer, scope, part) for part in multiplicity.split("..")]
+    return f"[{'..'.join(str(limit) for limit in limits)}]" if all(limits) else None
 
 
 def format_value(

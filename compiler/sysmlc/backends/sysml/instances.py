@@ -144,7 +144,8 @@ def _write_measure(writer: Writer, member: Member, element: Element) -> Line:
     short_name = f"<{quote_name(str(symbol))}> " if symbol and str(symbol) not in names else ""
     is_unit = element.role == "unit"
     type_ = "MeasurementReferences::SimpleUnit" if is_unit else "Quantities::QuantityDimension"
+    body = write_annotations(writer, member)
     writer.expressed.update(child.id for child in writer.graph.owned(element))
-    body = write_annotations(writer, member) + writer.write_members(member)
+    body += writer.write_members(member)
     type_name = writer.refer_to_library(member.parent, type_)
     return Line(f"attribute {short_name}{quote_name(member.name)} : {type_name}", body)

@@ -220,10 +220,14 @@ def _find_unit(unit: Element | None) -> tuple[str, str] | None:
 
 
 def find_quantity(graph: Graph, type_: Element) -> str | None:
-    """Return the value type of ISQ for a value type, by its unit, else by its quantity kind."""
-    row = _find_unit(unit_of(graph, type_))
-    if row is not None:
-        return row[0]
+    """Return the value type of ISQ for a value type, by its unit, else by its quantity kind.
+
+    A unit that no library defines has none: numbers of ISQ would be in other units.
+    """
+    unit = unit_of(graph, type_)
+    if unit is not None:
+        row = _find_unit(unit)
+        return None if row is None else row[0]
     quantity_kind = quantity_kind_of(graph, type_)
     return None if quantity_kind is None else find_quantity_of_kind(quantity_kind)
 
