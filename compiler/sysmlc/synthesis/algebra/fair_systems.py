@@ -16,7 +16,8 @@ from sysmlc.logic.reduction.contract_reduction import as_ltl, is_gr1
 from sysmlc.logic.reduction.formula_reduction import NotReducibleError, reduce_formula
 from sysmlc.logic.reduction.history import History
 from sysmlc.synthesis.bdd.manager import Manager, Node
-from sysmlc.synthesis.bdd.symbols import SymbolError, Symbols
+from sysmlc.synthesis.bdd.symbols import SymbolError, Symbols, conjoin
+from sysmlc.synthesis.bdd.variable_order import list_related
 from sysmlc.synthesis.games.game import OutsideGr1Error
 from sysmlc.synthesis.games.relational_product import Product
 
@@ -43,12 +44,16 @@ class FairSystem(Struct, frozen=True):
 class Universe:
     """The variables of several contracts in one manager; equal names denote one variable."""
 
-    def __init__(self, contracts: Iterable[Contract], manager: Manager) -> None:
-        """Declare the variables; the manager must be new. Raises DomainError."""
+    def __init__(
+        self, contracts: Iterable[Contract], manager: Manager, related: Iterable[Conjunct] = ()
+    ) -> None:
+        """Declare the variables; the manager must be new. Raises DomainError.
+
+        Variables of the same conjunct in *related* get bits close together.
+        """
         self.manager = manager
-        self.symbols = Symbols(manager, merge_variables(contracts))
-        self._current_ranges = self._compute_ranges(primed=False)
-        self._next_ranges = self._compute_ranges(primed=True)
+        self.symbols = Symbols(manager, merge_variables(contracts), list_related(related))
+        self._ranges = self._compute_ranges()
 
     def system(self, conjuncts: Iterable[Conjunct]) -> FairSystem:
         """Return the system whose runs satisfy all conjuncts and keep variables in their ranges.
@@ -59,10 +64,15 @@ class Universe:
         nodes: dict[Class, list[Node]] = {class_: [] for class_ in Class}
         for conjunct in conjuncts:
             nodes[conjunct.class_].append(self.node(conjunct))
-        init = self.manager.true
-        for node in (*self._current_ranges, *nodes[Class.INIT]):
-            init = init & node
-        parts = (*self._current_ranges, *self._next_ranges, *nodes[Class.SAFETY])
+        # A condition on single states holds in the next state, too: without its next value, steps
+        # lead to states that have no successors, which the search for fair runs must find again.
+        invariants = (
+            *self._ranges,
+            *(node for node in nodes[Class.SAFETY] if not self.symbols.names(node, primed=True)),
+        )
+        init = conjoin(self.manager, (*invariants, *nodes[Class.INIT]))
+        next_invariants = map(self.symbols.prime, invariants)
+        parts = (*self._ranges, *next_invariants, *nodes[Class.SAFETY])
         return FairSystem(self.symbols, init, parts, tuple(nodes[Class.LIVENESS]))
 
     def node(self, conjunct: Conjunct) -> Node:
@@ -78,8 +88,8 @@ class Universe:
         except SymbolError as problem:
             raise OutsideGr1Error(conjunct, str(problem)) from None
 
-    def _compute_ranges(self, primed: bool) -> tuple[Node, ...]:
-        nodes = (self.symbols.domain(name, primed) for name in self.symbols.variables)
+    def _compute_ranges(self) -> tuple[Node, ...]:
+        nodes = (self.symbols.domain(name) for name in self.symbols.variables)
         return tuple(node for node in nodes if node != self.manager.true)
 
 
@@ -139,8 +149,16 @@ class Runs:
     def fair(self) -> Node:
         """The reachable states in which some fair run begins."""
         if self._fair is None:
-            self._fair = self.fair_within(self.reachable)
+            self._fair = self._find_fair_states()
         return self._fair
+
+    def _find_fair_states(self) -> Node:
+        # Without fairness, each state of a total relation begins a fair run. That it is total takes
+        # one product with early quantification of nearly all bits; Emerson and Lei take several.
+        is_total = not self.system.fairness and self.reachable <= self.predecessors(
+            self.manager.true
+        )
+        return self.reachable if is_total else self.fair_within(self.reachable)
 
     @property
     def states_with_infinite_runs(self) -> Node:

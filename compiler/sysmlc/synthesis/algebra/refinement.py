@@ -83,8 +83,17 @@ def _find_violating_states(runs: Runs, class_: Class, violation: Node) -> Node:
     if class_ is Class.INIT:
         return runs.system.init & runs.fair & violation
     if class_ is Class.SAFETY:
-        return runs.fair & runs.predecessors_by(runs.fair, violation)
+        return runs.fair & _begin_steps(runs, violation)
     return runs.fair_within(runs.reachable & violation)
+
+
+def _begin_steps(runs: Runs, violation: Node) -> Node:
+    """Return states that contain the fair ones from which a fair run begins with a violation."""
+    if not runs.system.symbols.names(violation, primed=True):
+        return violation
+    # All successors of reachable states are reachable.
+    targets = runs.manager.true if runs.fair == runs.reachable else runs.fair
+    return runs.predecessors_by(targets, violation)
 
 
 def _build_initial_violation(runs: Runs, states: Node, _: Node) -> Trace:
@@ -168,7 +177,7 @@ class RunSearch:
             predictions = Contract("", "", variables, (), ())
             manager = self._new_manager()
             with manager.guard():
-                universe = Universe((*self._contracts, predictions), manager)
+                universe = Universe((*self._contracts, predictions), manager, conjuncts)
                 self._entailments[facts] = Entailment(universe, universe.system(conjuncts))
         return self._entailments[facts]
 

@@ -8,7 +8,7 @@ import logging
 import sys
 import time
 import warnings
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from importlib import import_module
 from types import FrameType, ModuleType
@@ -91,7 +91,6 @@ class Manager:
         self._peak = self._nodes = self._ceiling = 0
         self._next_limit_check = 0.0
         self._may_reorder, self._is_reordering = True, False
-        self._declaration_order: dict[str, int] = {}
         self._supports: WeakKeyDictionary[Node, frozenset[str]] = WeakKeyDictionary()
         self._stop_reason: StopReason | None = None
         # dd has no type hints that a checker could use.
@@ -106,8 +105,6 @@ class Manager:
     def declare(self, bits: Collection[str]) -> None:
         """Append bits to the order, below all bits declared before."""
         self._bdd.declare(*bits)
-        for bit in bits:
-            self._declaration_order.setdefault(bit, len(self._declaration_order))
 
     @property
     def bits(self) -> tuple[str, ...]:
@@ -183,17 +180,18 @@ class Manager:
         low, high = bdd_node.low, bdd_node.high
         return (bdd_node.var, ~low, ~high) if bdd_node.negated else (bdd_node.var, low, high)
 
-    def pick(self, node: Node, bits: Collection[str]) -> dict[str, bool] | None:
+    def pick(self, node: Node, bits: Sequence[str]) -> dict[str, bool] | None:
         """Return values of *bits* that satisfy the diagram, or None if it is unsatisfiable.
 
-        The values are the lexicographically least ones in the order in which bits were declared,
-        with false before true, so they do not depend on reordering. Bits outside the support are
-        false. *bits* must contain the support.
+        The values are the lexicographically least ones in the order of *bits*, with false before
+        true, so they do not depend on the order of the diagram. Bits outside the support are false.
+        *bits* must contain the support.
         """
         if node == self.false:
             return None
         assignment = dict.fromkeys(bits, False)
-        for bit in sorted(self.support(node), key=self._declaration_order.__getitem__):
+        support = self.support(node)
+        for bit in filter(support.__contains__, bits):
             low = self.assign(node, {bit: False})
             assignment[bit] = low == self.false
             node = self.assign(node, {bit: True}) if assignment[bit] else low

@@ -13,7 +13,8 @@ from enum import StrEnum
 from itertools import zip_longest
 
 from sysmlc.logic import domains
-from sysmlc.logic.contract import Domain, IntegerDomain, Variable
+from sysmlc.logic import formula as f
+from sysmlc.logic.contract import Conjunct, Domain, IntegerDomain, Variable
 
 MIN_INTERLEAVED_VARIABLES = 5
 """Least number of variables of one range to interleave: relations between fewer variables are small
@@ -46,6 +47,14 @@ class VariableOrder(StrEnum):
     is nearly as close: authors keep together what belongs together."""
     DECLARED = "declared"
     """As they are declared."""
+
+
+def list_related(conjuncts: Iterable[Conjunct]) -> list[tuple[str, ...]]:
+    """Return the names of the variables of each conjunct."""
+    return [
+        tuple(dict.fromkeys(variable.name for variable in f.variables(conjunct.formula)))
+        for conjunct in conjuncts
+    ]
 
 
 def order_bits(

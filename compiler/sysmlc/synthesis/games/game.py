@@ -12,7 +12,7 @@ from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owne
 from sysmlc.logic.formula import Formula, variables
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.bdd.symbols import SymbolError, Symbols
-from sysmlc.synthesis.bdd.variable_order import VariableOrder
+from sysmlc.synthesis.bdd.variable_order import VariableOrder, list_related
 
 
 class OutsideGr1Error(Exception):
@@ -103,14 +103,8 @@ def make_game(
     # An order of bits that suits single constraints can be bad for the whole game, so the
     # initial order is kept while the contract is translated.
     with manager.guard(), manager.without_reordering():
-        edges = _variables_of_conjuncts(contract)
+        edges = list_related((*contract.assumptions, *contract.guarantees))
         return _translate(contract, Symbols(manager, contract.variables, edges, order))
-
-
-def _variables_of_conjuncts(contract: Contract) -> Iterator[tuple[str, ...]]:
-    """Yield the variables of each conjunct."""
-    for conjunct in (*contract.assumptions, *contract.guarantees):
-        yield tuple(dict.fromkeys(variable.name for variable in variables(conjunct.formula)))
 
 
 def _translate(contract: Contract, symbols: Symbols) -> Game:
