@@ -43,12 +43,15 @@ def last_name(qualified_name):
 
 
 LEGO_VERDICTS = [
+    ("AssembleQuality", "Assemble", "holds"),
+    ("AssembleQuality", "Assemble", "holds"),
+    ("BoundedRetry", "Assemble", "holds"),
+    ("BoundedRetry", "Assemble", "holds"),
+    ("BoundedRetry", "Assemble", "holds"),
     ("HoldPiece", "Robot1", "holds"),
     ("HoldPiece", "Robot1", "holds"),
     ("HoldPiece", "Robot2", "holds"),
     ("HoldPiece", "Robot2", "holds"),
-    ("AssembleQuality", "CheckQuality", "not-decided"),
-    ("BoundedRetry", "Assemble", "not-decided"),
     ("CycleTime", "BuildLegoStack", "holds"),
     ("AssembleTime", "Assemble", "holds"),
     ("StoreTime", "Store", "holds"),

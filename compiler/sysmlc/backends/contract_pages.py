@@ -132,9 +132,16 @@ class _PageBuilder:
         )
 
     def _summarise(self, contract: Contract) -> tuple[str, ...]:
-        """Return the paragraphs about an activity, or nothing for another component."""
-        games = self._graph.derived(TokenGraph)
-        game = next((game for game in games if game.activity == contract.origin), None)
+        """Return the paragraphs about an activity, or nothing for another component.
+
+        The contract of the requirements of an activity says nothing about its steps.
+        """
+        games = (
+            game
+            for game in self._graph.derived(TokenGraph)
+            if game.activity == contract.origin and game.component == contract.component
+        )
+        game = next(games, None)
         return () if game is None else tuple(ActivitySummary(game, contract).iter_paragraphs())
 
     def _label_element(self, id: str) -> tuple[str, str]:

@@ -147,6 +147,7 @@ class BehaviourCheck:
 
         Raises LimitError.
         """
+        self._search.restart_clocks()
         domains = {variable.name: variable for variable in self._behaviour.contract.variables}
         for name, writers in self._behaviour.writers.items():
             for first, second in combinations(writers, 2):
@@ -160,6 +161,7 @@ class BehaviourCheck:
 
     def find_unreachable(self) -> Iterator[PlaceInBehaviour]:
         """Yield the places that no run reaches, although runs come near. Raises LimitError."""
+        self._search.restart_clocks()
         for place in self._behaviour.places:
             if self._is_never(place, place.is_active) and (
                 place.within == f.TRUE or not self._is_never(place, place.within)
@@ -171,7 +173,8 @@ class BehaviourCheck:
         return self._entails((), conjunct)
 
     def decide(self, conjunct: Conjunct) -> RequirementVerdict:
-        """Return the verdict about a conjunct."""
+        """Return the verdict about a conjunct, within the time limit of one question."""
+        self._search.restart_clocks()
         if not self._has_runs():
             reason = "no run of the behaviour satisfies the assumptions of the requirement"
             return RequirementVerdict(conjunct, Answer.NOT_DECIDED, reason)

@@ -105,6 +105,8 @@ class _Description:
         self._conjuncts += self._arguments.derive(formulas)
         gaps = dict(self.performances.gaps) | self._arguments.gaps
         writers = self._list_writers(formulas)
+        assigned = [self.tree.read_slot(slot).variable for slot in writers]
+        self._reset_own_features(writers)
         gaps |= self._derive_updates(writers)
         gaps |= self._derive_starts(gaps)
         wiring = derive_events(self.component)
@@ -133,7 +135,7 @@ class _Description:
         }
         places = tuple(
             replace(place, is_active=substitute(place.is_active, ends))
-            for place in iter_places(self.component, formulas.graph, list(variables.values()))
+            for place in iter_places(self.component, formulas.graph, assigned)
         )
         long_ends = self.performances.long_ends
         return ComponentBehaviour(contract, gaps | long_ends, frozenset(long_ends), shared, places)
@@ -219,6 +221,28 @@ class _Description:
                 origin = formulas.graph.node(output.node).origin
                 for condition, value in self._arguments.iter_results(formulas, output):
                     yield output.target, Writer(condition, value, origin), output.root
+
+    def _reset_own_features(self, writers: dict[Slot, list[Writer]]) -> None:
+        """Add the initial values of an activity that is checked by itself, for each of its starts.
+
+        Each execution is an object with features of its own (UML 2.5.1, 16.2.3). A feature without
+        initial value may have any value. Results keep their values until they are read.
+        """
+        activity = self.tree.root.type_
+        for root in self._roots:
+            copy = self.performances.copies.get(root.id)
+            if not root.service or copy is None or copy.activity != activity:
+                continue
+            for slot, feature in self.tree.used_slots.items():
+                has_direction = any(member.direction for _, member in self.tree.find_features(slot))
+                if feature.is_input or has_direction:
+                    continue
+                first = f.prime(f.var(feature.variable.name))
+                value = first if feature.default is None else Const(feature.default)
+                writers[slot] = [
+                    replace(writer, condition=f.both(writer.condition, f.negate(root.start)))
+                    for writer in writers.get(slot, [])
+                ] + [Writer(root.start, value, activity.id)]
 
     def _follow_writes(
         self, value: Formula, earlier: list[tuple[Slot, Formula, Formula]]

@@ -135,6 +135,11 @@ class RunSearch:
         self._names = tuple(variable.name for variable in merge_variables(self._contracts))
         self._entailments: dict[tuple[Conjunct, ...], Entailment] = {}
 
+    def restart_clocks(self) -> None:
+        """Let the time limit count from now, for a new question that may use earlier answers."""
+        for entailment in self._entailments.values():
+            entailment.manager.restart_clock()
+
     def has_runs(self, facts: tuple[Conjunct, ...]) -> bool:
         """Whether some run satisfies the facts. Raises the errors of ``find_violation``."""
         runs = self._explore(facts)

@@ -239,6 +239,13 @@ class Manager:
         with self.guard():
             self._bdd.reorder()
 
+    def restart_clock(self) -> None:
+        """Let the CPU time of the limits count from now, for a new question about the same bits.
+
+        A manager that a limit has stopped remains stopped.
+        """
+        self._start_time = time.process_time()
+
     def usage(self) -> Usage:
         """Return the live nodes, their peak and the CPU seconds."""
         nodes, peak = self._count_nodes()
