@@ -20,14 +20,14 @@ FLAGS = "attribute x : Boolean := false; attribute y : Boolean := false;"
 def decide(workspace, all_passes):
     """Return a function from a block and formulas to the verdicts about the formulas."""
 
-    def check(block, *formulas, others=""):
+    def check(block, *formulas, others="", kind="part def"):
         requirements = (
             f"requirement def R{number} {{ subject b : B; "
             f'require constraint {{ language "ltl" /* {formula} */ }} }}'
             for number, formula in enumerate(formulas)
         )
         head = ("package P {", "private import ScalarValues::*;", "item def Go;", others)
-        lines = (*head, f"part def B {{ {block} }}", *requirements, "}")
+        lines = (*head, f"{kind} B {{ {block} }}", *requirements, "}")
         workspace.write("model.sysml", "\n".join(lines))
         result = workspace.sysmlc("contracts", "check", "--format", "json", "model.sysml")
         entries = json.loads(result.stdout)["requirements"]
@@ -282,6 +282,18 @@ def test_a_feature_that_a_call_and_an_action_assign_has_the_values_of_both(decid
     job = JOB.format(output, "then off; action off assign x := false; then done;")
     formulas = ("G (finished(a) -> X x)", "G (finished(off) -> X !x)", "G !x")
     assert decide(FLAGS + SENSE + job, *formulas) == ["holds", "holds", "broken"]
+
+
+def test_an_activity_that_is_the_component_has_its_attributes_once(decide):
+    """The guard reads what the call sets."""
+    job = """attribute x : Boolean := false;
+        first start then a;
+        perform action a references sense { in attribute :>> p := false; out attribute :>> r = x; }
+        then d; decide d; if x then keep; else drop;
+        action keep; then done; action drop; then done;"""
+    formulas = ("G (finished(a) -> X x)", "G !running(keep)", "G !running(drop)")
+    verdicts = decide(job, *formulas, others=SENSE, kind="action def")
+    assert verdicts == ["holds", "broken", "holds"]
 
 
 def test_an_assigned_input_is_not_decided(decide):

@@ -102,10 +102,13 @@ def test_a_missing_run_is_an_error(workspace):
     assert "cannot read 'none.csv'" in result.stderr
 
 
-def test_a_run_of_a_model_names_the_broken_element(workspace, all_passes):
+@pytest.mark.parametrize(
+    "arguments", ["lamp.sysml run.csv -c P::Lamp", "lamp.sysml#P::Lamp run.csv"]
+)
+def test_a_run_of_a_model_names_the_broken_element(workspace, all_passes, arguments):
     workspace.write("lamp.sysml", LAMP)
     workspace.write("run.csv", "event,state,level\nSwitch,Off,0\nnone,Off,0\n")
-    result = workspace.sysmlc("contracts", "accept", "lamp.sysml", "run.csv", "-c", "P::Lamp")
+    result = workspace.sysmlc("contracts", "accept", *arguments.split())
     assert result.exit_code == 1
     assert "In 'Off', when 'Switch' occurs: the next state is 'On'" in result.stderr
     assert "--> lamp.sysml:6:9" in result.stderr

@@ -14,7 +14,7 @@ from sysmlc.backends.sysml.profiles import is_standard
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.compare import What
 from sysmlc.logic.expressions.expression import ExpressionError, print_expression
-from sysmlc.logic.expressions.parsing import parse_expression
+from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
 
 # -- texts -----------------------------------------------------------------------------------------
 
@@ -89,24 +89,24 @@ def _is_same_expression(difference: Difference) -> bool:
         return False
     trip = difference.trip
     before, after = (
-        _parse_conditions(graph, element)
+        _list_conditions(graph, element)
         for graph, element in ((trip.old, difference.old), (trip.new, difference.new))
     )
     return bool(before) and before == after
 
 
-def _parse_conditions(graph: Graph, element: Element | None) -> list[str]:
-    """Return the guard of an element, or else its constraints; none if one is no expression."""
+def _list_conditions(graph: Graph, element: Element | None) -> list[str]:
+    """Return the guard of an element, or else its constraints, in one spelling if possible."""
     if element is None:
         return []
     constraints = [child for child in graph.owned(element) if child.kind is Kind.CONSTRAINT]
-    texts = [constraint.attrs.get("body", "") for constraint in constraints]
     guard = element.attrs.get("guard")
+    texts = [str(constraint.attrs.get("body", "")) for constraint in constraints]
+    texts = texts if guard is None else [str(guard)]
     try:
-        parsed = (parse_expression(str(text)) for text in (texts if guard is None else [guard]))
-        return sorted(print_expression(tree) for tree in parsed)
+        return sorted(print_expression(parse_expression(text)) for text in texts)
     except ExpressionError:
-        return []
+        return sorted(texts)
 
 
 def _is_body_in_sysml(difference: Difference) -> bool:
@@ -187,6 +187,138 @@ def _is_second_start(difference: Difference) -> bool:
     regions = [member for member in members if member.kind is Kind.REGION]
     nodes = [*members, *(node for region in regions for node in graph.owned(region))]
     return sum((n.kind, n.subkind) == (start.kind, "initial") for n in nodes) > 1
+
+
+def _has_lost_end(difference: Difference) -> bool:
+    """Whether a flow or transition is removed whose source or target the model does not have."""
+    old, graph = difference.old, difference.trip.old
+    flows = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW, Kind.TRANSITION)
+    if old is None or not _is_removed(*flows)(difference):
+        return False
+    return not (graph.targets(old, Edge.FLOW_SOURCE) and graph.targets(old, Edge.FLOW_TARGET))
+
+
+def _is_idle_start_or_end(difference: Difference) -> bool:
+    """Whether no flow with both ends leaves an initial node or enters a final node."""
+    old, graph = difference.old, difference.trip.old
+    if old is None or not _is_removed(Kind.CONTROL, Kind.PSEUDOSTATE)(difference):
+        return False
+    edges = (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)
+    flows = [flow for edge in edges for flow in graph.sources(old, edge)]
+    has_flow = any(all(graph.targets(flow, edge) for edge in edges) for flow in flows)
+    return old.subkind in ("initial", "final", "flow-final") and not has_flow
+
+
+def _is_second_end(difference: Difference) -> bool:
+    """Whether a final node is removed, or a flow leads to one, that shares ``done`` with others."""
+    old, graph = difference.old, difference.trip.old
+    if old is None or (difference.change.aspect and not difference.is_about("ends")):
+        return False
+    end = graph.target(old, Edge.FLOW_TARGET) or old
+    owner = graph.owner(end)
+    siblings = [] if owner is None else graph.owned(owner)
+    finals = [e for e in siblings if e.subkind in ("final", "flow-final")]
+    return end.kind is Kind.CONTROL and end in finals and len(finals) > 1
+
+
+def _is_flow_of_action(difference: Difference) -> bool:
+    """Whether an object flow leads to or from an action itself, or a pin is added for it."""
+    trip = difference.trip
+    if difference.old is None:
+        new = difference.new
+        return new is not None and new.kind is Kind.PIN and new.name == difference.change.name
+    edges = (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)
+    ends = [trip.old.target(difference.old, edge) for edge in edges]
+    is_of_action = any(end is not None and end.kind is Kind.ACTION for end in ends)
+    return difference.kind is Kind.OBJECT_FLOW and is_of_action and difference.is_about("ends")
+
+
+def _is_undeclared_tag(difference: Difference) -> bool:
+    """Whether an attribute is added to a stereotype that does not declare this tag."""
+    trip = difference.trip
+    if difference.old is not None or difference.kind is not Kind.PROPERTY:
+        return False
+    stereotypes = trip.old_by_name.get(difference.change.owner, [])
+    return any(
+        f"tag.{difference.change.name}" in application.attrs
+        for stereotype in stereotypes
+        for application in trip.old.sources(stereotype, Edge.INSTANCE_OF)
+    )
+
+
+def _is_empty_partition(difference: Difference) -> bool:
+    """Whether a partition is removed that contains no node, nor does a partition in it."""
+    old, graph = difference.old, difference.trip.old
+    if old is None or not _is_removed(Kind.PARTITION)(difference):
+        return False
+    return not any(graph.sources(element, Edge.IN_PARTITION) for element in graph.subtree(old))
+
+
+def _has_single_parameter(difference: Difference) -> bool:
+    """Whether a parameter node without a parameter is involved, which becomes a parameter."""
+    graph = difference.trip.old
+    owners = [difference.old] if difference.old else []
+    owners += difference.trip.old_by_name.get(difference.change.owner, [])
+    nodes = [*owners, *(child for owner in owners for child in graph.owned(owner))]
+    names = [
+        node.name
+        for node in nodes
+        if node.kind is Kind.ACTIVITY_PARAMETER and not graph.targets(node, Edge.REFERENCES)
+    ]
+    if difference.kind is Kind.ACTIVITY:
+        return bool(names) and difference.is_about("order")
+    is_parameter = difference.kind in (Kind.PARAMETER, Kind.ACTIVITY_PARAMETER)
+    return is_parameter and difference.change.name in names
+
+
+def _has_type_of_parameter(difference: Difference) -> bool:
+    """Whether an untyped pin has the type of a parameter of the behaviour that is called."""
+    old, new, graph = difference.old, difference.new, difference.trip.new
+    if old is None or new is None or new.kind is not Kind.PIN or not difference.is_about("type"):
+        return False
+    action = graph.owner(new)
+    called = [] if action is None else graph.targets(action, Edge.CALLS)
+    parameters = [child for target in called for child in graph.owned(target)]
+    types = [graph.targets(p, Edge.TYPED_BY) for p in parameters if p.kind is Kind.PARAMETER]
+    is_untyped = not difference.trip.old.targets(old, Edge.TYPED_BY)
+    return is_untyped and graph.targets(new, Edge.TYPED_BY) in types
+
+
+def _is_event_of_message(difference: Difference) -> bool:
+    """Whether the text adds events to the messages of an interaction that has none."""
+    old, new, trip = difference.old, difference.new, difference.trip
+    if old is not None and old.kind is Kind.MESSAGE:
+        has_events = trip.old.targets(old, Edge.SEND_EVENT) + trip.old.targets(
+            old, Edge.RECEIVE_EVENT
+        )
+        return difference.is_about("send-event", "receive-event") and not has_events
+    if new is None or old is not None or new.kind is not Kind.OCCURRENCE:
+        return False
+    interactions = trip.old_by_name.get(difference.change.owner, [])
+    members = [member for interaction in interactions for member in trip.old.owned(interaction)]
+    edges = (Edge.SEND_EVENT, Edge.RECEIVE_EVENT)
+    is_of_message = any(trip.new.sources(new, edge) for edge in edges)
+    return is_of_message and all(member.kind is not Kind.OCCURRENCE for member in members)
+
+
+def _is_same_time(difference: Difference) -> bool:
+    """Whether only white space between the number and the unit of a time differs."""
+    texts = ["".join(text.split()) for text in (difference.change.before, difference.change.after)]
+    is_time = difference.change.before.startswith("time ") and texts[0] == texts[1]
+    return is_time and difference.is_about("trigger")
+
+
+def _has_same_statements(difference: Difference) -> bool:
+    """Whether a body consists of the same statements, or the name of its language goes."""
+    old, new = difference.old, difference.new
+    if old is None or new is None or not difference.is_about("body", "language"):
+        return False
+    bodies = [str(element.attrs.get("body", "")) for element in (old, new)]
+    try:
+        before, after = (parse_effect(body) for body in bodies)
+    except ExpressionError:
+        return False
+    return before == after
 
 
 # -- moved and omitted elements --------------------------------------------------------------------
@@ -479,7 +611,7 @@ REASONS: list[Reason] = [
     Reason(
         "a behaviour of SysML v2 has one start, at which the flows of all initial nodes begin",
         _is_second_start,
-        "SM737 an initial",
+        "SM73(7 an|4 one of several) initial",
         is_in_behaviour=True,
     ),
     Reason(
@@ -530,6 +662,68 @@ REASONS: list[Reason] = [
         _is_attribute("guard", "guard literal"),
         "SM732 guard",
     ),
+    Reason(
+        "a flow of which the model has no source or no target is omitted",
+        _has_lost_end,
+        "SM736 flow",
+    ),
+    Reason(
+        "every behaviour has start and done: initial and final nodes without flows are omitted",
+        _is_idle_start_or_end,
+    ),
+    Reason(
+        "metadata has values of declared attributes: the text declares tags of unread stereotypes",
+        _is_undeclared_tag,
+    ),
+    Reason(
+        "a multiplicity is a range of numbers",
+        _is_attribute("multiplicity"),
+        "SM732 multiplicity",
+    ),
+    Reason(
+        "several final nodes that end nothing else are one done of SysML v2",
+        _is_second_end,
+        "SM734 one of several final nodes",
+        is_in_behaviour=True,
+    ),
+    Reason(
+        "an object flow of SysML v2 has pins at its ends: an action at an end gets one",
+        _is_flow_of_action,
+        "SM734 an object flow of an action",
+        is_in_behaviour=True,
+    ),
+    Reason(
+        "an item flow between features of types, without a connector, has no path to its ends",
+        _is_removed(Kind.ITEM_FLOW),
+        "SM736 flow ends ItemFlow",
+    ),
+    Reason(
+        "SysML v2 has no partitions: one without nodes is omitted",
+        _is_empty_partition,
+        "SM730 Partition",
+    ),
+    Reason(
+        "a parameter node without a parameter becomes a parameter",
+        _has_single_parameter,
+        "SM734 a parameter node without a parameter",
+    ),
+    Reason(
+        "a pin of SysML v2 redefines a parameter and has its type",
+        _has_type_of_parameter,
+    ),
+    Reason(
+        "a state of SysML v2 does not defer events",
+        _is_of(Kind.STATE, "trigger"),
+        "SM732 deferred Trigger",
+    ),
+    Reason(
+        "an action of SysML v2 that accepts something unnamed accepts any event",
+        lambda d: d.is_about("trigger") and (d.change.before, d.change.after) == ("", "any"),
+        "SM734 a trigger without an event",
+    ),
+    Reason("a message of SysML v2 with ends has events at them", _is_event_of_message),
+    Reason("a time is the same if its unit is spelled apart", _is_same_time),
+    Reason("a body that SysML v2 spells as actions has the same statements", _has_same_statements),
     Reason(
         "messages of SysML v2 have no events of their own",
         lambda d: (

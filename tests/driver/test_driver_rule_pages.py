@@ -7,7 +7,6 @@ contains its code or name.
 
 import re
 from collections.abc import Sequence
-from functools import cache
 from pathlib import Path
 
 import pytest
@@ -117,7 +116,6 @@ SEARCH_TEXTS = {
 """Text to search for where the test of a rule contains neither its code nor its name."""
 
 
-@cache
 def read_test_modules() -> str:
     """Return the text of all test modules except this one."""
     this_module = Path(__file__).name
@@ -126,14 +124,14 @@ def read_test_modules() -> str:
     )
 
 
-@pytest.mark.parametrize(
-    "rule",
-    [rule for rule in RULES if rule not in COMPILED and rule.code not in NOT_ABOUT_MODELS],
-    ids=lambda rule: rule.code,
-)
-def test_a_rule_whose_examples_are_not_compiled_is_named_in_a_test(rule):
-    names = (rule.code, rule.name, SEARCH_TEXTS.get(rule.code, rule.code))
-    assert any(name in read_test_modules() for name in names)
+def test_rules_whose_examples_are_not_compiled_are_named_in_tests():
+    tests = read_test_modules()
+    rules = [r for r in RULES if r not in COMPILED and r.code not in NOT_ABOUT_MODELS]
+    names = {rule.code: (rule.code, rule.name, SEARCH_TEXTS.get(rule.code)) for rule in rules}
+    unnamed = [
+        code for code, texts in names.items() if not any(text and text in tests for text in texts)
+    ]
+    assert unnamed == []
 
 
 def test_most_examples_are_compiled():
@@ -148,31 +146,41 @@ def test_examples_that_are_not_compiled_are_in_languages_that_could_be():
 # -- form of the pages ----------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("rule", RULES, ids=lambda rule: f"{rule.code}-{rule.name}")
-def test_a_rule_has_a_page_and_a_message_in_the_usual_form(rule):
-    assert re.fullmatch(r"SM[1-79]\d\d", rule.code)
-    assert re.fullmatch(r"[a-z0-9]+(-[a-z0-9]+)*", rule.name)
-    assert not rule.phrase.endswith(".")
-    assert not rule.help[:1].isupper()
-    assert not rule.help.endswith(".")
+def find_faults_of_form(rule: Rule) -> list[str]:
+    """Return the statements about the form of rules and their pages that do not hold."""
     page = rule.read_page()
-    assert page.title == f"{rule.code} {rule.name}"
-    assert page.why.endswith((".", ".)"))
-    if rule.code not in INTERNAL_ERRORS:
-        assert page.wrong
-        assert page.right
-        assert page.wrong != page.right
+    statements = {
+        "the code is SM and three digits": re.fullmatch(r"SM[1-79]\d\d", rule.code),
+        "the name is words with hyphens": re.fullmatch(r"[a-z0-9]+(-[a-z0-9]+)*", rule.name),
+        "the message has no final stop": not rule.phrase.endswith("."),
+        "the help starts in lower case": not rule.help[:1].isupper(),
+        "the help has no final stop": not rule.help.endswith("."),
+        "the page is named after the rule": page.title == f"{rule.code} {rule.name}",
+        "the reason is a sentence": page.why.endswith((".", ".)")),
+        "the examples exist and differ": rule.code in INTERNAL_ERRORS
+        or (page.wrong and page.right and page.wrong != page.right),
+    }
+    return [statement for statement, holds in statements.items() if not holds]
+
+
+def test_rules_have_pages_and_messages_in_the_usual_form():
+    faults = {rule.code: broken for rule in RULES if (broken := find_faults_of_form(rule))}
+    assert faults == {}
 
 
 def test_every_page_belongs_to_a_rule():
     assert {path.name for path in PAGES.iterdir()} == {f"{rule.code}.md" for rule in RULES}
 
 
-@pytest.mark.parametrize("path", sorted(PAGES.glob("*.md")), ids=lambda path: path.stem)
-def test_a_page_has_the_usual_sections_in_order(path):
-    text = path.read_text(encoding="utf-8")
+def has_usual_sections(text: str) -> bool:
+    """Whether a page has the usual sections in order, and examples in one language only."""
     prose = re.sub(r"^```.*?^```$", "", text, flags=re.MULTILINE | re.DOTALL)
     titles = re.findall(r"^#+ .*", prose, re.MULTILINE)
     sections = ["## Why", "## Wrong", "## Right", "## In Papyrus"]
-    assert titles[1:] == [section for section in sections if section in titles]
-    assert len(set(re.findall(r"^```(\w+)$", text, re.MULTILINE))) <= 1
+    is_in_order = titles[1:] == [section for section in sections if section in titles]
+    return is_in_order and len(set(re.findall(r"^```(\w+)$", text, re.MULTILINE))) <= 1
+
+
+def test_pages_have_the_usual_sections_in_order():
+    pages = sorted(PAGES.glob("*.md"))
+    assert [page.name for page in pages if not has_usual_sections(page.read_text("utf-8"))] == []

@@ -448,3 +448,39 @@ def test_what_an_element_outside_the_model_owns_is_no_difference(external, count
     old = STUB.format(external=external, member="")
     new = STUB.format(external=external, member='Property s.a "speed"')
     assert len(list_changes(old, new, "id")) == count
+
+
+MERGES = """\
+Activity a "Sort"
+  Action x "left"
+  Action y "right"
+  Control {first} "" subkind="merge"
+  Control {second} "" subkind="merge"
+  ControlFlow f1{note}
+    -> flow-source m1
+    -> flow-target x
+  ControlFlow f2{note}
+    -> flow-source m2
+    -> flow-target y
+"""
+
+
+@pytest.mark.parametrize(
+    ("note", "expected"),
+    [
+        ("", []),
+        (
+            ' guard="free"',
+            [
+                "Sort: changed control flow merge -> left, guard: None => free",
+                "Sort: changed control flow merge -> right, guard: None => free",
+            ],
+        ),
+    ],
+)
+def test_nodes_without_names_are_paired_by_their_flows_although_the_flows_have_changed(
+    note, expected
+):
+    old = MERGES.format(first="m1", second="m2", note="")
+    new = MERGES.format(first="m2", second="m1", note=note)
+    assert list_changes(old, new, "id") == expected

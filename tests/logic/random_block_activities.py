@@ -9,13 +9,16 @@ import random
 from collections.abc import Callable, Iterator
 
 from hypothesis import strategies as st
+from msgspec.structs import replace
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.element import AttrValue
 from sysmlc.logic import evaluate
 from sysmlc.logic.activities import interpreter
-from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.activities.derivation import list_variables
+from sysmlc.logic.activities.token_graph import Handshake, TokenGraph
+from sysmlc.logic.contract import Owner
 from sysmlc.logic.domains import values
 from sysmlc.logic.formula import Literal
 from sysmlc.passes.activities import Activities
@@ -302,14 +305,38 @@ def draw_activity(block: Block, has_final: bool = True) -> Graph:
 
 
 def build_tokens(graph: Graph, make: Callable[[], Activities] = Activities) -> TokenGraph:
-    """Return the token graph of the only activity."""
+    """Return the token graph of the only activity, which is repeated."""
     make().run(graph, Sink())
     (tokens,) = graph.derived(TokenGraph)
-    return tokens
+    return perform(tokens, "repeated")
+
+
+_STOP_PROBABILITY = 0.05
+
+
+def perform(tokens: TokenGraph, way: str) -> TokenGraph:
+    """Return the activity as it is performed: repeated, once, or started and stopped by others."""
+    handshakes = {
+        "repeated": None,
+        "once": Handshake("running_a", "finished_a", is_started=True),
+        "called": Handshake("running_a", "finished_a", "start_a"),
+        "do": Handshake("running_a", "finished_a", "start_a", "stop_a"),
+        "main and called": Handshake("running_a", "finished_a", "start_a", is_started=True),
+    }
+    return replace(tokens, handshake=handshakes[way])
+
+
+WAYS = ("repeated", "once", "called", "do", "main and called")
+"""The ways in which activities are performed."""
 
 
 def draw_inputs(tokens: TokenGraph, dice: random.Random) -> Valuation:
-    return {variable.name: dice.choice(values(variable.domain)) for variable in tokens.inputs}
+    inputs = [v for v in list_variables(tokens) if v.owner is Owner.ENVIRONMENT]
+    drawn = {variable.name: dice.choice(values(variable.domain)) for variable in inputs}
+    # A performance that is stopped in every second step would never get far.
+    if tokens.handshake is not None and tokens.handshake.stop:
+        drawn[tokens.handshake.stop] = dice.random() < _STOP_PROBABILITY
+    return drawn
 
 
 def play(

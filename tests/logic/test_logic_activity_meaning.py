@@ -2,7 +2,15 @@
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from random_block_activities import blocks, build_tokens, draw_activity, list_successors, play_trace
+from random_block_activities import (
+    WAYS,
+    blocks,
+    build_tokens,
+    draw_activity,
+    list_successors,
+    perform,
+    play_trace,
+)
 
 from long_runs import examples
 from sysmlc.logic import evaluate
@@ -21,17 +29,17 @@ def list_violated(contract, trace):
 
 
 @settings(max_examples=examples(150), deadline=None)
-@given(blocks(), st.booleans(), st.integers(0, 2**16))
-def test_every_run_of_an_activity_satisfies_the_guarantees(block, has_final, seed):
-    tokens = build_tokens(draw_activity(block, has_final))
+@given(blocks(), st.booleans(), st.sampled_from(WAYS), st.integers(0, 2**16))
+def test_every_run_of_an_activity_satisfies_the_guarantees(block, has_final, way, seed):
+    tokens = perform(build_tokens(draw_activity(block, has_final)), way)
     assert list_violated(derive_contract(tokens), play_trace(tokens, seed, 60)) == []
 
 
 @settings(max_examples=examples(100), deadline=None)
-@given(blocks(), st.integers(0, 2**16), st.data())
-def test_a_run_with_one_changed_output_violates_a_guarantee(block, seed, data):
+@given(blocks(), st.sampled_from(WAYS), st.integers(0, 2**16), st.data())
+def test_a_run_with_one_changed_output_violates_a_guarantee(block, way, seed, data):
     """Any token is put somewhere or removed, any action starts or stops, at any step."""
-    tokens = build_tokens(draw_activity(block))
+    tokens = perform(build_tokens(draw_activity(block)), way)
     contract, trace = derive_contract(tokens), play_trace(tokens, seed, 30)
     outputs = [variable.name for variable in contract.variables if variable.owner is Owner.SYSTEM]
     name = data.draw(st.sampled_from(outputs))
@@ -41,17 +49,18 @@ def test_a_run_with_one_changed_output_violates_a_guarantee(block, seed, data):
 
 
 @settings(max_examples=examples(100), deadline=None)
-@given(blocks(), st.integers(0, 2**16), st.data())
+@given(blocks(), st.sampled_from(WAYS), st.integers(0, 2**16), st.data())
 def test_a_changed_input_violates_a_guarantee_unless_the_next_step_is_still_possible(
-    block, seed, data
+    block, way, seed, data
 ):
     """The run continues as if an action had ended, or a guard had held, that did not."""
-    tokens = build_tokens(draw_activity(block))
+    tokens = perform(build_tokens(draw_activity(block)), way)
     contract, trace = derive_contract(tokens), play_trace(tokens, seed, 30)
-    if not tokens.inputs:
+    inputs = [variable.name for variable in contract.variables if variable.owner == "env"]
+    if not inputs:
         return
     step = data.draw(st.integers(0, len(trace) - 2))
-    name = data.draw(st.sampled_from([variable.name for variable in tokens.inputs]))
+    name = data.draw(st.sampled_from(inputs))
     trace[step] = {**trace[step], name: not trace[step][name]}
     successors = list_successors(tokens, trace[step])
     state = {variable: trace[step + 1][variable] for variable in successors[0]}

@@ -6,9 +6,11 @@ from itertools import pairwise
 from hypothesis import given, note, settings
 from hypothesis import strategies as st
 from random_block_activities import (
+    WAYS,
     Valuation,
     draw_activity,
     list_successors,
+    perform,
     play,
     play_trace,
     rich_blocks,
@@ -32,7 +34,7 @@ def build_tokens_if_safe(block, **options) -> TokenGraph | None:
     Activities(max_markings=4000, **options).run(graph, sink)
     graphs = graph.derived(TokenGraph)
     assert graphs or {diagnostic.rule.code for diagnostic in sink} & {"SM454", "SM455"}
-    return graphs[0] if graphs else None
+    return perform(graphs[0], "repeated") if graphs else None
 
 
 def is_allowed(contract: Contract, before: Valuation, after: Valuation) -> bool:
@@ -45,11 +47,12 @@ def is_allowed(contract: Contract, before: Valuation, after: Valuation) -> bool:
 
 
 @settings(max_examples=examples(60), deadline=None)
-@given(rich_blocks(), st.integers(0, 2**16))
-def test_the_contract_allows_each_step_and_none_that_differs_in_one_variable(block, seed):
+@given(rich_blocks(), st.sampled_from(WAYS), st.integers(0, 2**16))
+def test_the_contract_allows_each_step_and_none_that_differs_in_one_variable(block, way, seed):
     tokens = build_tokens_if_safe(block)
     if tokens is None:
         return
+    tokens = perform(tokens, way)
     contract = derive_contract(tokens)
     outputs = [variable.name for variable in contract.variables if variable.owner is Owner.SYSTEM]
     for before, after in pairwise(play_trace(tokens, seed, 10)):
@@ -62,11 +65,12 @@ def test_the_contract_allows_each_step_and_none_that_differs_in_one_variable(blo
 
 
 @settings(max_examples=examples(120), deadline=None)
-@given(rich_blocks(), st.integers(0, 2**16))
-def test_the_contract_allows_every_choice_of_the_interpreter(block, seed):
+@given(rich_blocks(), st.sampled_from(WAYS), st.integers(0, 2**16))
+def test_the_contract_allows_every_choice_of_the_interpreter(block, way, seed):
     tokens = build_tokens_if_safe(block)
     if tokens is None:
         return
+    tokens = perform(tokens, way)
     contract = derive_contract(tokens)
     for before, after in pairwise(play_trace(tokens, seed, 26)):
         for successor in list_successors(tokens, before):

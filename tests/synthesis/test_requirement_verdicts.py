@@ -14,7 +14,7 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.infix import parse_formula
 from sysmlc.synthesis.decision import Options
-from sysmlc.synthesis.requirement_verdicts import decide_requirements, is_safety
+from sysmlc.synthesis.requirement_verdicts import BehaviourCheck, is_safety
 
 NAMES = {"run": Owner.SYSTEM, "full": Owner.SYSTEM, "done": Owner.ENVIRONMENT}
 DOMAINS = {name: BooleanDomain() for name in NAMES}
@@ -43,7 +43,7 @@ FILLING = contract(
 def decide(formula, behaviour=None, class_=Class.OTHER):
     required = contract((), (conjunct(formula, class_, Source.AUTHOR),))
     checked = behaviour or ComponentBehaviour(FILLING)
-    (verdict,) = decide_requirements(checked, required, (), Options())
+    (verdict,) = BehaviourCheck(checked, required, (), Options()).decide_requirements()
     return verdict
 
 

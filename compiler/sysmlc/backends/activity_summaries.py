@@ -7,6 +7,7 @@ before and after, and what is assumed. All text of the model is escaped for Mark
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 
+from sysmlc.logic.activities.handshakes import describe_performance
 from sysmlc.logic.activities.token_graph import (
     ACTIVITY_REGION,
     NodeKind,
@@ -48,6 +49,8 @@ class ActivitySummary:
         """Yield the paragraphs as Markdown."""
         game = self._game
         done = {name for node in game.nodes if node.done for name in _names_in(node)}
+        if game.handshake is not None:
+            yield f"**Performance.** It runs {describe_performance(game.handshake, '`')}."
         inputs = [v for v in game.inputs if v.name not in done and v.name not in game.pulses]
         events = [v for v in game.inputs if v.name not in done and v.name in game.pulses]
         stores = (*game.stores, *game.shared)
@@ -230,6 +233,8 @@ class ActivitySummary:
         own = {node.run for node in self._game.nodes}
         own |= {edge.variable for edge in self._game.edges}
         own |= {name for _, name in self._game.quiets}
+        if self._game.handshake is not None:
+            own.add(self._game.handshake.running)
         texts = [
             _quote(print_formula(conjunct.formula))
             for conjunct in (*self._contract.assumptions, *self._contract.guarantees)
@@ -243,9 +248,9 @@ class ActivitySummary:
         if not self._game.finishes:
             yield "It never ends."
         elif finals:
-            yield f"It ends at {_join(finals, 'or')}, and may then start again."
+            yield f"It ends at {_join(finals, 'or')}."
         else:
-            yield "It ends when no step is left, and may then start again."
+            yield "It ends when no step is left."
         for store in self._game.stores if self._is_sequential() else ():
             last = self._find_last_writes(store)
             if last is not None and len(last) == 1 and _is_constant(last[0]):

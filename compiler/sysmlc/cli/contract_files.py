@@ -47,6 +47,14 @@ class ContractFile(Struct, frozen=True):
     """Verdicts on the times that requirements state, by the id of the requirement."""
 
 
+def split_operand(text: str) -> tuple[Path, str]:
+    """Return the file and the component, or an empty text, of ``FILE`` or ``FILE#COMPONENT``."""
+    if Path(text).exists():
+        return Path(text), ""
+    file, _, component = text.partition("#")
+    return Path(file), component
+
+
 def select_contracts(
     contracts: "tuple[Contract, ...]", component: str, composites: "Sequence[Composite]" = ()
 ) -> "tuple[Contract, ...]":

@@ -47,12 +47,10 @@ class Operand(Struct, frozen=True):
 
 def _read_operand(text: str, language: str, config: "Config", settings: "Settings") -> Operand:
     """Read one contract; exits with code 2 if there is none, or more than one."""
-    from sysmlc.cli.contract_files import read_contracts, select_contracts
+    from sysmlc.cli.contract_files import read_contracts, select_contracts, split_operand
     from sysmlc.cli.session import fail
 
-    file, component = Path(text), ""
-    if "#" in text and not file.exists():
-        file, component = Path(text.partition("#")[0]), text.partition("#")[2]
+    file, component = split_operand(text)
     contract_file = read_contracts(file, language, config, settings)
     if not contract_file.contracts:
         _print_findings([contract_file], settings)
@@ -90,8 +88,9 @@ def _read_both(
     texts: tuple[str, str], language: str, settings: "Settings"
 ) -> tuple[Operand, Operand]:
     from sysmlc.cli import session
+    from sysmlc.cli.contract_files import split_operand
 
-    config = session.load_config(tuple(Path(text.partition("#")[0]) for text in texts), settings)
+    config = session.load_config(tuple(split_operand(text)[0] for text in texts), settings)
     first, second = (_read_operand(text, language, config, settings) for text in texts)
     return first, second
 

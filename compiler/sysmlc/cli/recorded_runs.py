@@ -21,12 +21,12 @@ if TYPE_CHECKING:
     epilog="""\b
 Examples:
   sysmlc contracts accept gate.contract.json monday.csv
-  sysmlc contracts accept plant.uml monday.csv -c Plant::Gate
+  sysmlc contracts accept plant.uml#Plant::Gate monday.csv
   sysmlc contracts accept plant.sysml run.json -c Plant::Cell --strict
 
 Exit codes: 0 no step breaks a guarantee, 1 a step does, 2 the run could not be read.""",
 )
-@click.argument("file", type=click.Path(path_type=Path), metavar="CONTRACT")
+@click.argument("operand", metavar="CONTRACT")
 @click.argument("run_file", type=click.Path(path_type=Path), metavar="RUN")
 @click.option("-c", "--component", default="", metavar="NAME", help="The component of the run.")
 @click.option("--from", "language", default="", metavar="FORM", help="Format of the contract.")
@@ -36,7 +36,7 @@ Exit codes: 0 no step breaks a guarantee, 1 a step does, 2 the run could not be 
 def accept_command(
     ctx: click.Context,
     /,
-    file: Path,
+    operand: str,
     run_file: Path,
     component: str,
     language: str,
@@ -50,16 +50,24 @@ def accept_command(
     sooner or later, which no finite run breaks.
     """
     from sysmlc.cli import session
-    from sysmlc.cli.contract_files import read_contracts, select_contracts, show_results
+    from sysmlc.cli.contract_files import (
+        read_contracts,
+        select_contracts,
+        show_results,
+        split_operand,
+    )
     from sysmlc.driver.faults import compute_exit_code
 
     settings = session.Settings(**setting_values)
+    file, operand_component = split_operand(operand)
     config = session.load_config((file,), settings)
     contract_file = read_contracts(file, language, config, settings)
-    contracts = select_contracts(contract_file.contracts, component)
+    contracts = select_contracts(contract_file.contracts, component or operand_component)
     if len(contracts) != 1:
         names = ", ".join(contract.component for contract in contracts)
-        session.fail(f"name the component of the run by -c: {names or 'there is none'}")
+        session.fail(
+            f"name the component of the run, by -c or FILE#COMPONENT: {names or 'there is none'}"
+        )
     summary = _accept_run(contract_file, contracts[0], run_file)
     show_results(contract_file, settings, [summary] if summary else [])
     is_strict = settings.strict or config.strict

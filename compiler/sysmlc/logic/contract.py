@@ -9,7 +9,7 @@ from enum import StrEnum
 from msgspec import Struct
 from msgspec.structs import replace
 
-from sysmlc.logic.formula import TRUE, Formula
+from sysmlc.logic.formula import TRUE, Formula, eq, fold_iff, prime, var
 
 
 class Owner(StrEnum):
@@ -51,6 +51,12 @@ class Variable(Struct, frozen=True):
     owner: Owner
     domain: Domain
     origin: str = ""
+
+
+def equals(variable: Variable, value: Formula, *, is_next: bool = False) -> Formula:
+    """Return the formula that a variable has a value, in this step or the next one."""
+    name = prime(var(variable.name)) if is_next else var(variable.name)
+    return fold_iff(name, value) if isinstance(variable.domain, BooleanDomain) else eq(name, value)
 
 
 class Class(StrEnum):

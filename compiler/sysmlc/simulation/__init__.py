@@ -1,6 +1,215 @@
-"""Scenarios, played on the reference interpreters of activities and state machines."""
+"""Scenarios, played on the reference interpreters of activities and state machines.
 
-from sysmlc.simulation.report import Report
-from sysmlc.simulation.runner import run_scenarios
+A scenario passes if some run of the diagram shows every expected value.
+"""
+
+from collections.abc import Iterable, Mapping
+
+from sysmlc.diagnostics import Sink
+from sysmlc.ir import Graph
+from sysmlc.logic.contract import Owner, Variable
+from sysmlc.logic.domains import contains, describe
+from sysmlc.logic.formula import Literal
+from sysmlc.logic.machines.interpreter import Valuation
+from sysmlc.simulation.components import MAX_RUNS
+from sysmlc.simulation.players import (
+    Player,
+    find_component_player,
+    find_players,
+    find_resting_value,
+)
+from sysmlc.simulation.report import Difference, Report, Result, show_value
+from sysmlc.simulation.scenario import (
+    COMPONENT,
+    NOT_INPUT,
+    TOO_MANY_RUNS,
+    VALUE,
+    VARIABLE,
+    Entry,
+    Scenario,
+    read_scenarios,
+)
+from sysmlc.sources import Source
+from sysmlc.support.suggestions import did_you_mean
 
 __all__ = ["Report", "run_scenarios"]
+
+
+_Trace = tuple[Valuation, ...]
+
+
+def run_scenarios(graph: Graph, scenario_source: Source, sink: Sink) -> Report:
+    """Play every scenario of a file on a graph that the passes have refined.
+
+    Faults of the file are reported to *sink*. A scenario with a fault is not played.
+    """
+    scenarios = read_scenarios(scenario_source, sink)
+    players = find_players(graph) if scenarios else {}
+    results = [_play_scenario(graph, scenario, players, sink) for scenario in scenarios]
+    return Report(scenario_source.name, tuple(results))
+
+
+def _play_scenario(
+    graph: Graph, scenario: Scenario, players_by_name: Mapping[str, Player], sink: Sink
+) -> Result:
+    player = _find_player(graph, scenario, players_by_name, sink)
+    if player is None or not _has_valid_entries(scenario, player, sink):
+        return Result(scenario.name, scenario.component, scenario.location.line, is_valid=False)
+    resting_values = {
+        variable.name: find_resting_value(graph, variable)
+        for variable in player.variables
+        if variable.owner is Owner.ENVIRONMENT
+    }
+    return _follow_runs(scenario, player, resting_values, sink)
+
+
+# -- checks ------------------------------------------------------------------------------------
+
+
+def _find_player(
+    graph: Graph, scenario: Scenario, players_by_name: Mapping[str, Player], sink: Sink
+) -> Player | None:
+    """Return the player of the component: of the whole block, or else of its only behaviour."""
+    name = scenario.component
+    matches = [player for player in players_by_name if _short_name(player) == name]
+    if name not in players_by_name and len(matches) == 1:
+        name = matches[0]
+    player = find_component_player(graph, name) or players_by_name.get(name)
+    if player is not None:
+        return player
+    names = ", ".join(sorted(matches or players_by_name)) or "none"
+    sink.report(
+        COMPONENT, scenario.subject(scenario.location), name=scenario.component, known=names
+    )
+    return None
+
+
+def _short_name(name: str) -> str:
+    return name.rpartition("::")[2]
+
+
+def _has_valid_entries(scenario: Scenario, player: Player, sink: Sink) -> bool:
+    variables = {variable.name: variable for variable in player.variables}
+    valid = [
+        _is_valid_entry(entry, is_input, variables, scenario, sink)
+        for step in scenario.steps
+        for is_input, entries in ((True, step.inputs), (False, step.expect))
+        for entry in entries
+    ]
+    return all(valid)
+
+
+def _is_valid_entry(
+    entry: Entry,
+    is_input: bool,
+    variables: Mapping[str, Variable],
+    scenario: Scenario,
+    sink: Sink,
+) -> bool:
+    name, component = entry.name, scenario.component
+    variable = variables.get(name)
+    if variable is None:
+        sink.report(
+            VARIABLE,
+            scenario.subject(entry.location),
+            component=component,
+            name=name,
+            advice=did_you_mean(name, variables),
+        )
+    elif not contains(variable.domain, entry.value):
+        shown, domain = show_value(entry.value), describe(variable.domain)
+        sink.report(VALUE, scenario.subject(entry.location), value=shown, name=name, domain=domain)
+    elif is_input and variable.owner is Owner.SYSTEM:
+        sink.report(NOT_INPUT, scenario.subject(entry.location), name=name, component=component)
+    else:
+        return True
+    return False
+
+
+# -- runs --------------------------------------------------------------------------------------
+
+
+def _follow_runs(
+    scenario: Scenario, player: Player, resting_values: Valuation, sink: Sink
+) -> Result:
+    """Follow all runs of the diagram that show the expected values, step by step.
+
+    If no run remains after a step, the result has that step as its difference, and as its trace the
+    run that shows most of the values expected in it. If some runs were not followed, that no run
+    remains is reported as undecided.
+    """
+    is_complete = True
+    inputs = dict(resting_values)
+    traces: list[_Trace] = [()]
+    for number, step in enumerate(scenario.steps):
+        # Inputs that are not pulses retain their value until the scenario sets them again.
+        inputs.update({name: resting_values[name] for name in player.pulses})
+        inputs.update({entry.name: entry.value for entry in step.inputs})
+        traces, has_all = _extend_traces(player, traces, dict(inputs))
+        is_complete &= has_all
+        matching = [trace for trace in traces if _find_missed_entry(trace[-1], step.expect) is None]
+        if not matching:
+            trace, entry = _find_nearest(traces, step.expect)
+            if not is_complete:
+                location = scenario.subject(entry.location)
+                name, component = entry.name, player.component
+                sink.report(TOO_MANY_RUNS, location, name=name, component=component, limit=MAX_RUNS)
+                return Result(scenario.name, component, scenario.location.line, is_valid=False)
+            actual = trace[-1].get(entry.name)
+            difference = Difference(number, entry.name, entry.value, actual, entry.location.line)
+            return Result(
+                scenario.name,
+                player.component,
+                scenario.location.line,
+                trace,
+                difference,
+                _input_names(player),
+            )
+        traces = matching
+    return Result(
+        scenario.name,
+        player.component,
+        scenario.location.line,
+        traces[0],
+        None,
+        _input_names(player),
+    )
+
+
+def _input_names(player: Player) -> frozenset[str]:
+    return frozenset(v.name for v in player.variables if v.owner is Owner.ENVIRONMENT)
+
+
+def _extend_traces(
+    player: Player, traces: list[_Trace], inputs: Valuation
+) -> tuple[list[_Trace], bool]:
+    """Extend each run by each possible step; retain one run for each valuation that is reached.
+
+    The second result is false if there are more runs than are followed.
+    """
+    has_all = True
+    traces_by_state: dict[frozenset[tuple[str, Literal]], _Trace] = {}
+    for trace in traces:
+        valuations = player.successors(trace[-1], inputs) if trace else player.initial(inputs)
+        has_all &= len(valuations) <= MAX_RUNS
+        for valuation in valuations:
+            traces_by_state.setdefault(frozenset(valuation.items()), (*trace, valuation))
+        if len(traces_by_state) > MAX_RUNS:
+            return list(traces_by_state.values())[:MAX_RUNS], False
+    return list(traces_by_state.values()), has_all
+
+
+def _find_missed_entry(valuation: Valuation, expect: Iterable[Entry]) -> Entry | None:
+    return next((entry for entry in expect if valuation.get(entry.name) != entry.value), None)
+
+
+def _find_nearest(traces: list[_Trace], expect: tuple[Entry, ...]) -> tuple[_Trace, Entry]:
+    """Return the run whose last step misses the fewest expected values, and the first of these."""
+
+    def count_missed(trace: _Trace) -> int:
+        return sum(trace[-1].get(entry.name) != entry.value for entry in expect)
+
+    nearest = min(traces, key=count_missed)
+    entry = _find_missed_entry(nearest[-1], expect)
+    assert entry is not None
+    return nearest, entry

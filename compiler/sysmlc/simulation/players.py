@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Protocol
 
 from msgspec import Struct
+from msgspec.structs import replace
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, Kind, query
@@ -62,7 +63,9 @@ def find_players(graph: Graph) -> dict[str, Player]:
     """Return a player for every component that can be simulated, by qualified name."""
     players_by_name: dict[str, Player] = {}
     for tokens in graph.derived(TokenGraph):
-        players_by_name.setdefault(tokens.component, ActivityPlayer(tokens))
+        # Alone, an activity starts again after each end.
+        repeated = replace(tokens, handshake=None)
+        players_by_name.setdefault(tokens.component, ActivityPlayer(repeated))
     for element in graph.of_kind(Kind.STATE_MACHINE):
         # The pass that derives contracts has reported the faults of the machine.
         machine = read_machine(graph, element, Sink())

@@ -1,4 +1,4 @@
-"""Escapes texts of models and file names, which terminals and Markdown would interpret."""
+"""Escapes texts of models and file names, which terminals, Markdown or XML would interpret."""
 
 import re
 import unicodedata
@@ -16,6 +16,8 @@ target of a link can follow, '_' unless it stands between letters."""
 _BLOCK = re.compile(r"[#=+>\[-]|([0-9]+)[.)](?=\s|$)")
 """The start of a line that CommonMark reads as a heading, rule, quotation, list item or target."""
 _SURROGATE = re.compile("[\ud800-\udfff]")
+_ILLEGAL_IN_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""Characters outside the production Char (XML 1.0, 2.2)."""
 
 
 def escape_invisible(text: str, allowed: str = "") -> str:
@@ -78,3 +80,8 @@ def _escape_markup(match: re.Match[str]) -> str:
 def _escape_surrogate(match: re.Match[str]) -> str:
     code = ord(match[0])
     return f"\\x{code - 0xDC00:02x}" if 0xDC80 <= code <= 0xDCFF else f"\\u{code:04x}"
+
+
+def replace_illegal_in_xml(text: str) -> tuple[str, int]:
+    """Return *text* with U+FFFD for each character that XML does not allow, and their number."""
+    return _ILLEGAL_IN_XML.subn("\ufffd", text)

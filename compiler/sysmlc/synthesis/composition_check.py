@@ -206,7 +206,7 @@ def _note_open_assumptions(composition: Composition) -> tuple[str, ...]:
     )
     if not names:
         return ()
-    return (f"what {names} may promise is not counted on: what it takes for granted is open",)
+    return (f"the guarantees of {names} were not used, because they depend on open assumptions",)
 
 
 def _report_conflict(

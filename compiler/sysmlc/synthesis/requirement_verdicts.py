@@ -50,8 +50,8 @@ class RequirementVerdict(Struct, frozen=True):
     """The answer for one conjunct, with its reason, and the run that violates a broken one.
 
     ``needed`` are the derived assumptions without which a conjunct that holds would not.
-    ``vacuity`` tells why a conjunct that holds says nothing about the behaviour; it is empty if it
-    does.
+    ``vacuity`` is the reason why a conjunct that holds says nothing about the behaviour; it is
+    empty for other conjuncts.
     """
 
     conjunct: Conjunct
@@ -71,7 +71,7 @@ class WriteConflict(Struct, frozen=True):
 
 
 class BehaviourFindings(Struct, frozen=True):
-    """What no requirement asks for.
+    """Faults of a behaviour that are found without a requirement.
 
     ``conflicts`` are the features to which two writers may give different values in one step,
     ``unreachable`` the names of places that no run reaches, by kind.
@@ -90,24 +90,12 @@ UNREACHABLE_RULES = {
 _UNDECIDED_PROBLEMS = (OutsideGr1Error, DomainError, LimitError, NotReducibleError)
 
 
-def decide_requirements(
-    behaviour: ComponentBehaviour,
-    requirements: Contract,
-    undischarged: Iterable[Conjunct],
-    options: Options,
-) -> Iterator[RequirementVerdict]:
-    """Yield the verdict about each conjunct that the author requires.
+class BehaviourCheck:
+    """Questions about the runs of a behaviour that satisfy the author's assumptions.
 
     *undischarged* are the assumptions that the author wrote on the behaviour and that the
     requirements do not entail: the author's guarantees of the behaviour then prove nothing.
     """
-    yield from BehaviourCheck(
-        behaviour, requirements, tuple(undischarged), options
-    ).decide_requirements()
-
-
-class BehaviourCheck:
-    """Questions about the runs of a behaviour that satisfy the author's assumptions."""
 
     def __init__(
         self,
@@ -194,12 +182,12 @@ class BehaviourCheck:
         return self._refute(conjunct, endings)
 
     def _minimise(self, endings: tuple[Conjunct, ...], conjunct: Conjunct) -> tuple[Conjunct, ...]:
-        """Return a smallest subset of the derived assumptions that still proves the conjunct."""
+        """Return a minimal subset of the derived assumptions that still proves the conjunct."""
         needed = endings
         for ending in endings:
-            rest = tuple(candidate for candidate in needed if candidate != ending)
-            if self._entails(rest, conjunct):
-                needed = rest
+            without_ending = tuple(candidate for candidate in needed if candidate != ending)
+            if self._entails(without_ending, conjunct):
+                needed = without_ending
         return needed
 
     def _explain_vacuity(self, conjunct: Conjunct, endings: tuple[Conjunct, ...]) -> str:
@@ -269,7 +257,7 @@ class BehaviourCheck:
         return next(iter((*unknown, *features, *gaps)), None)
 
     def _is_history_bit(self, variable: Variable) -> bool:
-        derived = (item for item in self._requirements.guarantees if item.is_derived)
+        derived = (conjunct for conjunct in self._requirements.guarantees if conjunct.is_derived)
         return variable.name in _names_of(derived)
 
     def _explain_gap(self, name: str) -> str:

@@ -1,14 +1,19 @@
 """The SMV file of a behaviour has the behaviour as a model and its requirements as LTLSPEC.
 
-No NuSMV or nuXmv is available to the tests. A reader of expressions that was written for them, with
-the precedence of the manual of NuSMV (2.7, section 2.2), compares the steps with the contract.
+Where NuSMV or nuXmv is installed, it decides the requirements. Everywhere a reader of expressions
+that was written for these tests, with the precedence of the manual of NuSMV (2.7, section 2.2),
+compares the steps with the contract.
 """
 
 import random
 import re
+import shutil
+import subprocess
 
-from test_promela_models import PRESS
+import pytest
+from test_promela_models import CLAIMS, EXPECTED, PRESS
 
+from contract_oracle import list_models, require
 from sysmlc.backends.contract_formats import SMV, add_behaviour
 from sysmlc.diagnostics import Sink
 from sysmlc.driver import Request, compile_model
@@ -18,6 +23,9 @@ from sysmlc.logic.contract import Class, Contract
 from sysmlc.logic.domains import values
 from sysmlc.logic.evaluate import is_true
 from sysmlc.support.output import Output
+
+CHECKER = shutil.which("NuSMV") or shutil.which("nuXmv")
+needs_nusmv = pytest.mark.skipif(CHECKER is None, reason="needs NuSMV or nuXmv")
 
 LEVELS = [["->"], ["<->"], ["|"], ["&"], ["=", "!=", "<", "<=", ">", ">="], ["+", "-"], ["*"]]
 """Operators from weak to strong; ! is stronger than all."""
@@ -75,8 +83,13 @@ def read_operand(tokens, now, then):
 
 def write_press(tmp_path):
     """Return the graph of the press, and its SMV files by path."""
-    path = tmp_path / "press.sysml"
-    path.write_text(PRESS, encoding="utf-8")
+    return write_smv(PRESS, tmp_path)
+
+
+def write_smv(text, tmp_path):
+    """Return the graph of a model, and its SMV files by path."""
+    path = tmp_path / "model.sysml"
+    path.write_text(text, encoding="utf-8")
     graph, output = compile_model(Request((path,))).graph, Output()
     SMV.emit(graph, output, Sink(), None)
     return graph, {artefact.path: artefact.text for artefact in output.artefacts()}
@@ -146,3 +159,66 @@ def test_specifications_with_different_assumptions_are_reported():
     )
     assert formats.read(text, "x.smv", sink) == ()
     assert "it has other assumptions than the formula before" in next(iter(sink)).message
+
+
+def verify(text, tmp_path):
+    """Return for each LTLSPEC of a model whether it holds according to NuSMV."""
+    path = tmp_path / "model.smv"
+    path.write_text(text, encoding="utf-8")
+    result = subprocess.run([CHECKER, path], capture_output=True, text=True, check=False)
+    assert result.returncode == 0, result.stderr
+    assert "ERROR" not in result.stderr
+    answers = re.findall(r"^-- specification .* is (true|false)$", result.stdout, re.MULTILINE)
+    names = re.findall(r"^LTLSPEC NAME (\w+) :=", text, re.MULTILINE)
+    return {name: answer == "true" for name, answer in zip(names, answers, strict=True)}
+
+
+@needs_nusmv
+def test_nusmv_decides_each_requirement(tmp_path):
+    _, files = write_press(tmp_path)
+    assert verify(files["contracts/Shop.Press.requirements.smv"], tmp_path) == EXPECTED
+
+
+@needs_nusmv
+def test_nusmv_finds_a_fault_in_the_model(tmp_path):
+    """The faulty press opens while it closes."""
+    _, files = write_press(tmp_path)
+    model = files["contracts/Shop.Press.requirements.smv"]
+    faulty = re.sub(r"next\(closed\)", "!next(closed)", model)
+    answers = verify(faulty, tmp_path)
+    assert not all(answers[name] for name in CLAIMS[:4])
+
+
+def test_constants_are_written_as_nusmv_reads_them(tmp_path):
+    """NuSMV takes ``false`` for the name of a variable."""
+    text = PRESS.replace("G F state=Busy", "F G false")
+    _, files = write_smv(text, tmp_path)
+    model = files["contracts/Shop.Press.requirements.smv"]
+    assert "LTLSPEC NAME Rules_6 := (F G FALSE);" in model
+    assert re.findall(r"\b(?:true|false)\b", model) == []
+
+
+@needs_nusmv
+@pytest.mark.long
+@pytest.mark.corpus
+@pytest.mark.parametrize("model", list_models(), ids=lambda model: model.path.stem)
+def test_nusmv_agrees_with_the_oracle(model, tmp_path):
+    _, files = write_smv(require(model), tmp_path)
+    component = model.component.replace("::", ".")
+    paths = (f"contracts/{component}{end}.smv" for end in (".requirements", ""))
+    answers = verify(next(files[path] for path in paths if path in files), tmp_path)
+    expected = {f"R_{fact.name}": fact.holds for fact in model.properties}
+    assert {name: answers[name] for name in expected} == expected
+
+
+@needs_nusmv
+@pytest.mark.long
+@pytest.mark.corpus
+@pytest.mark.parametrize("model", list_models(), ids=lambda model: model.path.stem)
+def test_nusmv_proves_the_contract_of_each_behaviour(model, tmp_path):
+    """Each behaviour ends, or repeats, as it guarantees; one model has a requirement it breaks."""
+    _, files = write_smv(model.text, tmp_path)
+    assert files
+    broken = [path for path, text in files.items() if not all(verify(text, tmp_path).values())]
+    is_author = model.path.stem == "chain_requirement"
+    assert broken == ["contracts/ChainRequirement.Plant.smv"] * is_author

@@ -161,3 +161,118 @@ def test_an_interaction_stays_an_interaction_if_it_is_a_test_case(role):
     (interaction,) = [element for element in graph if element.name == "Scenario"]
     assert (interaction.kind, interaction.role) == ("Interaction", "test case" if role else "")
     assert list_names(graph, "Lifeline") == ["a"]
+
+
+# -- regions and properties ------------------------------------------------------------------------
+
+REGIONS = """
+Package p "Plant"
+  Class gate "Gate" role="block"
+    StateMachine sm "Life"
+      Region sm.r ""
+        State s "Work"
+          Region s.r1 ""
+{state}
+"""
+
+
+def list_regions(lines_of_state):
+    """Return the number of vertices of each region of a state."""
+    _, graph, losses = read_back(REGIONS.replace("{state}", lines_of_state))
+    assert losses == []
+    (state,) = [element for element in graph if element.name == "Work"]
+    return [len(graph.owned(region)) for region in graph.owned(state)]
+
+
+def test_the_regions_of_a_state_are_read_again_if_they_are_empty():
+    inner = '            State s.a "A"'
+    assert list_regions("") == [0]
+    assert list_regions(inner) == [1]
+    assert list_regions(f'{inner}\n          Region s.r2 ""') == [1, 0]
+
+
+BEHAVIOUR_AS_TYPE = """
+Package p "Plant"
+  Class gate "Gate" role="block"
+    Property gate.p "run"{aggregation}
+      -> typed-by b
+    {behaviour} b "Behaviour"
+"""
+
+
+@pytest.mark.parametrize("behaviour", ["Activity", "StateMachine"])
+@pytest.mark.parametrize("aggregation", ["", ' aggregation="composite"'])
+def test_a_property_typed_by_a_behaviour_of_its_class_is_no_behaviour(behaviour, aggregation):
+    model = BEHAVIOUR_AS_TYPE.replace("{aggregation}", aggregation)
+    _, graph, _ = read_back(model.replace("{behaviour}", behaviour))
+    assert list_names(graph, "Property") == ["run"]
+    assert list_names(graph, behaviour) == ["Behaviour"]
+    assert list_target_names(graph, "run", Edge.TYPED_BY) == ["Behaviour"]
+
+
+def test_an_activity_without_steps_in_the_text_stays_an_activity():
+    model = REGIONS.partition("    StateMachine")[0]
+    _, graph, _ = read_back(
+        f'{model}    Activity a "Read"\n      Control a.i "" subkind="initial"\n'
+    )
+    assert list_names(graph, "Activity") == ["Read"]
+
+
+def test_a_view_that_is_a_package_stays_a_package():
+    model = 'Package p "Plant"\n  {kind} v "Overview" role="view"\n'
+    for kind in ("Package", "Class"):
+        _, graph, _ = read_back(model.replace("{kind}", kind))
+        (view,) = [element for element in graph if element.name == "Overview"]
+        assert (view.kind, view.role) == (kind, "view")
+
+
+def test_the_result_of_a_test_case_that_is_an_interaction_is_a_parameter():
+    scenario = INSIDE.replace("{role}", ' role="test case"')
+    scenario += '      Parameter i.v "verdict" direction="return"\n'
+    _, graph, _ = read_back(SCENARIO.replace("{scenario}", scenario))
+    assert list_names(graph, "Parameter") == ["verdict"]
+
+
+# -- approximations --------------------------------------------------------------------------------
+
+
+def list_approximations(text):
+    _, _, losses = read_back(text)
+    return [loss for loss in losses if loss.startswith("SM734")]
+
+
+@pytest.mark.parametrize(("trigger", "count"), [('subkind="any"', 0), ("", 1)])
+def test_a_trigger_without_an_event_is_an_approximation(trigger, count):
+    state = f"""
+        Transition sm.t ""
+          -> flow-source s
+          -> flow-target s
+          -> trigger sm.g
+          Trigger sm.g "" {trigger}"""
+    found = list_approximations(REGIONS.replace('          Region s.r1 ""\n{state}', state[1:]))
+    assert len([loss for loss in found if "a trigger without an event" in loss]) == count
+
+
+# -- associations ----------------------------------------------------------------------------------
+
+ASSOCIATION = """
+Package p "Plant"
+  Class gate "Gate" role="block"
+    Activity run "Run"
+    Property gate.p "do"
+      -> typed-by {type}
+  Class motor "Motor" role="block"
+  Association a ""
+    -> end gate.p a.e
+    Property a.e ""
+      -> typed-by gate
+"""
+
+
+@pytest.mark.parametrize("type_", ["run", "motor"])
+def test_an_end_of_an_association_is_the_property_of_the_class_whatever_its_type(type_):
+    _, graph, _ = read_back(ASSOCIATION.replace("{type}", type_))
+    (association,) = [element for element in graph if element.kind == "Association"]
+    ends = graph.targets(association, Edge.END)
+    assert [(end.name, graph.owner(end).name) for end in ends] == [("do", "Gate"), ("", "")]
+    assert list_names(graph, "Property") == ["do", ""]

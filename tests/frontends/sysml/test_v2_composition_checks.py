@@ -45,8 +45,8 @@ def test_an_assumption_that_nothing_guarantees_is_reported_with_a_run():
         "('Takes' assumes it)"
     )
     assert diagnostics[0].notes[0].startswith("step 1: feeder.ready=false")
-    not_counted = "what 'picker' may promise is not counted on: what it takes for granted is open"
-    assert diagnostics[1].notes[-1] == not_counted
+    not_used = "the guarantees of 'picker' were not used, because they depend on open assumptions"
+    assert diagnostics[1].notes[-1] == not_used
     assert [witness.broken.text for witness in result.witnesses] == [
         "'Takes' assumes it.",
         "'Works' demands it.",

@@ -122,7 +122,7 @@ def test_a_usage_asks_for_its_steps_one_after_the_other(operation):
         side: [variable.name for variable in contract.variables if variable.owner is side]
         for side in Owner
     }
-    assert sides[Owner.ENVIRONMENT] == [f"done_{step}" for step in steps]
+    assert sides[Owner.ENVIRONMENT] == ["start_work", *(f"done_{step}" for step in steps)]
     assert {"asked", *(f"run_{step}" for step in steps)} <= set(sides[Owner.SYSTEM])
     assert [print_formula(assumption.formula) for assumption in contract.assumptions] == [
         f"!run_{step} | done_{step}" for step in steps

@@ -1,7 +1,6 @@
 """XML elements of CAEX 3.0, and values in the lexical forms of XML Schema."""
 
 import math
-import re
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -9,9 +8,8 @@ from lxml import etree
 
 from sysmlc.ir import AttrValue
 from sysmlc.sources.caex_vocabulary import NAMESPACE, ORDER
+from sysmlc.support.escapes import replace_illegal_in_xml
 
-_ILLEGAL = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-"""Characters outside the production Char (XML 1.0, 2.2)."""
 _UNORDERED = frozenset({"AdditionalInformation"})
 """Elements that may hold any XML, so that their children stay in the author's order."""
 
@@ -60,7 +58,7 @@ def print_document(root: Node) -> tuple[str, int]:
 
     def make_legal(text: str) -> str:
         nonlocal replaced
-        legal, count = _ILLEGAL.subn("\ufffd", text)
+        legal, count = replace_illegal_in_xml(text)
         replaced += count
         return legal
 

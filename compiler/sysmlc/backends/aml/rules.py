@@ -1,6 +1,6 @@
 """Rules for what CAEX cannot express, and the counter of such losses."""
 
-from sysmlc.backends.losses import LossCounter
+from sysmlc.backends.base import LossCounter
 from sysmlc.diagnostics import Severity, rule
 from sysmlc.ir import Element
 

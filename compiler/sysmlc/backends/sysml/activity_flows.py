@@ -296,8 +296,7 @@ def _list_flow_lines(writer: Writer, member: Member) -> list[_ScopedLine]:
     if target.kind is Kind.CONTROL:
         return _list_lines_over_control_nodes(writer, member, source, target)
     if "guard" in element.attrs:
-        facts = {"attribute": "guard", "kind": "ObjectFlow"}
-        writer.losses.record(UNSAID_ATTRIBUTE, element, **facts)
+        writer.losses.record(UNSAID_ATTRIBUTE, element, attribute="guard", kind="ObjectFlow")
     return _add_contents(writer, member, source, [target])
 
 
@@ -363,6 +362,8 @@ def _format_object_flow(
 ) -> str:
     """Return a flow between pins, or a binding; *source* and *target* are nodes with names."""
     prefixes = list_visibility(writer, flow)
+    if Kind.ACTION in (source[0].kind, target[0].kind):
+        writer.record_approximation(flow, "an object flow of an action", "one of a pin of it")
     if source[0].kind is not Kind.PIN or target[0].kind is not Kind.PIN:
         _record_shared_node(writer, flow, source[0], target[0])
         words = ["binding", quote_name(name)] if name else []
@@ -379,8 +380,7 @@ def _record_shared_node(writer: Writer, flow: Element, source: Element, target: 
     """
     for node, edge in ((source, Edge.FLOW_SOURCE), (target, Edge.FLOW_TARGET)):
         if node.kind is not Kind.PIN and len(writer.graph.sources(node, edge)) > 1:
-            construct = "an object flow of a node with several"
-            writer.record_approximation(flow, construct, "a binding")
+            writer.record_approximation(flow, "an object flow of a node with several", "a binding")
             return
 
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 
 from sysmlc.backends.sysml.attribute_coverage import is_measure
 from sysmlc.backends.sysml.plan import Member
-from sysmlc.backends.sysml.preserved_facts import list_unexpressed_facts
+from sysmlc.backends.sysml.preserved_facts import has_complete_flow, list_unexpressed_facts
 from sysmlc.backends.sysml.printing import (
     Line,
     format_comment,
@@ -61,6 +61,8 @@ _CAEX_ATTRIBUTES = {
     "default_value": "defaultValue",
 }
 """Feature of the metadata definition ``AutomationML`` by attribute."""
+_BEHAVIOUR_USAGES = ("action", "state")
+"""Keywords of usages that are read as behaviours of a classifier."""
 _STEPS = frozenset({Kind.ACTION, Kind.STRUCTURED, Kind.CONTROL})
 
 
@@ -179,8 +181,8 @@ def _iter_kind(writer: Writer, member: Member, element: Element) -> Iterator[Lin
     name = element.subkind if has_subkind else _KIND_NAMES.get(element.kind)
     name = name or _name_plain_port(writer, element) or _name_operation(writer, element)
     name = name or _name_idle_activity(writer, member, element)
-    if element.kind is Kind.PACKAGE and member.shape.keyword == "view def":
-        # A view was a package until SysML 1.3 and is a class since SysML 1.4.
+    if element.kind is Kind.PACKAGE and member.shape.is_definition:
+        # Views and viewpoints of SysML 1.3 and older may be packages.
         name = name or "package"
     name = name or _name_reference(writer, member, element)
     domain = element.attrs.get("domain") if element.kind in _ITEMS else None
@@ -215,8 +217,11 @@ def _name_operation(writer: Writer, element: Element) -> str | None:
 
 
 def _name_reference(writer: Writer, member: Member, element: Element) -> str | None:
-    """Return ``property`` for a reference of an interaction, which would be read as a lifeline."""
+    """Return ``property`` for a reference that would be read as a lifeline or a behaviour."""
     owner = writer.graph.owner(element) if element.kind is Kind.PROPERTY else None
+    if owner is not None and member.shape.keyword in _BEHAVIOUR_USAGES:
+        is_classifier = owner.kind in CLASSIFIERS or owner.kind is Kind.STATE_MACHINE
+        return "property" if is_classifier else None
     if owner is None or owner.kind is not Kind.INTERACTION or member.shape.keyword == "ref":
         return None
     return "property" if element.attrs.get("aggregation") != "composite" else None
@@ -229,8 +234,17 @@ def _name_idle_activity(writer: Writer, member: Member, element: Element) -> str
     if owner is None or owner.kind not in CLASSIFIERS or element.attrs.get("body"):
         return None
     is_run = element in writer.graph.targets(owner, Edge.CLASSIFIER_BEHAVIOR)
-    has_steps = any(child.kind in _STEPS for child in writer.graph.owned(element))
+    has_steps = any(_is_written_step(writer, child) for child in writer.graph.owned(element))
     return None if is_run or has_steps else "activity"
+
+
+def _is_written_step(writer: Writer, node: Element) -> bool:
+    """Whether a node is a step of the text: a start or an end is one if a flow leads to it."""
+    if node.kind not in _STEPS:
+        return False
+    member = writer.plan.find(node)
+    is_named = member is not None and member.shape.keyword != "start"
+    return is_named or has_complete_flow(writer.graph, node)
 
 
 def _iter_partitions(writer: Writer, member: Member, element: Element) -> Iterator[Line]:

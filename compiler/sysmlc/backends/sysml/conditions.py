@@ -149,6 +149,8 @@ def _format_message_payload(writer: Writer, scope: Member, trigger: Element) -> 
     if trigger.subkind == "call" and (type_ is None or member is None):
         return f"call : {writer.refer_to_sysmlc(scope, 'Call')}"
     if type_ is None or member is None:
+        if trigger.subkind != "any":
+            writer.record_approximation(trigger, "a trigger without an event", "any event")
         return f"any : {writer.refer_to_library(scope, 'Base::Anything')}"
     if member.shape.is_definition:
         name = writer.refer_to(scope, trigger, Edge.TYPED_BY, type_)

@@ -103,7 +103,11 @@ def _iter_part_facts(writer: Writer, part: Element, default_name: str) -> Iterat
     if part.name != default_name and not part.name and default_name in ("start", "done"):
         construct = "a first or last node without a name"
         writer.record_approximation(part, construct, "start or done")
-    elif part.name != default_name or _is_idle_parameter_node(writer, part):
+    elif (
+        part.name != default_name
+        or _is_idle_parameter_node(writer, part)
+        or is_empty_region(writer, part)
+    ):
         yield from _format_attribute(writer, "name", part.name)
     if part.kind is Kind.ACTIVITY_PARAMETER and not writer.graph.targets(part, Edge.TYPED_BY):
         construct = "a parameter node without a type"
@@ -123,6 +127,13 @@ def _is_idle_parameter_node(writer: Writer, part: Element) -> bool:
     ends = [writer.graph.target(flow, Edge.FLOW_TARGET) for flow in leaving]
     ends += [writer.graph.target(flow, Edge.FLOW_SOURCE) for flow in arriving]
     return all(end is None or end.kind is Kind.CONTROL for end in ends)
+
+
+def is_empty_region(writer: Writer, part: Element) -> bool:
+    """Whether an element is a region of which no vertex or transition has a line."""
+    if part.kind is not Kind.REGION:
+        return False
+    return all(writer.plan.find(member) is None for member in writer.graph.owned(part))
 
 
 def _iter_parts(writer: Writer, element: Element) -> Iterator[tuple[str, Element]]:
@@ -145,20 +156,29 @@ def _iter_parts(writer: Writer, element: Element) -> Iterator[tuple[str, Element
         yield "region", regions[0]
         children = graph.owned(regions[0])
     starts = [child for child in children if (child.kind, child.subkind) in _STARTS]
+    _record_shared(writer, starts[1:], "one of several initial nodes", "start")
     for start in starts[:1]:
-        if _has_complete_flow(graph, start):
+        if has_complete_flow(graph, start):
             yield "start", start
     ends = [
         child
         for child in children
         if (child.kind, child.subkind) in _ENDS and writer.plan.find(child) is None
     ]
+    _record_shared(writer, ends[1:], "one of several final nodes", "done")
     for end in ends[:1]:
-        if _has_complete_flow(graph, end):
+        if has_complete_flow(graph, end):
             yield "done", end
 
 
-def _has_complete_flow(graph: Graph, node: Element) -> bool:
+def _record_shared(writer: Writer, nodes: list[Element], construct: str, word: str) -> None:
+    """Record the nodes that the text cannot distinguish from the first start or end."""
+    for node in nodes:
+        if has_complete_flow(writer.graph, node):
+            writer.record_approximation(node, construct, word)
+
+
+def has_complete_flow(graph: Graph, node: Element) -> bool:
     """Whether a flow or transition with both ends leaves or enters a node: the text writes it."""
     leaving = graph.sources(node, Edge.FLOW_SOURCE)
     arriving = graph.sources(node, Edge.FLOW_TARGET)

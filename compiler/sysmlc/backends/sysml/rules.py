@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from sysmlc.backends.losses import LossCounter
+from sysmlc.backends.base import LossCounter
 from sysmlc.diagnostics import Rule, Severity, rule
 from sysmlc.ir import Element
 

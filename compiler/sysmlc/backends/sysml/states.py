@@ -6,6 +6,7 @@ from sysmlc.backends.sysml.conditions import format_condition, format_trigger
 from sysmlc.backends.sysml.declarations import list_visibility
 from sysmlc.backends.sysml.definitions import write_contents
 from sysmlc.backends.sysml.plan import Member
+from sysmlc.backends.sysml.preserved_facts import is_empty_region
 from sysmlc.backends.sysml.printing import Line, quote_name
 from sysmlc.backends.sysml.references import format_element_reference
 from sysmlc.backends.sysml.writer import Writer
@@ -52,8 +53,14 @@ def write_state(writer: Writer, member: Member) -> list[Line]:
 
 
 def write_region(writer: Writer, member: Member) -> list[Line]:
-    """Write one of several regions: a substate of a parallel state."""
-    return [Line(f"state {quote_name(member.name)}", write_contents(writer, member))]
+    """Write one of several regions: a substate of a parallel state.
+
+    Metadata marks an empty region, which would be read as a region with one state.
+    """
+    body = write_contents(writer, member)
+    if is_empty_region(writer, member.require_element()):
+        body.insert(0, make_annotation(writer, member, "Kind", {"name": "region"}))
+    return [Line(f"state {quote_name(member.name)}", body)]
 
 
 def write_pseudostate(writer: Writer, member: Member) -> list[Line]:

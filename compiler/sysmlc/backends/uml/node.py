@@ -4,8 +4,8 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-_ILLEGAL = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-"""Characters outside the production Char (XML 1.0, 2.2)."""
+from sysmlc.support.escapes import replace_illegal_in_xml
+
 _TEXT = {"&": "&amp;", "<": "&lt;", ">": "&gt;", "\r": "&#xD;"}
 # A parser replaces line ends and tabs in values of attributes by blanks (XML 1.0, 3.3.3).
 _VALUE = {"&": "&amp;", "<": "&lt;", '"': "&quot;", "\r": "&#xD;", "\n": "&#xA;", "\t": "&#x9;"}
@@ -70,7 +70,7 @@ def print_document(root: Node) -> tuple[str, int]:
             end = f">{_escape_text(node.text)}</{node.tag}>" if node.text else "/>"
             lines.append(f"{'  ' * depth}{_format_start(node)}{end}")
     lines.append("")
-    return _ILLEGAL.subn("\ufffd", "\n".join(lines))
+    return replace_illegal_in_xml("\n".join(lines))
 
 
 def _format_start(node: Node) -> str:

@@ -6,7 +6,7 @@ pass ``kept`` restores it when the saved model is read.
 
 from dataclasses import dataclass, field
 
-from sysmlc.backends.losses import LossCounter
+from sysmlc.backends.base import LossCounter
 from sysmlc.backends.uml.hrefs import make_href
 from sysmlc.diagnostics import Rule, Severity, Sink, rule
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind

@@ -34,6 +34,9 @@ def add_relations(file: _FileLowering, record: Record, element: Element | None) 
         return
     for relation, id in record.relations:
         edge = v.RELATIONS.get(relation)
+        if edge is Edge.TYPED_BY and element.kind is Kind.LIFELINE and record.targets("represents"):
+            # UML: only the represented element has a type, which MTIP repeats.
+            continue
         if edge is Edge.TYPED_BY and not id:
             _add_unnamed_type(file, record, element)
         elif edge is Edge.INSTANCE_OF and element.kind not in v.INSTANCES:

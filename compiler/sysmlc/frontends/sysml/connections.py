@@ -7,7 +7,7 @@ from sysmlc.frontends.sysml.definitions import lower_definition, visibility_attr
 from sysmlc.frontends.sysml.features import lower_property
 from sysmlc.frontends.sysml.kinds import CLASSIFIERS
 from sysmlc.ir import Edge, Element, Kind
-from sysmlc.ir.query import generals, type_of
+from sysmlc.ir.query import BEHAVIORS, generals, type_of
 from sysmlc.language.tree import Node
 
 if TYPE_CHECKING:
@@ -224,18 +224,24 @@ def _connect_association(lowering: "Lowering", ends: list[Node], association: El
 def _find_opposite_feature(lowering: "Lowering", end: Node, ends: list[Node]) -> Element | None:
     """Return the feature of the opposite end's type that has the name and type of an end.
 
-    The names are those of the text: metadata may have restored another one in the graph.
+    The names are those of the text: metadata may have restored another one in the graph. A feature
+    whose type is a behaviour of a class subsets that behaviour, and its end has no type.
     """
     if len(ends) != 2:
         return None
     end_types = [lowering.element_of(type_) for type_ in nodes.types_of(lowering, end)]
     opposite = ends[1] if end is ends[0] else ends[0]
-    for type_ in nodes.types_of(lowering, opposite):
+    subsetted = [reference.target for reference in nodes.list_references(opposite, "Subsetting")]
+    usages = [usage for usage in subsetted if usage is not None]
+    for type_ in nodes.types_of(lowering, opposite) or usages:
         for member in type_.members:
             if nodes.name_of(member) != nodes.name_of(end):
                 continue
             feature = lowering.element_of(member)
-            is_feature = feature is not None and feature.kind in _FEATURES
-            if feature and is_feature and type_of(lowering.graph, feature) in end_types:
+            if feature is None or feature.kind not in _FEATURES:
+                continue
+            feature_type = type_of(lowering.graph, feature)
+            is_behaviour = feature_type is not None and feature_type.kind in BEHAVIORS
+            if feature_type in end_types or (is_behaviour and not end_types):
                 return feature
     return None

@@ -144,16 +144,16 @@ def _connect_relation(lowering: "Lowering", feature: Element, relation: Relation
 def _connect_subsetted(lowering: "Lowering", feature: Element, target: Node | None) -> None:
     """Connect a feature of the owner, or an inherited one, as subsetted; another as referenced.
 
-    A usage that is a behaviour in the graph is the type of the feature: it is a classifier in UML.
+    A behaviour of UML is no feature but a type.
     """
     subsetted = lowering.element_of(target)
+    if subsetted is not None and subsetted.kind in BEHAVIORS and feature.kind is Kind.PROPERTY:
+        lowering.graph.connect(Edge.TYPED_BY, feature, subsetted)
+        return
     classifier = lowering.graph.owner(feature)
     declaring = None if subsetted is None else lowering.graph.owner(subsetted)
     if subsetted is None or classifier is None or declaring is None:
         lowering.connect_node(Edge.SUBSETS, feature, target)
-        return
-    if subsetted.kind in BEHAVIORS:
-        lowering.graph.connect(Edge.TYPED_BY, feature, subsetted)
         return
     is_inherited = declaring is classifier or declaring in generals(lowering.graph, classifier)
     edge = Edge.SUBSETS if is_inherited else Edge.REFERENCES

@@ -29,6 +29,7 @@ _PACKAGES = frozenset({Kind.PACKAGE, Kind.PROFILE})
 _BEHAVIOURS_WITHOUT_STEPS = frozenset(
     {Kind.OPERATION, Kind.STATE_MACHINE, Kind.STATE, Kind.REGION, Kind.RECEPTION}
 )
+_WITH_PROPERTIES = STRUCTURAL | {Kind.STATE_MACHINE}
 _INTERACTIONS = frozenset({Kind.INTERACTION, Kind.FRAGMENT, Kind.OPERAND})
 
 _MemberHandler = Callable[[Lowering, Node, Element], object]
@@ -51,10 +52,17 @@ def _lower_feature(lowering: Lowering, node: Node, owner: Element | None) -> Non
         features.lower_classifier_feature(lowering, node, owner)
     elif owner.kind in ACTIVITIES or owner.kind in _BEHAVIOURS_WITHOUT_STEPS:
         object_nodes.lower_behaviour_feature(lowering, node, owner)
-    elif owner.kind in _INTERACTIONS:
+    elif owner.kind in _INTERACTIONS and "direction" not in node.attributes:
         interactions.lower_interaction_member(lowering, node, owner)
+    elif owner.kind is Kind.INTERACTION:
+        object_nodes.lower_behaviour_feature(lowering, node, owner)
     else:
         lowering.mark_unsupported(node)
+
+
+def _is_property(node: Node) -> bool:
+    """Whether metadata states that a usage with the keyword of a behaviour is a property."""
+    return annotations.metadata_value(node, "Kind", "name") == "property"
 
 
 def _is_interaction(node: Node) -> bool:
@@ -72,8 +80,8 @@ def _lower_action(lowering: Lowering, node: Node, owner: Element | None) -> None
         activities.lower_classifier_action(lowering, node, owner)
     elif owner.kind in ACTIVITIES:
         actions.lower_action(lowering, node, owner)
-    elif owner.kind in STRUCTURAL and _is_reference(node):
-        features.lower_classifier_feature(lowering, node, owner)
+    elif owner.kind in _WITH_PROPERTIES and _is_property(node):
+        features.lower_property(lowering, node, owner)
     elif owner.kind in STRUCTURAL and node.kind == "PerformActionUsage":
         activities.lower_performance(lowering, node, owner)
     elif owner.kind in STRUCTURAL:
@@ -82,17 +90,6 @@ def _lower_action(lowering: Lowering, node: Node, owner: Element | None) -> None
         activities.lower_activity(lowering, node, owner)
     else:
         lowering.mark_unsupported(node)
-
-
-def _is_reference(node: Node) -> bool:
-    """Whether a usage without members only refers to a behaviour (``ref state s :> t;``).
-
-    The operations of a port are references as well (SysML 2.0, 8.3.12).
-    """
-    is_in_port = node.owner is not None and node.owner.kind.startswith("Port")
-    is_usage = node.kind in ("ActionUsage", "StateUsage") and not is_in_port
-    is_reference = is_usage and bool(node.attributes.get("isReference"))
-    return is_reference and all(map(nodes.is_annotation, nodes.body_of(node)))
 
 
 def _as_step(handler: _MemberHandler) -> Handler:
@@ -168,8 +165,8 @@ def _lower_state(lowering: Lowering, node: Node, owner: Element | None) -> None:
         states.lower_state(lowering, node, owner)
     elif owner is not None and owner.kind in ACTIVITIES:
         actions.lower_action(lowering, node, owner)
-    elif owner is not None and owner.kind in STRUCTURAL and _is_reference(node):
-        features.lower_classifier_feature(lowering, node, owner)
+    elif owner is not None and owner.kind in _WITH_PROPERTIES and _is_property(node):
+        features.lower_property(lowering, node, owner)
     else:
         states.lower_state_machine(lowering, node, owner)
 

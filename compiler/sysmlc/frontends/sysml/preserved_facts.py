@@ -62,6 +62,9 @@ def _restore_fact(lowering: "Lowering", element: Element, fact: str, attempts: i
     if holder is None and part == "node" and element.kind is Kind.PARAMETER:
         # No flow has needed the node of the parameter.
         holder = lowering.ensure_parameter_node(element)
+    if holder is None and part == "region":
+        # The region is empty.
+        holder = lowering.add_implied_child(element, Kind.REGION, "")
     if holder is None:
         return
     if key == "name":

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml import expressions, nodes, values
+from sysmlc.frontends.sysml import annotations, expressions, nodes, values
 from sysmlc.frontends.sysml.activities import lower_body
 from sysmlc.frontends.sysml.definitions import (
     connect_generals,
@@ -102,13 +102,16 @@ def _lower_content(lowering: "Lowering", node: Node, state: Element) -> None:
 def _lower_parallel_state(lowering: "Lowering", node: Node, owner: Element) -> None:
     """Lower a state of a parallel state to a region with its substates.
 
-    A state with subactions or parallel substates is itself the only state of the region.
+    A state with subactions or parallel substates, or without substates, is itself the only state of
+    the region, unless metadata calls it a region.
     """
     region = lowering.add_derived(node, Kind.REGION, nodes.name_of(node), owner)
     body = nodes.body_of(node)
     has_substates = any(map(_belongs_to_region, body))
+    is_marked = annotations.metadata_value(node, "Kind", "name") == "region"
     has_subactions = any(_is_subaction(member) and not _is_empty(member) for member in body)
-    if has_subactions or not has_substates or node.attributes.get("isParallel"):
+    is_state = has_subactions or not has_substates or node.attributes.get("isParallel")
+    if is_state and not is_marked:
         state = lower_state(lowering, node, region)
         start = lowering.ensure_vertex(region, "start", node)
         transition = lowering.add_derived(node, Kind.TRANSITION, "", region)

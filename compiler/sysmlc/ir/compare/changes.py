@@ -2,7 +2,6 @@
 
 from collections import Counter
 from collections.abc import Callable, Collection, Container, Iterator
-from functools import partial
 from typing import NamedTuple
 
 from sysmlc.ir.compare.content import (
@@ -24,7 +23,7 @@ from sysmlc.ir.compare.pairs import (
     pair_by_name,
     tokenise,
 )
-from sysmlc.ir.compare.refinement import BothFingerprints, pair_by_choice, pair_by_surroundings
+from sysmlc.ir.compare.refinement import list_refinements
 from sysmlc.ir.compare.side import (
     Side,
     follows_internal_element,
@@ -73,10 +72,8 @@ def _pair_elements(old: Side, new: Side, *, has_ids: bool) -> Pairs:
     if has_ids:
         pair_by_id(pairs)
     pair_by_name(pairs)
-    fingerprints = BothFingerprints(pairs)
     steps: list[Callable[[Pairs], None]] = [
-        partial(pair_by_surroundings, fingerprints),
-        partial(pair_by_choice, fingerprints),
+        *list_refinements(pairs),
         pair_by_likeness,
         pair_by_move,
     ]

@@ -5,7 +5,8 @@ facts and its subtree; each round mixes in the colours of the neighbours. Elemen
 with equal colours have equal surroundings.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
 from itertools import islice
 from typing import NamedTuple
 
@@ -22,10 +23,40 @@ Group = tuple[list[Element], list[Element]]
 """Unpaired children of one pair of owners, of the old and of the new model."""
 
 
+def list_refinements(pairs: Pairs) -> list[Callable[[Pairs], None]]:
+    """Return the steps that pair elements by surroundings, the most reliable one first."""
+    fingerprints = BothFingerprints(pairs)
+    steps = (pair_by_surroundings, pair_by_structure, pair_by_choice)
+    return [partial(step, fingerprints) for step in steps]
+
+
 def pair_by_surroundings(fingerprints: "BothFingerprints", pairs: Pairs) -> None:
     """Pair siblings whose colour is unique on both sides, by colours of the last round first."""
     groups = list(pairs.iter_unpaired())
-    rounds = _Refinement(fingerprints, groups).rounds if groups else ()
+    if groups:
+        _pair_unique_colours(pairs, groups, _Refinement(fingerprints, groups).rounds)
+
+
+def pair_by_structure(fingerprints: "BothFingerprints", pairs: Pairs) -> None:
+    """Pair siblings whose position among linked elements is unique, whatever their facts are.
+
+    The first colours are kinds and names, so that changed facts do not change the colours of the
+    neighbours. Without a link, an element has no position.
+    """
+    groups = [
+        (linked_olds, linked_news)
+        for olds, news in pairs.iter_unpaired()
+        if (linked_olds := [element for element in olds if pairs.old.links.get(element.id)])
+        if (linked_news := [element for element in news if pairs.new.links.get(element.id)])
+    ]
+    if groups:
+        refinement = _Refinement(fingerprints, groups, is_structural=True)
+        _pair_unique_colours(pairs, groups, refinement.rounds[:-1])
+
+
+def _pair_unique_colours(
+    pairs: Pairs, groups: Sequence[Group], rounds: Sequence[tuple[Colours, Colours]]
+) -> None:
     for old_colours, new_colours in rounds:
         for group in groups:
             for olds, news in list(_iter_equal(pairs, group, old_colours, new_colours)):
@@ -234,11 +265,17 @@ class _SideRefinement:
     """The colours of the unpaired elements of one side.
 
     A link of an element below an unpaired element counts as a link of the unpaired element.
-    The first colours are fingerprints, which are not negative; later colours are negative.
+    The first colours are fingerprints, or kinds and names if *is_structural*. These colours are not
+    negative; later colours are.
     """
 
     def __init__(
-        self, fingerprints: _Fingerprints, elements: list[Element], numbering: _Numbering
+        self,
+        fingerprints: _Fingerprints,
+        elements: list[Element],
+        numbering: _Numbering,
+        *,
+        is_structural: bool,
     ) -> None:
         self._fingerprints = fingerprints
         self._side = fingerprints.side
@@ -249,7 +286,12 @@ class _SideRefinement:
         }
         self._neighbourhoods: dict[str, _Neighbourhood] = {}
         fingerprints.invalidate_new_pairs()
-        self.colours: Colours = {e.id: fingerprints.of_subtree(e) for e in elements}
+        self.colours: Colours = {
+            element.id: numbering[element.kind, element.subkind, name_in_comparison(element)]
+            if is_structural
+            else fingerprints.of_subtree(element)
+            for element in elements
+        }
 
     def count_colours(self) -> int:
         """Return the number of different colours."""
@@ -293,12 +335,18 @@ class _SideRefinement:
 class _Refinement:
     """The colours of both sides after each round, the last round first."""
 
-    def __init__(self, fingerprints: BothFingerprints, groups: Sequence[Group]) -> None:
+    def __init__(
+        self,
+        fingerprints: BothFingerprints,
+        groups: Sequence[Group],
+        *,
+        is_structural: bool = False,
+    ) -> None:
         numbering = _Numbering()
         olds = [element for group in groups for element in group[0]]
         news = [element for group in groups for element in group[1]]
-        self.old = _SideRefinement(fingerprints.old, olds, numbering)
-        self.new = _SideRefinement(fingerprints.new, news, numbering)
+        self.old = _SideRefinement(fingerprints.old, olds, numbering, is_structural=is_structural)
+        self.new = _SideRefinement(fingerprints.new, news, numbering, is_structural=is_structural)
         self.rounds = [(self.old.colours, self.new.colours)]
         self._refine()
         self.rounds.reverse()

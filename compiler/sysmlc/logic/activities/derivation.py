@@ -13,6 +13,7 @@ from functools import lru_cache
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.assumptions import derive_assumptions, find_endless_entries
+from sysmlc.logic.activities.handshakes import derive_handshake
 from sysmlc.logic.activities.step_formulas import StepFormulas, token_at
 from sysmlc.logic.activities.token_graph import (
     ACTIVITY_REGION,
@@ -32,6 +33,7 @@ from sysmlc.logic.contract import (
     Owner,
     Variable,
     drop_trivial,
+    equals,
 )
 from sysmlc.logic.formula import Const, Formula
 from sysmlc.logic.printing import print_formula, print_literal
@@ -41,26 +43,27 @@ _CACHE_SIZE = 256
 
 
 @lru_cache(_CACHE_SIZE)
-def derive_contract(graph: TokenGraph, is_repeated: bool = True) -> Contract:
+def derive_contract(graph: TokenGraph) -> Contract:
     """Return the contract of an activity.
 
     It guarantees that the tokens move as drawn and, if the environment keeps the assumptions, that
-    the activity finishes again and again. If the activity is not repeated, the contract describes a
-    single performance: after its end nothing runs.
+    each performance ends.
     """
-    formulas = StepFormulas(graph, is_repeated)
+    formulas = StepFormulas(graph)
     return Contract(
         component=graph.component,
         origin=graph.activity,
         variables=list_variables(graph),
         assumptions=drop_trivial(derive_assumptions(formulas)),
-        guarantees=drop_trivial(_derive_guarantees(formulas, is_repeated)),
+        guarantees=drop_trivial(_derive_guarantees(formulas)),
     )
 
 
-def _derive_guarantees(formulas: StepFormulas, is_repeated: bool) -> Iterator[Conjunct]:
+def _derive_guarantees(formulas: StepFormulas) -> Iterator[Conjunct]:
     """Yield how the activity starts, how its tokens and variables change, and its progress."""
     graph = formulas.graph
+    if graph.handshake is not None:
+        yield from derive_handshake(formulas, graph.handshake)
     yield from _derive_start_tokens(graph)
     for store in graph.stores:
         yield from _derive_initial_value(store)
@@ -69,14 +72,13 @@ def _derive_guarantees(formulas: StepFormulas, is_repeated: bool) -> Iterator[Co
         yield derive_run_update(formulas, node)
     for store in graph.stores:
         yield from _derive_store_updates(formulas, store)
-    if is_repeated:
-        yield from _derive_progress(formulas)
+    yield from _derive_progress(formulas)
 
 
 def derive_token_updates(formulas: StepFormulas) -> Iterator[Conjunct]:
     """Yield how tokens move, and which regions are complete."""
     graph = formulas.graph
-    for region, name in graph.quiets:
+    for region, name in _list_completions(graph):
         yield _derive_completion(formulas, region, name)
     for edge in graph.edges:
         if not formulas.is_chosen(edge):
@@ -88,17 +90,33 @@ def derive_token_updates(formulas: StepFormulas) -> Iterator[Conjunct]:
 def list_variables(graph: TokenGraph) -> tuple[Variable, ...]:
     """List the variables of an activity.
 
-    These are inputs, written variables, and Booleans for running nodes, tokens and complete
-    regions.
+    These are inputs, written variables, and Booleans for the handshake, nodes, tokens and regions.
     """
     run_variables = [(node.run, node.origin) for node in graph.workers()]
+    handshake = graph.handshake
+    inputs = (name for name in (handshake.start, handshake.stop) if name) if handshake else ()
+    outputs = (handshake.running, handshake.finished) if handshake else ()
     token_variables = [(edge.variable, edge.origin) for edge in graph.edges]
-    region_variables = [(name, _origin_of(graph, region)) for region, name in graph.quiets]
+    region_variables = [
+        (name, _origin_of(graph, region)) for region, name in _list_completions(graph)
+    ]
     system_variables = (
         Variable(name, Owner.SYSTEM, BooleanDomain(), origin)
-        for name, origin in (*run_variables, *token_variables, *region_variables)
+        for name, origin in (
+            *((name, graph.activity) for name in outputs),
+            *run_variables,
+            *token_variables,
+            *region_variables,
+        )
     )
-    return (*graph.inputs, *(store.variable for store in graph.stores), *system_variables)
+    calls = (Variable(name, Owner.ENVIRONMENT, BooleanDomain(), graph.activity) for name in inputs)
+    return (*calls, *graph.inputs, *(store.variable for store in graph.stores), *system_variables)
+
+
+def _list_completions(graph: TokenGraph) -> list[tuple[str, str]]:
+    """List the regions with a variable for their end, except one that the handshake has."""
+    is_named = graph.handshake is not None
+    return [quiet for quiet in graph.quiets if not (is_named and quiet[0] == ACTIVITY_REGION)]
 
 
 def _origin_of(graph: TokenGraph, region: str) -> str:
@@ -110,8 +128,9 @@ def _label_of(graph: TokenGraph, region: str) -> str:
 
 
 def _derive_start_tokens(graph: TokenGraph) -> Iterator[Conjunct]:
+    is_started = graph.handshake is None or graph.handshake.is_started
     for edge in graph.edges:
-        is_marked = edge.marked and edge.region == ACTIVITY_REGION
+        is_marked = edge.marked and edge.region == ACTIVITY_REGION and is_started
         value = token_at(edge) if is_marked else f.negate(token_at(edge))
         yield Conjunct(value, Class.INIT, edge.origin, _describe_start(graph, edge, is_marked))
     for node in graph.workers():
@@ -275,16 +294,19 @@ def _capitalize(text: str) -> str:
 
 def _derive_progress(formulas: StepFormulas) -> Iterator[Conjunct]:
     """Yield the liveness guarantees: the activity finishes, or passes its loops, repeatedly."""
-    graph = formulas.graph
+    graph, handshake = formulas.graph, formulas.graph.handshake
+    idle = f.FALSE if handshake is None else f.negate(f.var(handshake.running))
     if graph.finishes:
         text = f"{_capitalize(graph.label)} finishes again and again."
-        yield Conjunct(
-            formulas.complete_formula(ACTIVITY_REGION), Class.LIVENESS, graph.activity, text
-        )
+        if handshake is not None:
+            text = f"Whenever {graph.label} runs, it ends sooner or later."
+        ends = f.either(idle, formulas.complete_formula(ACTIVITY_REGION))
+        yield Conjunct(ends, Class.LIVENESS, graph.activity, text)
         return
+    condition = "" if handshake is None else f" while {graph.label} runs"
     for entry in find_endless_entries(graph):
-        text = f"{_capitalize(entry.label)} is reached again and again."
-        reached = f.either(*map(token_at, graph.incoming(entry)))
+        text = f"{_capitalize(entry.label)} is reached again and again{condition}."
+        reached = f.either(idle, *map(token_at, graph.incoming(entry)))
         yield Conjunct(reached, Class.LIVENESS, entry.origin, text)
 
 
@@ -292,7 +314,7 @@ def _derive_initial_value(store: Store) -> Iterator[Conjunct]:
     """Yield the initial value of a variable, if the model gives one."""
     if store.first is not None:
         text = f"At the start '{store.variable.name}' is {print_literal(store.first)}."
-        value = _equality(store, Const(store.first), is_next=False)
+        value = equals(store.variable, Const(store.first))
         yield Conjunct(value, Class.INIT, store.variable.origin, text)
 
 
@@ -303,17 +325,22 @@ def _derive_store_updates(formulas: StepFormulas, store: Store) -> Iterator[Conj
         if store.local and store.first is not None
         else f.FALSE
     )
-    writing = [formulas.finish_formula(formulas.graph.node(write.node)) for write in store.writes]
+    # The new start wins over a write in the step in which the last performance is stopped.
+    is_reset = f.both(restart, formulas.stop_formula())
+    writing = [
+        f.both(formulas.finish_formula(formulas.graph.node(write.node)), f.negate(is_reset))
+        for write in store.writes
+    ]
     for write, write_formula in zip(store.writes, writing, strict=True):
         yield from _derive_write(
             formulas, store, write, write_formula, _simultaneous_writes(formulas, store, write)
         )
     origin, name = store.variable.origin, store.variable.name
     if store.first is not None and restart != f.FALSE:
-        value = _equality(store, Const(store.first), is_next=True)
+        value = equals(store.variable, Const(store.first), is_next=True)
         text = f"'{name}' is {print_literal(store.first)} whenever {formulas.graph.label} starts."
         yield Conjunct(f.implies(restart, value), Class.SAFETY, origin, text)
-    unchanged = _equality(store, f.var(name), is_next=True)
+    unchanged = equals(store.variable, f.var(name), is_next=True)
     frame = f.implies(f.negate(f.either(*writing, restart)), unchanged)
     text = f"'{name}' keeps its value until an action writes another."
     yield Conjunct(frame, Class.SAFETY, origin, text)
@@ -344,7 +371,7 @@ def _derive_write(
     node, name = formulas.graph.node(write.node), store.variable.name
     for condition, value in write.values:
         write_case = f.both(write_formula, condition)
-        result = f.either(_equality(store, value, is_next=True), *simultaneous)
+        result = f.either(equals(store.variable, value, is_next=True), *simultaneous)
         cause = f"{node.label} is done{_describe_condition(condition)}"
         text = f"When {cause}, '{name}' becomes {_describe_value(write, value)}."
         yield Conjunct(f.implies(write_case, result), Class.SAFETY, node.origin, text)
@@ -362,14 +389,4 @@ def _write_formulas(formulas: StepFormulas, store: Store, write: Write) -> Itera
     """Yield, for each value, the formula that the write happens now and assigns the value."""
     write_formula = formulas.finish_formula(formulas.graph.node(write.node))
     for condition, value in write.values:
-        yield f.both(write_formula, condition, _equality(store, value, is_next=True))
-
-
-def _equality(store: Store, value: Formula, *, is_next: bool) -> Formula:
-    name = f.var(store.variable.name)
-    variable = f.prime(name) if is_next else name
-    if not isinstance(store.variable.domain, BooleanDomain):
-        return f.eq(variable, value)
-    if isinstance(value, Const):
-        return variable if value.value else f.negate(variable)
-    return f.fold_iff(variable, value)
+        yield f.both(write_formula, condition, equals(store.variable, value, is_next=True))

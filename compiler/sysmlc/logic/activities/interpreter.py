@@ -18,6 +18,7 @@ from sysmlc.logic.activities.token_graph import (
     ACTIVITY_REGION,
     Duration,
     Firing,
+    Handshake,
     NodeKind,
     TokenEdge,
     TokenGraph,
@@ -42,11 +43,15 @@ class NotSafeError(RuntimeError):
 
 
 class State(Struct, frozen=True):
-    """Ids of edges with a token and of running nodes, and the values of written variables."""
+    """Ids of edges with a token and of running nodes, and the values of written variables.
+
+    ``is_performed`` is false before the start and after the end of an activity with a handshake.
+    """
 
     tokens: frozenset[str]
     running: frozenset[str]
     stored: tuple[tuple[str, Literal], ...] = ()
+    is_performed: bool = True
 
 
 def _choose_first(node: TokenNode, options: Sequence[_T]) -> _T:
@@ -64,11 +69,13 @@ def initial_state(graph: TokenGraph) -> State:
         )
         for store in graph.stores
     )
+    if graph.handshake is not None and not graph.handshake.is_started:
+        return State(frozenset(), frozenset(), tuple(stored), is_performed=False)
     return State(frozenset(_marked_edges(graph, ACTIVITY_REGION)), frozenset(), tuple(stored))
 
 
 def _restarted_state(graph: TokenGraph, state_before: State) -> State:
-    """Return the state in which the activity starts again."""
+    """Return the state in which the activity starts after another state."""
     reset_values = {
         store.variable.name: store.first
         for store in graph.stores
@@ -83,6 +90,9 @@ def values_of(graph: TokenGraph, state: State) -> dict[str, Literal]:
     runs: dict[str, Literal] = {node.run: node.id in state.running for node in graph.workers()}
     quiet = {name: is_complete(graph, state, region) for region, name in graph.quiets}
     tokens = {edge.variable: edge.id in state.tokens for edge in graph.edges}
+    if graph.handshake is not None:
+        tokens[graph.handshake.running] = state.is_performed
+        tokens[graph.handshake.finished] = is_finished(graph, state)
     return runs | tokens | quiet | dict(state.stored)
 
 
@@ -92,6 +102,7 @@ def state_of(graph: TokenGraph, valuation: Inputs) -> State:
         frozenset(edge.id for edge in graph.edges if valuation[edge.variable]),
         frozenset(node.id for node in graph.workers() if valuation[node.run]),
         tuple((store.variable.name, valuation[store.variable.name]) for store in graph.stores),
+        graph.handshake is None or bool(valuation[graph.handshake.running]),
     )
 
 
@@ -110,8 +121,8 @@ def next_state(
 
 
 def is_finished(graph: TokenGraph, state: State) -> bool:
-    """Whether the activity ends in this state, so that the next step restarts it."""
-    return is_complete(graph, state, ACTIVITY_REGION)
+    """Whether the activity ends in this state. Without a handshake the next step restarts it."""
+    return state.is_performed and is_complete(graph, state, ACTIVITY_REGION)
 
 
 def is_complete(graph: TokenGraph, state: State, region: str) -> bool:
@@ -193,11 +204,25 @@ class TokenStep:
         self.taken: set[str] = set()
 
     def compute_next(self) -> State:
-        """Return the next state; an activity that is complete starts again."""
-        if is_finished(self.graph, self.old):
-            return _restarted_state(self.graph, self.old)
-        self.move_tokens()
-        return State(frozenset(self.tokens), frozenset(self.running), tuple(self._stored_values()))
+        """Return the next state.
+
+        A start has an effect if the activity does not run after this step. Without a handshake,
+        an activity that is complete starts again.
+        """
+        handshake, is_over = self.graph.handshake, is_finished(self.graph, self.old)
+        if self.old.is_performed and not is_over:
+            self.move_tokens()
+        stored = tuple(self._stored_values())
+        ends = is_over or not self.old.is_performed or self._is_given(handshake, "stop")
+        if not ends:
+            return State(frozenset(self.tokens), frozenset(self.running), stored)
+        after = State(frozenset(), frozenset(), stored, is_performed=False)
+        is_started = handshake is None or self._is_given(handshake, "start")
+        return _restarted_state(self.graph, after) if is_started else after
+
+    def _is_given(self, handshake: Handshake | None, role: str) -> bool:
+        name = getattr(handshake, role, "")
+        return bool(name and self.inputs[name])
 
     def move_tokens(self) -> None:
         """Move all tokens that can move, and end and start regions."""

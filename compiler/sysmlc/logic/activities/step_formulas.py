@@ -33,10 +33,8 @@ class StepFormulas:
     The formulas of regions are cached, because many other formulas contain them.
     """
 
-    def __init__(self, graph: TokenGraph, is_repeated: bool = True) -> None:
-        """Prepare the formulas; *is_repeated*: the activity starts again at its end."""
+    def __init__(self, graph: TokenGraph) -> None:
         self.graph = graph
-        self._is_repeated = is_repeated
         self._quiets = dict(graph.quiets)
         self._completions: dict[str, Formula] = {}
         self._interrupted: dict[str, Formula] = {}
@@ -80,8 +78,9 @@ class StepFormulas:
 
     def finish_formula(self, node: TokenNode) -> Formula:
         """A running node is done, and no region around it ends in this step."""
+        # What ends in the step in which the activity is stopped has ended (UML 2.5.1, 14.2.3.4).
         going = f.both(f.var(node.run), self.done_formula(node), self.region_runs_formula(node))
-        return f.both(going, f.negate(self.ended_formula(node.region)))
+        return f.both(going, f.negate(self._completed_formula(node.region)))
 
     def list_choosers(self) -> list[TokenNode]:
         """List the decisions with several branches that can be open at the same time."""
@@ -96,6 +95,9 @@ class StepFormulas:
 
     def complete_formula(self, region: str) -> Formula:
         """The region is complete; a variable of the graph stands for it if there is one."""
+        handshake = self.graph.handshake
+        if region == ACTIVITY_REGION and handshake is not None:
+            return f.var(handshake.finished)
         name = self._quiets.get(region)
         return f.var(name) if name else self.completion_formula(region)
 
@@ -228,7 +230,16 @@ class StepFormulas:
         return f.either(self.ended_formula(region), *self.interruption_formulas(region, members))
 
     def ended_formula(self, region: str) -> Formula:
-        """The region, or a region around it, ends."""
+        """The region, or a region around it, ends or is stopped."""
+        return f.either(self._completed_formula(region), self.stop_formula())
+
+    def stop_formula(self) -> Formula:
+        """The activity is abandoned in this step."""
+        handshake = self.graph.handshake
+        return f.var(handshake.stop) if handshake is not None and handshake.stop else f.FALSE
+
+    def _completed_formula(self, region: str) -> Formula:
+        """The region, or a region around it, is complete."""
         if region not in self._endings:
             around = map(self._node_end_formula, self.graph.regions_around(region))
             self._endings[region] = f.either(self.complete_formula(ACTIVITY_REGION), *around)
@@ -254,11 +265,22 @@ class StepFormulas:
     def begin_formula(self, region: str) -> Formula:
         """The region starts in the next step."""
         if region == ACTIVITY_REGION:
-            return self.complete_formula(region) if self._is_repeated else f.FALSE
+            return self._restart_formula()
         node = self.graph.node(region)
         return f.both(
             self.start_formula(node), f.negate(self.cleared_formula(node.region, {node.id}))
         )
+
+    def _restart_formula(self) -> Formula:
+        """The activity starts in the next step. A start while it runs has no effect."""
+        handshake = self.graph.handshake
+        if handshake is None:
+            return self.complete_formula(ACTIVITY_REGION)
+        if not handshake.start:
+            return f.FALSE
+        ends = f.either(f.var(handshake.finished), self.stop_formula())
+        is_free = f.either(f.negate(f.var(handshake.running)), ends)
+        return f.both(f.var(handshake.start), is_free)
 
 
 class PerformanceFormulas(StepFormulas):
@@ -270,7 +292,7 @@ class PerformanceFormulas(StepFormulas):
     def __init__(
         self, graph: TokenGraph, starts: Mapping[str, Formula], stops: Mapping[str, Formula]
     ) -> None:
-        super().__init__(graph, is_repeated=False)
+        super().__init__(graph)
         self._starts = starts
         self._stops = stops
 

@@ -198,6 +198,21 @@ class Store(Struct, frozen=True):
     local: bool = False
 
 
+class Handshake(Struct, frozen=True):
+    """Variables with which an activity is started and abandoned, and tells that it runs and ends.
+
+    ``start`` and ``stop`` are inputs: an activity without the first is never started from outside,
+    one without the second always runs to its end. An activity that ``is_started`` runs in the first
+    step.
+    """
+
+    running: str
+    finished: str
+    start: str = ""
+    stop: str = ""
+    is_started: bool = False
+
+
 class TokenGraph(Struct, frozen=True, dict=True):
     """One activity as a token game; nodes and edges are in the order of the model.
 
@@ -208,7 +223,8 @@ class TokenGraph(Struct, frozen=True, dict=True):
     when it is complete: formulas that would repeat a long condition refer to the variable.
     ``stores`` are the variables that nodes write. ``shared`` are variables that nodes write as
     other behaviours do, so that the activity alone does not decide them; ``shared_inputs`` are
-    further variables that these writes read.
+    further variables that these writes read. An activity without ``handshake`` starts in the first
+    step, and again after each end.
     """
 
     activity: str
@@ -225,6 +241,7 @@ class TokenGraph(Struct, frozen=True, dict=True):
     stores: tuple[Store, ...] = ()
     shared: tuple[Store, ...] = ()
     shared_inputs: tuple[Variable, ...] = ()
+    handshake: Handshake | None = None
 
     @cached_property
     def written_variables(self) -> frozenset[str]:

@@ -28,6 +28,7 @@ from sysmlc.logic.contract import (
     Owner,
     Source,
     Variable,
+    equals,
 )
 from sysmlc.logic.expressions.context import find_literal
 from sysmlc.logic.expressions.elaboration import (
@@ -211,6 +212,8 @@ class Arguments:
         owner = None if feature is None else self._tree.graph.owner(feature.element)
         if feature is None or owner not in (copy.activity, drawn):
             return None
+        if self._performances.find_slot(copy, feature.element, feature.variable) is not None:
+            return None
         if feature.domain is None or feature.is_assumed:
             raise ComponentError(f"'{name}' has no finite type")
         own_name = self._performances.name_variable(feature.variable, copy.caller.prefix)
@@ -375,11 +378,3 @@ def _fit_value(value: Formula, domain: Domain, target: Domain) -> Cases | None:
             return [(f.TRUE, value)]
         case _:
             return None
-
-
-def equals(variable: Variable, value: Formula, *, is_next: bool = False) -> Formula:
-    """Return the formula that a variable has a value, in this step or the next one."""
-    name = f.prime(f.var(variable.name)) if is_next else f.var(variable.name)
-    if not isinstance(variable.domain, BooleanDomain):
-        return f.eq(name, value)
-    return f.fold_iff(name, value)

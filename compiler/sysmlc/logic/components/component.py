@@ -47,7 +47,10 @@ class Root:
 
 
 class Component:
-    """Builds the step relation of one component. Names are resolved before it is complete."""
+    """The objects and behaviours of one component.
+
+    Callers may name further features before ``describe_component`` derives the step relation.
+    """
 
     def __init__(
         self,
@@ -77,7 +80,7 @@ class Component:
         """Steps of the do behaviours; ``finish_variable`` stands for the end of a performance."""
         self.variables: list[Variable] = []
         self.ends: dict[str, Formula] = {}
-        """Formulas for the machines' variables that tell when a do behaviour ends."""
+        """The condition under which a do behaviour ends, by the machine's variable for its end."""
         self.released: set[str] = set()
         """Ids of writers whose writes are not described everywhere."""
         self.end_aliases: dict[str, str] = {}
@@ -111,14 +114,8 @@ class Component:
         main = query.classifier_behavior(self.graph, object_.type_)
         elements = find_machines(self.tree, object_)
         for element in elements:
-            is_main = not object_.path and (element is main or len(elements) == 1)
-            prefix = (
-                ""
-                if is_main
-                else _join_names(
-                    object_.path, "" if element is main or len(elements) == 1 else element.name
-                )
-            )
+            is_main = element is main or len(elements) == 1
+            prefix = _join_names(object_.path, "" if is_main else element.name)
             event = self.events.setdefault(
                 object_.path, self.names.new(f"{object_.path}_event") if object_.path else "event"
             )
@@ -141,7 +138,7 @@ class Component:
             behaviour,
         )
         name = state.do.removeprefix("do_")
-        names = (*machine.owner.path.split("."), name) if machine.owner.path else (name,)
+        names = machine.owner.extend_path(name)
         run = self.performances.name_variable(f"run_{name}", prefix)
         caller = Caller(object_, names, _join_names(prefix, name))
         id = self.performances.add(activity, caller, run)
@@ -182,8 +179,8 @@ class Component:
         """
         name = self.names.new(f"over_{machine.variables[state.do]}")
         self.variables.append(Variable(name, Owner.SYSTEM, BooleanDomain(), state.id))
-        self.ends[machine.variables[state.done]] = f.either(f.var(name), finish_variable(id))
         is_over = f.either(f.var(name), finish_variable(id))
+        self.ends[machine.variables[state.done]] = is_over
         remains = f.both(is_over, f.negate(left), f.negate(entered))
         self.add(f.negate(f.var(name)), Class.INIT, state.id)
         self.add(f.fold_iff(f.prime(f.var(name)), remains), Class.SAFETY, state.id)
@@ -224,9 +221,7 @@ class Component:
                 is_main = not object_.path and activity is query.classifier_behavior(
                     self.graph, object_.type_
                 )
-                names = (
-                    (*object_.path.split("."), activity.name) if object_.path else (activity.name,)
-                )
+                names = object_.extend_path(activity.name)
                 prefix = "" if is_main else _join_names(object_.path, activity.name)
                 run = self.names.new(_join_names(object_.path, f"run_{activity.name or 'it'}"))
                 drawn = find_drawn_activity(self.graph, activity)
@@ -282,14 +277,16 @@ class Component:
     def _add_offered(
         self, object_: ComponentObject, activity: Element, prefix: str, *, is_started: bool
     ) -> None:
-        """Add an activity that the environment starts; *is_started*: also in the first step."""
-        names = (*object_.path.split("."), activity.name) if object_.path else (activity.name,)
+        """Add an activity that the environment starts.
+
+        *is_started* states that it runs in the first step; otherwise the environment decides.
+        """
+        names = object_.extend_path(activity.name)
         run = self.names.new(_join_names(object_.path, f"run_{activity.name or 'it'}"))
         id = self.performances.add(activity, Caller(object_, names, prefix), run)
         start = self.names.new(_join_names(object_.path, f"start_{activity.name or 'it'}"))
         self.variables.append(Variable(start, Owner.ENVIRONMENT, BooleanDomain(), activity.id))
         may_start = f.both(f.var(start), f.either(f.negate(f.var(run)), finish_variable(id)))
-        # Where nothing says so, the environment may have started it before the first step.
         first = f.TRUE if is_started else f.var(run)
         self.roots.append(Root(id, may_start, f.FALSE, first, service=start))
 

@@ -14,11 +14,8 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.activities.assumptions import derive_assumptions
 from sysmlc.logic.activities.derivation import derive_run_update, derive_token_updates
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
-from sysmlc.logic.components.arguments import equals
 from sysmlc.logic.components.component import Component, finish_name
-from sysmlc.logic.components.machines import (
-    find_unread_features,
-)
+from sysmlc.logic.components.machines import PlacedMachine, find_unread_features
 from sysmlc.logic.components.names import PlaceInBehaviour, iter_places
 from sysmlc.logic.components.objects import Slot
 from sysmlc.logic.components.signals import derive_events
@@ -30,6 +27,7 @@ from sysmlc.logic.contract import (
     Owner,
     Source,
     Variable,
+    equals,
 )
 from sysmlc.logic.feature_writes import find_label
 from sysmlc.logic.formula import Const, Formula
@@ -184,23 +182,23 @@ class _Description:
         """Return the writers of each slot. A machine overrides the do behaviours of its states."""
         writers: dict[Slot, list[Writer]] = {}
         machine_of_root = {root.id: root.machine for root in self._roots}
-        done_writes: dict[str, list[tuple[Slot, Formula, Formula]]] = {}
+        # What the do behaviours of each machine write: slot, condition and value.
+        writes_in_states: dict[tuple[str, str], list[tuple[Slot, Formula, Formula]]] = {}
         for slot, writer, root in self._iter_performed_writes(formulas):
             machine = machine_of_root.get(root)
             when = writer.condition
             if machine is not None:
-                done_writes.setdefault(machine.element.id + machine.owner.path, []).append(
-                    (slot, when, writer.value)
-                )
-                later = [
+                write = slot, when, writer.value
+                writes_in_states.setdefault(_identify(machine), []).append(write)
+                overriding = [
                     other.condition
                     for owner, other in self._machine_writes
                     if owner is machine and other.slot == slot
                 ]
-                when = f.both(when, f.negate(f.either(*later)))
+                when = f.both(when, f.negate(f.either(*overriding)))
             writers.setdefault(slot, []).append(replace(writer, condition=when))
         for machine, machine_write in self._machine_writes:
-            earlier = done_writes.get(machine.element.id + machine.owner.path, [])
+            earlier = writes_in_states.get(_identify(machine), [])
             for condition, value in self._follow_writes(machine_write.value, earlier):
                 writers.setdefault(machine_write.slot, []).append(
                     Writer(f.both(machine_write.condition, condition), value, machine.element.id)
@@ -353,6 +351,14 @@ class _Description:
         for variable in variables:
             by_name.setdefault(variable.name, variable)
         return by_name
+
+
+def _identify(machine: PlacedMachine) -> tuple[str, str]:
+    """Return the id of a machine's element and the path of its object.
+
+    Parts of the same type have the same element.
+    """
+    return machine.element.id, machine.owner.path
 
 
 def add_stated_conjuncts(behaviour: ComponentBehaviour, stated: Contract) -> ComponentBehaviour:

@@ -37,6 +37,10 @@ class ComponentObject(Struct, frozen=True):
     type_: Element
     owner: "ComponentObject | None" = None
 
+    def extend_path(self, name: str) -> tuple[str, ...]:
+        """Return the names of the parts that lead to the object, and *name* after them."""
+        return (*self.path.split("."), name) if self.path else (name,)
+
     def list_family(self, graph: Graph) -> tuple[Element, ...]:
         """Return the type of the object and the generals of the type, nearest first."""
         return self.type_, *query.generals(graph, self.type_)

@@ -243,7 +243,7 @@ class Performances:
         element = self._graph.get(variable.origin)
         is_own = element is not None and copy.activity in self._graph.ancestors(element)
         if element is not None and is_value(element) and variable.name not in tokens.pulses:
-            slot = self._find_slot(copy, element, variable.name)
+            slot = self.find_slot(copy, element, variable.name)
             if slot is not None:
                 shared = self._tree.read_slot(slot).variable
                 if shared.domain == variable.domain:
@@ -261,7 +261,11 @@ class Performances:
             copy.parameters[element.name] = self.inputs[name]
         return name
 
-    def _find_slot(self, copy: Copy, element: Element, variable: str) -> Slot | None:
+    def find_slot(self, copy: Copy, element: Element, variable: str) -> Slot | None:
+        """Return the feature of an object that an activity names, or None for its own attribute.
+
+        An activity that is itself the component is an object, too.
+        """
         drawn = find_drawn_activity(self._graph, copy.activity)
         return self._tree.find_slot(copy.caller.owner, element, variable, drawn)
 
@@ -275,7 +279,7 @@ class Performances:
         element = self._graph.get(store.variable.origin)
         slot: Slot | None = None
         if element is not None:
-            slot = self._find_slot(copy, element, store.variable.name)
+            slot = self.find_slot(copy, element, store.variable.name)
         writes = [_rename_write(write, copy, ids) for write in store.writes]
         if slot is not None and self._tree.read_slot(slot).variable.name == name:
             for write in writes:

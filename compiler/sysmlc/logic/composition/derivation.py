@@ -7,9 +7,12 @@ sender and the input of the receiver one variable (SysML 1.6 clause 9.3.2).
 from collections.abc import Iterable, Iterator, Mapping
 
 from msgspec import Struct
+from msgspec.structs import replace
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.logic import formula as f
+from sysmlc.logic.activities.token_graph import Handshake, TokenGraph
 from sysmlc.logic.composition.members import (
     Block,
     Member,
@@ -25,8 +28,9 @@ from sysmlc.logic.composition.structure import (
     find_unclear_flows,
     is_end_observable,
 )
-from sysmlc.logic.contract import Composite, Contract, Owner, Part
+from sysmlc.logic.contract import Composite, Conjunct, Contract, Owner, Part, drop_trivial
 from sysmlc.logic.domains import describe
+from sysmlc.logic.simplification import substitute
 
 TWO_DRIVERS = rule(
     "SM524",
@@ -61,7 +65,11 @@ def compose_blocks(graph: Graph, contracts: Iterable[Contract], sink: Sink) -> I
     specification of the composition. *contracts* are those that the pass ``contracts`` derives from
     the graph. The composites are in the order of their components.
     """
-    by_origin = {contract.origin: contract for contract in contracts}
+    handshakes = {game.activity: game.handshake for game in graph.derived(TokenGraph)}
+    by_origin = {
+        contract.origin: _repeat_service(contract, handshakes.get(contract.origin))
+        for contract in contracts
+    }
     open_steps: list[OpenStep] = []
     for element in _list_blocks(graph, by_origin):
         block = read_block(graph, element, by_origin)
@@ -73,6 +81,29 @@ def compose_blocks(graph: Graph, contracts: Iterable[Contract], sink: Sink) -> I
         if composite is not None:
             yield composite
     _report_open_steps(graph, open_steps, sink)
+
+
+def _repeat_service(contract: Contract, handshake: Handshake | None) -> Contract:
+    """Return the contract of an activity that is started again and again, and never stopped.
+
+    The actions of a block are compared as if its environment used each of them all the time.
+    """
+    if handshake is None or not handshake.start:
+        return contract
+    values = {handshake.start: f.TRUE, handshake.stop: f.FALSE}
+
+    def restrict(conjuncts: Iterable[Conjunct]) -> tuple[Conjunct, ...]:
+        return drop_trivial(
+            replace(conjunct, formula=substitute(conjunct.formula, values))
+            for conjunct in conjuncts
+        )
+
+    return replace(
+        contract,
+        variables=tuple(v for v in contract.variables if v.name not in values),
+        assumptions=restrict(contract.assumptions),
+        guarantees=restrict(contract.guarantees),
+    )
 
 
 def _list_blocks(graph: Graph, by_origin: Mapping[str, Contract]) -> list[Element]:

@@ -48,7 +48,7 @@ from sysmlc.logic.formats.writing import (
     print_ltl_conjunct,
     remove_primes,
 )
-from sysmlc.logic.formula import Apply, Formula, Op, Var
+from sysmlc.logic.formula import Apply, Formula, Literal, Op, Var
 from sysmlc.logic.identifiers import Names
 from sysmlc.logic.infix import FormulaReader, Term
 from sysmlc.logic.syntax import (
@@ -99,7 +99,9 @@ _KEYWORDS = frozenset(
         "CTLWFF LTLWFF PSLWFF COMPWFF IN MIN MAX MIRROR PRED PREDICATES process array of boolean "
         "integer real word word1 bool signed unsigned extend resize sizeof uwconst swconst EX AX "
         "EF AF EG AG E F O G H X Y Z A U S V T BU EBF ABF EBG ABG case esac mod next init union "
-        "in xor xnor self TRUE FALSE count abs max min",
+        "in xor xnor self TRUE FALSE count abs max min COMPID NEXTWFF READ WRITE CONSTARRAY "
+        "Integer Real Word toint floor typeof FUN PARSYNTH pi sin cos exp tan ln clock time "
+        "noncontinuous",
     )
 )
 _RESERVED = _KEYWORDS | {*SYNTAX.prefix, *SYNTAX.infix, *BOOLEANS}
@@ -311,5 +313,10 @@ def _is_atom(formula: Formula) -> bool:
     return is_comparison or isinstance(formula, Var)
 
 
-_NOTATION = _SmvNotation({**LTL_WORDS, Op.RELEASE: "V"}, add_next_operator)
-_MODEL = Notation(LTL_WORDS, lambda name: f"next({name})")
+def _print_literal(value: Literal) -> str:
+    """Return a value; NuSMV takes ``true`` for the name of a variable."""
+    return str(value).upper() if isinstance(value, bool) else str(value)
+
+
+_NOTATION = _SmvNotation({**LTL_WORDS, Op.RELEASE: "V"}, add_next_operator, _print_literal)
+_MODEL = Notation(LTL_WORDS, lambda name: f"next({name})", _print_literal)

@@ -174,7 +174,7 @@ def print_implication(contract: Contract, notation: Notation, format_name: str) 
     """Return ``(assumptions) -> (guarantees)``, or the guarantees alone if nothing is assumed."""
     guarantees = _print_conjunction(contract.guarantees, notation, format_name)
     assumptions = _print_conjunction(contract.assumptions, notation, format_name)
-    if assumptions == "true":
+    if assumptions == notation.print(f.TRUE):
         return guarantees
     return f"({assumptions}) {notation.words[Op.IMPLIES]} ({guarantees})"
 
@@ -184,4 +184,4 @@ def _print_conjunction(conjuncts: Iterable[Conjunct], notation: Notation, format
         f"({print_ltl_conjunct(format_name, notation, conjunct)})"
         for conjunct in drop_trivial(conjuncts)
     ]
-    return f" {notation.words[Op.AND]} ".join(texts) or "true"
+    return f" {notation.words[Op.AND]} ".join(texts) or notation.print(f.TRUE)

@@ -14,6 +14,7 @@ from msgspec.structs import replace
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.logic.activities.handshakes import complete_handshakes, name_handshake
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.feature_writes import WriterIndex, takes_one_step
 from sysmlc.logic.requirements.statements import component_of
@@ -65,7 +66,8 @@ class Activities(Struct, frozen=True):
     def run(self, graph: Graph, sink: Sink) -> None:
         """Store a TokenGraph for each activity that has a valid one."""
         read_guard_names(graph, sink)
-        graph.store(TokenGraph, self._derive_all(graph, sink))
+        games = list(self._derive_all(graph, sink))
+        graph.store(TokenGraph, complete_handshakes(graph, games))
 
     def _derive_all(self, graph: Graph, sink: Sink) -> Iterator[TokenGraph]:
         context = _analyse_behaviours(graph)
@@ -82,9 +84,9 @@ class Activities(Struct, frozen=True):
         drawn = _find_drawn(graph, activity)
         try:
             if drawn is activity:
-                return self._build(graph, activity, context, sink)
+                return self._build(graph, activity, activity.name, context, sink)
             # Faults of the drawing are reported once, for the activity that is drawn.
-            tokens = self._build(graph, drawn, context, Sink())
+            tokens = self._build(graph, drawn, activity.name, context, Sink())
         except activity_drawing.CannotPlayError:
             return None
         component = component_of(graph, activity)
@@ -92,8 +94,9 @@ class Activities(Struct, frozen=True):
         return replace(tokens, activity=activity.id, component=component, label=label)
 
     def _build(
-        self, graph: Graph, activity: Element, context: _OtherBehaviours, sink: Sink
+        self, graph: Graph, activity: Element, name: str, context: _OtherBehaviours, sink: Sink
     ) -> TokenGraph:
+        """Return the token graph of a drawn activity; *name* is that of what performs its steps."""
         self._check_depth(graph, activity, sink)
         drawing = activity_drawing.read_drawing(graph, activity, sink)
         if not drawing.nodes:
@@ -114,7 +117,8 @@ class Activities(Struct, frozen=True):
         report_saturation(graph, tokens, sink)
         if len(tokens.edges) > self.collapse_over:
             tokens = activity_search.collapse_if_safe(tokens, self.max_markings)
-        return activity_search.name_conditions(tokens, inputs.names)
+        tokens = activity_search.name_conditions(tokens, inputs.names)
+        return replace(tokens, handshake=name_handshake(inputs.names, name))
 
     def _check_depth(self, graph: Graph, activity: Element, sink: Sink) -> None:
         for element in graph.subtree(activity):

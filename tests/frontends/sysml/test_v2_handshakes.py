@@ -1,0 +1,165 @@
+"""Handshakes of activities: who starts and abandons them, and what their contracts guarantee."""
+
+import pytest
+from reading_v2 import read
+
+from sysmlc.diagnostics import Sink
+from sysmlc.ir import Graph
+from sysmlc.ir.text import parse_text
+from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.contract import Contract
+from sysmlc.logic.printing import print_formula
+from sysmlc.passes import pipeline
+
+PICK = """
+        action pick {
+            first start then reach;
+            action reach;
+            then done;
+        }"""
+
+
+def compile_robot(members: str) -> Graph:
+    """Return the graph of a part with some members."""
+    items = "item def Go; item def Stop;"
+    reading = read(f"package P {{ {items} part def Robot {{ {members} }} }}")
+    pipeline.run(reading.graph, reading.sink)
+    return reading.graph
+
+
+def describe(members: str) -> dict[str, str]:
+    """Return the inputs of the handshake of each activity of a part with some members."""
+    graph = compile_robot(members)
+    handshakes = {game.component: game.handshake for game in graph.derived(TokenGraph)}
+    return {
+        name.removeprefix("P::Robot").lstrip("."): " ".join(
+            filter(None, (h.start, h.stop, "first step" * h.is_started))
+        )
+        for name, h in handshakes.items()
+    }
+
+
+def in_busy(transition: str) -> str:
+    """Return a state machine whose state Busy performs pick and is left by a transition."""
+    return f"""{PICK}
+        exhibit state Ctl {{
+            entry; then Idle;
+            state Idle;
+            transition first Idle accept Go then Busy;
+            state Busy {{ do pick; }}
+            {transition}
+        }}"""
+
+
+def test_what_a_part_performs_starts_once():
+    assert describe("perform " + PICK.strip()) == {"": "first step"}
+
+
+def test_an_action_that_nothing_performs_is_a_service():
+    assert describe(PICK) == {"pick": "start_pick"}
+
+
+def test_a_state_that_waits_for_its_do_behaviour_never_stops_it():
+    assert describe(in_busy("transition first Busy then Idle;")) == {"pick": "start_pick"}
+
+
+def test_a_trigger_out_of_the_state_may_stop_its_do_behaviour():
+    assert describe(in_busy("transition first Busy accept Stop then Idle;")) == {
+        "pick": "start_pick stop_pick"
+    }
+
+
+CALLER = """
+        perform action cycle {
+            first start;
+            then perform pick;
+            then done;
+        }"""
+
+
+def test_a_call_in_a_sequence_runs_to_its_end():
+    assert describe(PICK + CALLER) == {"pick": "start_pick", "": "first step"}
+
+
+FORKED = """
+Activity pick "pick"
+  Action work "work" subkind="opaque"
+Activity a "a"
+  Control start "" subkind="initial"
+  Control split "" subkind="fork"
+  Action call "call" subkind="call-behavior"
+    -> calls pick
+  Action wait "wait" subkind="opaque"
+  Control last "" subkind="END"
+  ControlFlow f1
+    -> flow-source start
+    -> flow-target split
+  ControlFlow f2
+    -> flow-source split
+    -> flow-target call
+  ControlFlow f3
+    -> flow-source split
+    -> flow-target wait
+  ControlFlow f4
+    -> flow-source wait
+    -> flow-target last
+"""
+
+
+@pytest.mark.parametrize(("end", "stop"), [("final", "stop_pick"), ("flow-final", "")])
+def test_only_an_activity_final_stops_the_call_in_another_branch(end, stop):
+    graph = parse_text(FORKED.replace("END", end))
+    pipeline.run(graph, Sink())
+    handshakes = {game.component: game.handshake for game in graph.derived(TokenGraph)}
+    assert handshakes["pick"].stop == stop
+
+
+def test_a_call_is_stopped_with_its_caller():
+    load = "action load { first start; then perform pick; then done; }"
+    machine = in_busy("transition first Busy accept Stop then Idle;").replace("do pick", "do load")
+    assert describe(load + machine) == {
+        "pick": "start_pick stop_pick",
+        "load": "start_load stop_load",
+    }
+
+
+CALLS_ITSELF = "action pick { first start; then perform pick; then done; }"
+
+
+def test_a_recursive_call_has_a_handshake():
+    assert describe(CALLS_ITSELF) == {"pick": "start_pick"}
+
+
+@pytest.mark.parametrize(
+    ("members", "lines"),
+    [
+        (
+            PICK,
+            [
+                "!running_pick",
+                "running_pick' <-> start_pick & (!running_pick | finished_pick)"
+                " | running_pick & !finished_pick",
+                "finished_pick <-> running_pick & at_reach_to_done",
+                "!running_pick | finished_pick",
+            ],
+        ),
+        (
+            "perform " + PICK.strip(),
+            [
+                "running_pick",
+                "running_pick' <-> running_pick & !finished_pick",
+                "finished_pick <-> running_pick & at_reach_to_done",
+                "!running_pick | finished_pick",
+            ],
+        ),
+    ],
+)
+def test_guarantees_about_start_and_end(members, lines):
+    graph = compile_robot(members)
+    (contract,) = graph.derived(Contract)
+    origin = graph.derived(TokenGraph)[0].activity
+    assert [
+        print_formula(conjunct.formula)
+        for conjunct in contract.guarantees
+        if conjunct.origin == origin
+    ] == lines
