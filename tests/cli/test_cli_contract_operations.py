@@ -3,6 +3,9 @@
 import json
 
 import pytest
+from jsonschema import Draft202012Validator
+
+from json_documents import SCHEMAS
 
 VARIABLES = {
     "order": {"owner": "env", "type": "bool"},
@@ -43,6 +46,38 @@ def test_a_run_shows_a_missing_guarantee(workspace):
     )
     assert "note: step 1: filled=true, packed=false" in result.stderr
     assert "@startuml" in workspace.read("runs/filler.run1.puml")
+
+
+def test_json_lists_a_verdict_for_each_conjunct(workspace):
+    arguments = ("line.gr1.json", "filler.gr1.json", "--format", "json")
+    result = workspace.sysmlc("contracts", "refine", *arguments)
+    document = json.loads(result.stdout)
+    Draft202012Validator(SCHEMAS["sysmlc-diagnostics"]).validate(document)
+    entries = document["requirements"]
+    assert [list(entry.values())[:4] for entry in entries] == [
+        ["filler", "filler", "G (order -> !order')", "holds"],
+        ["line", "filler", "G (order -> filled')", "holds"],
+        ["line", "filler", "G (filled -> packed')", "broken"],
+    ]
+    assert [entry["reason"] for entry in entries] == [None, None, "'filler' does not guarantee it"]
+    assert entries[2]["witness"]["steps"][0]["filled"]
+    assert [entry["witness"] for entry in entries[:2]] == [None, None]
+
+
+def test_json_lists_what_is_not_decided(workspace):
+    """The two contracts disagree on who decides 'filled'."""
+    contract = {
+        "variables": dict.fromkeys(("order", "filled"), VARIABLES["order"]),
+        "assumptions": {"safety": ["filled -> filled'"]},
+        "guarantees": {"safety": []},
+    }
+    workspace.write("reader.gr1.json", json.dumps(contract))
+    arguments = ("filler.gr1.json", "reader.gr1.json", "--format", "json")
+    result = workspace.sysmlc("contracts", "refine", *arguments)
+    entries = json.loads(result.stdout)["requirements"]
+    assert [result.exit_code, len(entries)] == [2, 2]
+    assert {entry["verdict"] for entry in entries} == {"not-decided"}
+    assert "filled" in entries[0]["reason"]
 
 
 def test_an_additional_assumption_is_named_at_the_concrete_contract(workspace):

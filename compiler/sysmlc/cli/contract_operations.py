@@ -3,7 +3,7 @@
 An operand is a file, or ``FILE#COMPONENT`` for one contract of a file with several.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,11 +19,14 @@ if TYPE_CHECKING:
     from sysmlc.config import Config
     from sysmlc.diagnostics import Subject
     from sysmlc.logic.contract import Conjunct, Contract
-    from sysmlc.synthesis.algebra.refinement import Failure
+    from sysmlc.synthesis.algebra.refinement import Comparison
 
 _OPERANDS = """\b
 An operand is a model or a contract in any format that sysmlc reads. If the
 file has several contracts, append '#' and the name of a component."""
+
+
+_NO_DETAILS: Mapping[str, object] = {}
 
 
 class Operand(Struct, frozen=True):
@@ -62,12 +65,16 @@ def _read_operand(text: str, language: str, config: "Config", settings: "Setting
     return Operand(contracts[0], contract_file, file)
 
 
-def _print_findings(files: "list[ContractFile]", settings: "Settings") -> None:
+def _print_findings(
+    files: "list[ContractFile]", settings: "Settings", details: Mapping[str, object] = _NO_DETAILS
+) -> None:
     from sysmlc.cli import reports
     from sysmlc.cli.contract_files import list_findings
 
     unique = {id(file): file for file in files}.values()
-    reports.print_findings([item for file in unique for item in list_findings(file)], settings)
+    reports.print_findings(
+        [item for file in unique for item in list_findings(file)], settings, details
+    )
 
 
 def _report_obstacle(problem: Exception, work: str, first: Operand, second: Operand) -> None:
@@ -139,53 +146,99 @@ def refine_command(
 
     settings = session.Settings(**setting_values)
     whole, part = _read_both((abstract, concrete), language, settings)
-    failures, is_decided = _find_failures(whole, part, seconds)
+    comparisons, obstacle = _compare(whole, part, seconds)
+    runs = [(item.conjunct, item.trace) for item in comparisons if item.trace is not None]
+    is_decided = not obstacle
     if output is not None:
         parties = (Party(part.contract.component, part.contract),)
         name = part.contract.component
         reports.write_files(
-            witness_files(Witness(name, item.conjunct, item.trace, parties) for item in failures),
+            witness_files(Witness(name, conjunct, trace, parties) for conjunct, trace in runs),
             output,
         )
-    _print_findings([whole.file, part.file], settings)
-    if is_decided or failures:
-        verb = "does not refine" if failures else "refines"
+    entries = [*_list_verdicts(whole, part, comparisons, obstacle)]
+    _print_findings([whole.file, part.file], settings, {"requirements": entries})
+    if is_decided or runs:
+        verb = "does not refine" if runs else "refines"
         line = f"{part.contract.component} {verb} {whole.contract.component}"
         terminal.echo(line, err=not reports.allows_sentences(settings))
-    ctx.exit(1 if failures else 0 if is_decided else 2)
+    ctx.exit(1 if runs else 0 if is_decided else 2)
 
 
-def _find_failures(
+def _compare(
     abstract: Operand, concrete: Operand, seconds: float
-) -> "tuple[list[Failure], bool]":
-    """Report and return the reasons against refinement, and whether all questions are decided."""
+) -> "tuple[list[Comparison], str]":
+    """Report the reasons against refinement.
+
+    Return the conjuncts that were compared, and why the others are not decided, if there are any.
+    """
     from sysmlc.synthesis import Limits, Manager, rules
     from sysmlc.synthesis.algebra.operations import OBSTACLES, align_domains, check_owners
-    from sysmlc.synthesis.algebra.refinement import find_refinement_failures
-    from sysmlc.synthesis.witnesses import describe_run, print_temporal, text_in_parentheses
+    from sysmlc.synthesis.algebra.refinement import compare_conjuncts
+    from sysmlc.synthesis.witnesses import (
+        describe_problem,
+        describe_run,
+        print_temporal,
+        text_in_parentheses,
+    )
 
-    failures: list[Failure] = []
+    comparisons: list[Comparison] = []
     try:
         check_owners(concrete.contract, abstract.contract)
         pair = align_domains(concrete.contract, abstract.contract)
-        for failure in find_refinement_failures(
+        for compared in compare_conjuncts(
             *pair, lambda: Manager(limits=Limits(0, LIMITS.memory, seconds))
         ):
-            failures.append(failure)
-            owner = concrete if failure.is_assumption else abstract
+            comparisons.append(compared)
+            if compared.trace is None:
+                continue
+            owner = concrete if compared.is_assumption else abstract
             owner.file.sink.report(
-                rules.ASSUMES_MORE if failure.is_assumption else rules.GUARANTEES_LESS,
-                owner.find_subject(failure.conjunct),
-                notes=tuple(describe_run(failure.trace, failure.conjunct)),
+                rules.ASSUMES_MORE if compared.is_assumption else rules.GUARANTEES_LESS,
+                owner.find_subject(compared.conjunct),
+                notes=tuple(describe_run(compared.trace, compared.conjunct)),
                 concrete=concrete.contract.component,
                 abstract=abstract.contract.component,
-                formula=print_temporal(failure.conjunct),
-                context=text_in_parentheses(failure.conjunct),
+                formula=print_temporal(compared.conjunct),
+                context=text_in_parentheses(compared.conjunct),
             )
     except OBSTACLES as problem:
         _report_obstacle(problem, "compared", abstract, concrete)
-        return failures, False
-    return failures, True
+        return comparisons, describe_problem(problem)
+    return comparisons, ""
+
+
+def _list_verdicts(
+    abstract: Operand, concrete: Operand, comparisons: "list[Comparison]", obstacle: str
+) -> "Iterator[dict[str, object]]":
+    """Yield an entry for each conjunct; those after an obstacle are not decided."""
+    from sysmlc.synthesis.witnesses import print_temporal
+
+    sides = [(concrete, conjunct) for conjunct in concrete.contract.assumptions]
+    sides += ((abstract, conjunct) for conjunct in abstract.contract.guarantees)
+    for number, (owner, conjunct) in enumerate(sides):
+        is_decided = number < len(comparisons)
+        trace = comparisons[number].trace if is_decided else None
+        verdict, reason = "holds", None
+        if not is_decided:
+            verdict, reason = "not-decided", obstacle
+        elif trace is not None:
+            verdict = "broken"
+            reason = (
+                f"the assumptions of '{abstract.contract.component}' do not imply it"
+                if owner is concrete
+                else f"'{concrete.contract.component}' does not guarantee it"
+            )
+        yield {
+            "requirement": conjunct.viewpoint or owner.contract.component,
+            "component": concrete.contract.component,
+            "formula": print_temporal(conjunct),
+            "verdict": verdict,
+            "vacuous": False,
+            "needs": [],
+            "witness": trace and {"steps": [*map(dict, trace.steps)], "loop": trace.loop},
+            "reason": reason,
+        }
 
 
 # -- operations --------------------------------------------------------------------------------

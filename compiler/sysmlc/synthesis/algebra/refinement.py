@@ -213,10 +213,21 @@ class Failure(Struct, frozen=True):
     trace: Trace
 
 
-def find_refinement_failures(
+class Comparison(Struct, frozen=True):
+    """A conjunct that refinement is about, and a run that violates it, or None if it is entailed.
+
+    ``is_assumption`` has the meaning of that of ``Failure``.
+    """
+
+    conjunct: Conjunct
+    is_assumption: bool
+    trace: Trace | None
+
+
+def compare_conjuncts(
     concrete: Contract, abstract: Contract, new_manager: ManagerFactory
-) -> Iterator[Failure]:
-    """Yield the reasons why *concrete* does not refine *abstract*; none if it does.
+) -> Iterator[Comparison]:
+    """Yield for each conjunct whether it is entailed; *concrete* refines *abstract* if all are.
 
     A contract refines another one if it assumes no more and guarantees no less. That is: the
     abstract assumptions entail the concrete assumptions, and the abstract assumptions together with
@@ -225,21 +236,23 @@ def find_refinement_failures(
     """
     search = RunSearch((concrete, abstract), new_manager)
     facts = abstract.assumptions
-    yield from _find_failures(search, facts, concrete.assumptions, True)
+    for assumption in concrete.assumptions:
+        yield Comparison(assumption, True, search.find_violation(facts, assumption))
     facts = (*abstract.assumptions, *concrete.guarantees)
-    yield from _find_failures(search, facts, abstract.guarantees, False)
+    for guarantee in abstract.guarantees:
+        yield Comparison(guarantee, False, search.find_violation(facts, guarantee))
 
 
-def _find_failures(
-    search: RunSearch,
-    facts: tuple[Conjunct, ...],
-    conjuncts: Iterable[Conjunct],
-    is_assumption: bool,
+def find_refinement_failures(
+    concrete: Contract, abstract: Contract, new_manager: ManagerFactory
 ) -> Iterator[Failure]:
-    for conjunct in conjuncts:
-        trace = search.find_violation(facts, conjunct)
-        if trace is not None:
-            yield Failure(conjunct, is_assumption, trace)
+    """Yield the reasons why *concrete* does not refine *abstract*; none if it does.
+
+    Raises the errors of ``compare_conjuncts``.
+    """
+    for compared in compare_conjuncts(concrete, abstract, new_manager):
+        if compared.trace is not None:
+            yield Failure(compared.conjunct, compared.is_assumption, compared.trace)
 
 
 def find_environment_run(contract: Contract, manager: Manager) -> Trace | None:
