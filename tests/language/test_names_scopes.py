@@ -77,7 +77,7 @@ def test_import_all_imports_private_members():
     model = resolve_texts(doors, "package Plant { private import all Doors::*; part a : Gate; }")
     assert target_name(model, "Plant::a") == "Doors::Gate"
     assert list_name_errors(doors, "package Plant { private import Doors::*; part a : Gate; }") == [
-        f"1: unknown name 'Gate': {DECLARE_OR_IMPORT}"
+        "1: unknown name 'Gate': 'Gate' is private in 'Doors'"
     ]
 
 
@@ -164,6 +164,28 @@ def test_private_members_are_invisible_and_protected_ones_visible_to_specialisat
     """) == [
         "3: unknown name 'seal': 'seal' is private in 'Gate'",
         "4: unknown name 'Gate::motor': 'motor' is protected in 'Gate'",
+    ]
+
+
+def test_the_private_part_of_a_name_is_named():
+    """A name of an imported package, the start of a qualified name, and a name behind a dot."""
+    assert list_name_errors("""
+        package Lib { private part def Shy; private package Inner { part def Deep; }
+            part def Open { private attribute secret; } }
+        package User { private import Lib::*;
+            part a : Shy;
+            part b : Lib::Inner::Deep;
+            part c : Inner::Deep;
+            part d : Open;
+            attribute e = d.secret;
+            part f : Missing; }
+    """) == [
+        "5: unknown name 'Shy': 'Shy' is private in 'Lib'",
+        "6: unknown name 'Lib::Inner::Deep': 'Inner' is private in 'Lib'",
+        "7: unknown name 'Inner::Deep': 'Inner' is private in 'Lib'",
+        "9: unknown name 'secret' in 'd': 'secret' is private in 'Open'",
+        "10: unknown name 'Missing': declare it, import the package that has it, or give its file "
+        "as an input too",
     ]
 
 

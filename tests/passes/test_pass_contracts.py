@@ -149,6 +149,16 @@ def test_only_the_transitions_that_compete_are_listed():
     )
 
 
+def test_competing_transitions_of_one_name_are_told_apart():
+    text = machine(arrow("a", "b", "start"), arrow("a", "b", after="3"), arrow("a", "a", "stop"))
+    messages = [item.message for item in derive_contracts(text)[2] if item.rule.code == "SM432"]
+    assert messages == [
+        "transitions 'A to B' (when 'start' occurs), 'A to B' (when 'time_3' is "
+        "reported), 'A to A' can leave 'A' in the same step; the contract leaves open which of "
+        "them does"
+    ]
+
+
 @pytest.mark.parametrize(
     ("left", "right", "codes"),
     [

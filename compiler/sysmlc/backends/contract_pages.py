@@ -173,14 +173,17 @@ class _PageBuilder:
         formula = escape_code(print_formula(conjunct.formula))
         element, place = self._label_element(conjunct.origin)
         constraint = self._graph.get(conjunct.origin)
+        is_stated = conjunct.text.endswith(("demands it.", "assumes it."))
+        sentence = _find_sentence(self._graph, constraint) if constraint and is_stated else ""
         if (
             constraint is None
             or constraint.kind is not Kind.CONSTRAINT
             or not constraint.name
             or conjunct.text.partition("' ")[0] != f"'{constraint.name}"
         ):
-            return Row(formula, escape_markdown(conjunct.text), element, place)
-        text = f"{constraint.name[:1].upper()}{constraint.name[1:]}."
+            text = f"{sentence} {conjunct.text}".strip()
+            return Row(formula, escape_markdown(text), element, place)
+        text = f"{constraint.name[:1].upper()}{constraint.name[1:]}. {sentence}".strip()
         owner = self._graph.owner(constraint)
         context = conjunct.viewpoint or ("" if owner is None else owner.name)
         kind = "requirement" if conjunct.viewpoint else "constraint of"
@@ -223,6 +226,22 @@ def _explain_missing_features(graph: Graph, contract: Contract) -> str:
         f"No guarantee is about a feature or a signal: {listed} has no known value, no finite "
         "range, or other writers."
     )
+
+
+def _find_sentence(graph: Graph, constraint: Element) -> str:
+    """Return the sentence of the author behind a formula, or nothing.
+
+    It is the text of the constraint if that is a sentence, else that of the requirement.
+    """
+    language = str(constraint.attrs.get("language", "")).lower()
+    text = str(constraint.attrs.get("body", ""))
+    if constraint.kind is not Kind.CONSTRAINT:
+        return ""
+    if not any(name in language for name in ("fret", "english", "pattern")):
+        owner = graph.owner(constraint)
+        text = "" if owner is None else str(owner.attrs.get("text", ""))
+    sentence = " ".join(text.split())
+    return sentence if not sentence or sentence.endswith((".", "!", "?")) else f"{sentence}."
 
 
 def _list_texts(graph: Graph, contract: Contract) -> Iterator[str]:

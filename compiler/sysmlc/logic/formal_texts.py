@@ -66,6 +66,8 @@ def read_formal(
     *components* are names of the component, which a structured requirement states. Raises
     FormulaError, which ``describe_error`` shows with its location.
     """
+    if not text.strip():
+        raise FormulaError("it is empty", 0)
     name = language.lower()
     if "fret" in name or ("english" in name and _is_requirement(text)):
         return read_requirement(text, variables, components)
@@ -76,6 +78,8 @@ def read_formal(
 
 def describe_error(error: FormulaError, text: str) -> str:
     """Return the message of an error with its column, and with its line in a longer text."""
+    if not text.strip():
+        return str(error)
     line, column = line_and_column(text, error.offset)
     location = f"line {line}, column {column}" if "\n" in text.strip() else f"column {column}"
     return f"{error} ({location})"

@@ -209,9 +209,6 @@ def _add_formulas(
 
 def _is_formula(constraint: Element) -> bool:
     body = str(constraint.attrs.get("body", ""))
-    if not body:
-        return False
-
     return is_formal(str(constraint.attrs.get("language", "")), body)
 
 
@@ -283,7 +280,7 @@ def _add_formula(
     domains = {variable.name: variable.domain for variable in contract.variables}
     domains = domains if scope is None else domains | scope.domains
     subject = graph.subject(constraint)
-    body = str(constraint.attrs["body"])
+    body = str(constraint.attrs.get("body", ""))
     try:
         formula = read_formal(body, str(constraint.attrs["language"]), domains)
         if scope is not None:

@@ -49,6 +49,68 @@ def test_conjuncts_of_a_requirement_have_its_name(pages):
     assert "demands it" not in text
 
 
+GATE = """
+package Plant {
+    private import ScalarValues::*;
+    part def Gate { in attribute open : Boolean; out attribute locked : Boolean; }
+    requirement def Lock {
+        subject gate : Gate;
+        require constraint { language "fret"
+            /* When open, the Gate shall immediately satisfy !locked. */ }
+    }
+    requirement def Keep {
+        doc /* A closed gate is locked */
+        subject gate : Gate;
+        require constraint { language "ltl" /* G (!open -> locked) */ }
+    }
+}
+"""
+
+
+def test_a_demand_has_the_sentence_of_the_author():
+    """It is that of the constraint, or else the text of the requirement."""
+    reading = read(GATE)
+    pipeline.run(reading.graph, reading.sink)
+    (contract,) = reading.graph.derived(Contract)
+    page = print_page(reading.graph, contract)
+    assert "- A closed gate is locked. 'Keep' demands it. " in page
+    assert "- When open, the Gate shall immediately satisfy !locked. 'Lock' demands it. " in page
+
+
+@pytest.mark.parametrize(
+    ("language", "text", "reason"),
+    [
+        ("fret", "", "it is empty"),
+        ("ltl", "", "it is empty"),
+        ("ltl", "G gate.marks", "'gate.marks' has several values (column 3)"),
+        ("fret", "The Gate shall always satisfy marks.", "'marks' has several values (column 31)"),
+        ("fret", "The Gate shall always satisfy open.", ""),
+    ],
+)
+def test_a_formula_without_meaning_is_reported_with_the_reason(language, text, reason):
+    formula = f'{{ language "{language}" /* {text} */ }}'
+    reading = read(f"""package Plant {{
+        private import ScalarValues::*;
+        part def Gate {{ attribute open : Boolean; attribute marks : Boolean[3]; }}
+        requirement def Lock {{ subject gate : Gate; require constraint {formula} }}
+    }}""")
+    pipeline.run(reading.graph, reading.sink)
+    messages = [item.message for item in reading.sink if item.rule.code == "SM522"]
+    start = "the formula of 'the constraint' in requirement 'Lock' is not understood: "
+    assert messages == ([start + reason] if reason else [])
+
+
+def test_an_empty_formula_of_a_constraint_is_reported():
+    reading = read("""package Plant { part def Gate {
+        exhibit state S { entry; then A; state A; }
+        constraint calm { language "ltl" /* */ }
+    } }""")
+    pipeline.run(reading.graph, reading.sink)
+    assert [item.message for item in reading.sink if item.rule.code == "SM501"] == [
+        "the formula of 'calm' is not understood: it is empty"
+    ]
+
+
 def test_conjuncts_of_a_constraint_have_its_name_and_steps_that_of_the_diagram(pages):
     text = pages["Plant::Line.clamp"]
     assert "- Asks for pick. *(constraint of 'Clamping')*\n  `asked=pick <->" in text

@@ -216,3 +216,13 @@ def find_outer_scope(scope: Node) -> Node | None:
     while owner is not None and (owner.kind not in NAMESPACES or owner.kind in _TRANSPARENT):
         owner = owner.owner
     return owner
+
+
+def list_scopes(context: LookupContext) -> list[Node]:
+    """Return the namespaces in which a name is looked up, nearest first."""
+    scopes = []
+    scope = context.scope
+    while scope is not None:
+        scopes.append(scope)
+        scope = find_outer_scope(scope)
+    return scopes

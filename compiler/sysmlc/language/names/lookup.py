@@ -35,6 +35,21 @@ class ImportLookup(MemberLookup):
         super().abandon()
         self._seen.clear()
 
+    def list_imported_namespaces(self, scopes: list[Node]) -> list[Node]:
+        """Return the namespaces that the scopes import, and those that these import publicly."""
+        namespaces: dict[Node, None] = {}
+        worklist = [import_ for scope in scopes for import_ in self.imports(scope)]
+        while worklist:
+            import_ = worklist.pop(0)
+            for relation in import_.relations:
+                target = self.target(import_, relation)
+                if relation.kind == "importedNamespace" and target and target not in namespaces:
+                    namespaces[target] = None
+                    worklist += [
+                        nested for nested in self.imports(target) if nested.visibility != "private"
+                    ]
+        return list(namespaces)
+
     def imports(self, scope: Node) -> list[Node]:
         """Return the imports that a namespace owns."""
         cached = self._imports.get(scope)

@@ -69,7 +69,7 @@ def _make_advice(
 ) -> str:
     """Return the help for a name that is not found; ``container`` is the element before a dot."""
     relation, lookup = use[1], model.lookup
-    obstacle = _explain_obstacle(lookup, relation, names, context, container)
+    obstacle = _explain_obstacle(lookup, relation, names, context, container, searches_imports)
     if obstacle:
         return obstacle
     package = _find_unimported_package(model, use, names, context) if container is None else None
@@ -77,7 +77,7 @@ def _make_advice(
         return _advise_import(names[0], package, lookup, context)
     unknown, container = _find_unknown_part(lookup, names, context, container)
     if relation.kind in _IMPORT_RELATIONS and container is None:
-        scope_names = {scope.name for scope in _list_scopes(context)}
+        scope_names = {scope.name for scope in contexts.list_scopes(context)}
         similar = find_similar(unknown, [n for n in model.packages() if n not in scope_names])
         return f"did you mean '{similar}'?" if similar else _NOT_GIVEN
     known_names = _list_known_names(
@@ -99,18 +99,41 @@ def _explain_obstacle(
     names: tuple[str, ...],
     context: contexts.LookupContext,
     container: Node | None,
+    searches_imports: bool,
 ) -> str:
     """Return why an element that has the name cannot be used here, or nothing if none has it."""
     of_other_kind = _search_regardless(lookup, names, context, container, everything=False)
     if of_other_kind is not None and relation.kind in _EXPECTED_WORDS:
         kind, expected = describe_kind(of_other_kind), _EXPECTED_WORDS[relation.kind]
         return f"'{names[-1]}' is {kind}, {expected} is needed here"
+    private = _explain_privacy(lookup, names, context, container, searches_imports)
+    if private and of_other_kind is None:
+        return private
     hidden = _search_regardless(lookup, names, context, container, everything=True)
     if hidden is not None and hidden.visibility in ("private", "protected"):
         owner = f" in '{hidden.owner.name}'" if hidden.owner and hidden.owner.name else ""
         return f"'{names[-1]}' is {hidden.visibility}{owner}"
     if hidden is not None and of_other_kind is None:
         return f"'{names[-1]}' is there by a private import only"
+    return ""
+
+
+def _explain_privacy(
+    lookup: Lookup,
+    names: tuple[str, ...],
+    context: contexts.LookupContext,
+    container: Node | None,
+    searches_imports: bool,
+) -> str:
+    """Return that the first unknown part is private where it would be found, or nothing."""
+    unknown, container = _find_unknown_part(lookup, names, context, container)
+    scopes = [] if container is None else [container, *lookup.known_ancestors(container)]
+    if container is None and searches_imports:
+        scopes = lookup.list_imported_namespaces(contexts.list_scopes(context))
+    for scope in scopes:
+        for hit in lookup.symbol_table(scope).get(unknown, ()):
+            if hit.visibility in ("private", "protected") and scope.name:
+                return f"'{unknown}' is {hit.visibility} in '{scope.name}'"
     return ""
 
 
@@ -155,7 +178,7 @@ def _find_unimported_package(
     if len(names) > 1:
         return None
     node, relation = use
-    scopes = _list_scopes(context)
+    scopes = contexts.list_scopes(context)
     kinds = contexts.TARGET_KINDS.get(relation.kind)
     for package in model.find_packages_owning(names[0]):
         if package not in scopes and _has_visible_member(model.lookup, package, names[0], kinds):
@@ -207,7 +230,7 @@ def _advise_import(
     name: str, package: Node, lookup: Lookup, context: contexts.LookupContext
 ) -> str:
     """Return how to import a name; the import of a package alone does not bring its members."""
-    for scope in _list_scopes(context):
+    for scope in contexts.list_scopes(context):
         for import_ in lookup.imports(scope):
             if import_.kind in _MEMBERSHIP_IMPORTS and any(
                 lookup.target(import_, relation) is package for relation in import_.relations
@@ -255,12 +278,12 @@ def _list_known_names(
         scopes = lookup.known_ancestors(context.scope)
     elif container is not None:
         scopes = [container, *lookup.known_ancestors(container)]
-        scopes += _list_imported_namespaces(lookup, [container]) if searches_imports else []
+        scopes += lookup.list_imported_namespaces([container]) if searches_imports else []
     else:
-        outward = _list_scopes(context)
+        outward = contexts.list_scopes(context)
         scopes = [*outward]
         if searches_imports:
-            scopes += _list_imported_namespaces(lookup, outward)
+            scopes += lookup.list_imported_namespaces(outward)
         if searches_imports and _is_unit(node):
             scopes += filter(None, map(model.find, _UNITS_OF_LIBRARY))
     is_last = unknown == relation.reference.chain[-1][-1]
@@ -280,32 +303,6 @@ def _list_known_names(
 def _is_of_kind(lookup: Lookup, hit: Node, kinds: frozenset[str]) -> bool:
     element = lookup.resolve_alias(hit)
     return element is not None and element.kind in kinds
-
-
-def _list_imported_namespaces(lookup: Lookup, scopes: list[Node]) -> list[Node]:
-    """Return the namespaces that the scopes import, and those that these import publicly."""
-    namespaces: dict[Node, None] = {}
-    worklist = [import_ for scope in scopes for import_ in lookup.imports(scope)]
-    while worklist:
-        import_ = worklist.pop(0)
-        for relation in import_.relations:
-            target = lookup.target(import_, relation)
-            if relation.kind == "importedNamespace" and target and target not in namespaces:
-                namespaces[target] = None
-                worklist += [
-                    nested for nested in lookup.imports(target) if nested.visibility != "private"
-                ]
-    return list(namespaces)
-
-
-def _list_scopes(context: contexts.LookupContext) -> list[Node]:
-    """Return the namespaces in which a name is looked up, nearest first."""
-    scopes = []
-    scope = context.scope
-    while scope is not None:
-        scopes.append(scope)
-        scope = contexts.find_outer_scope(scope)
-    return scopes
 
 
 _NAME = r"(?:'(?:[^'\\]|\\.)*'|[\w$~]+)"

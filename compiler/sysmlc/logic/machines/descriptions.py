@@ -1,6 +1,7 @@
 """Texts of the conjuncts in the contract of a state machine."""
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Mapping, Sequence
 
 from sysmlc.logic.expressions.expression import Expression, dotted_name, print_expression
 from sysmlc.logic.formula import TRUE, Const, Formula
@@ -30,6 +31,26 @@ INITIAL_ALTERNATIVES = "The initial transition takes one of the branches whose g
 def name_transition(transition: Transition) -> str:
     """Return the name of the transition in diagnostics."""
     return f"transition '{transition.words}'"
+
+
+def list_names(transitions: Sequence[Transition], vertices: Mapping[str, Vertex]) -> str:
+    """Return the names of transitions from one state, as diagnostics list them.
+
+    Transitions of the same name are told apart by their target and occurrences.
+    """
+    counts = Counter(transition.words for transition in transitions)
+    return ", ".join(
+        f"'{transition.words}'"
+        if counts[transition.words] == 1
+        else _qualify_name(transition, vertices[transition.target].literal)
+        for transition in transitions
+    )
+
+
+def _qualify_name(transition: Transition, target: str) -> str:
+    to = "" if transition.words.endswith(f" to {target}") else f" to '{target}'"
+    reasons = " or ".join(map(_describe_occurrence, transition.occurrences)) or "it is complete"
+    return f"'{transition.words}'{to} (when {reasons})"
 
 
 def describe_transition(

@@ -22,6 +22,7 @@ from sysmlc.logic.machines.conflicts import (
     may_compete,
     report_lost_events,
 )
+from sysmlc.logic.machines.descriptions import list_names
 from sysmlc.logic.machines.machine import NO_EVENT, Machine, Transition, element_id
 from sysmlc.logic.machines.supported_constructs import is_supported
 from sysmlc.logic.machines.transitions import combine_joins, read_transitions
@@ -188,7 +189,7 @@ def _add_choice_variable(
             outgoing, vertex, comparison, texts=texts, by_one_occurrence=by_one_occurrence
         )
         if competing:
-            names = ", ".join(f"'{transition.words}'" for transition in competing)
+            names = list_names(competing, draft.vertices)
             subject = reading.graph.subject(draft.element(id))
             reading.sink.report(finding, subject, transitions=names, vertex=name)
             break

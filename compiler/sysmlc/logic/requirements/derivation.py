@@ -248,7 +248,7 @@ def _read_statement(
 
 def _read_temporal(graph: Graph, scope: Scope, statement: Statement, sink: Sink) -> _Reading | None:
     constraint = statement.constraint
-    body = str(constraint.attrs["body"])
+    body = str(constraint.attrs.get("body", ""))
     try:
         text, meanings = scope.replace_names(body)
         domains = {name: meaning.domain for name, meaning in meanings.items()}

@@ -108,7 +108,10 @@ class Scope(Struct, frozen=True):
             raise FormulaError(str(problem), match.start()) from None
         is_plain = name.isidentifier()
         if meaning is None:
-            feature = None if is_plain else self.find_feature(name)
+            feature = self.find_feature(name)
+            if feature is not None and feature.has_several_values:
+                raise FormulaError(f"'{name}' has several values", match.start())
+            feature = None if is_plain else feature
             return name if feature is None else feature.variable.ljust(len(name))
         if is_plain and (name in self.variables or isinstance(meaning.formula, Const)):
             return name

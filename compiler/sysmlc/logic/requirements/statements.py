@@ -59,9 +59,15 @@ def iter_statements(graph: Graph, requirement: Element) -> Iterator[Statement]:
     for member in family:
         assumed_ids = {constraint.id for constraint in graph.targets(member, Edge.ASSUMES)}
         for element in graph.owned(member):
-            if element.kind is Kind.CONSTRAINT and element.attrs.get("body"):
+            if element.kind is Kind.CONSTRAINT and _has_text(element):
                 is_assumed = element.id in assumed_ids or _is_marked_assumption(element)
                 yield Statement(element, requirement, is_assumed, is_open)
+
+
+def _has_text(constraint: Element) -> bool:
+    """Whether a constraint has a text, or a language in which an empty text is a fault."""
+    language = str(constraint.attrs.get("language", ""))
+    return bool(constraint.attrs.get("body")) or is_formal(language, "")
 
 
 def _separates_assumptions(graph: Graph, requirement: Element) -> bool:
@@ -202,7 +208,7 @@ def list_stated_requirements(
                 graph.qualified_name(statement.requirement),
                 component_of(graph, subject),
                 constraint.id,
-                str(constraint.attrs["body"]).strip(),
+                str(constraint.attrs.get("body", "")).strip(),
                 "" if constraint.id in origins else reason,
             )
     requirements = [*filter(query.is_requirement, graph.of_kind(Kind.CLASS))]
@@ -214,7 +220,7 @@ def list_stated_requirements(
                     graph.qualified_name(requirement),
                     "",
                     statement.constraint.id,
-                    str(statement.constraint.attrs["body"]).strip(),
+                    str(statement.constraint.attrs.get("body", "")).strip(),
                     _NO_SUBJECT,
                 )
     for requirement in requirements:
