@@ -3,13 +3,14 @@
 import pytest
 from reading_v2 import read
 
-from sysmlc.diagnostics import Sink
+from sysmlc.diagnostics import Place, Sink, Subject
 from sysmlc.ir import Graph
 from sysmlc.ir.text import parse_text
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
 from sysmlc.passes import pipeline
+from sysmlc.synthesis.decision import Options, decide
 
 PICK = """
         action pick {
@@ -67,6 +68,15 @@ def test_a_trigger_out_of_the_state_may_stop_its_do_behaviour():
     assert describe(in_busy("transition first Busy accept Stop then Idle;")) == {
         "pick": "start_pick stop_pick"
     }
+
+
+@pytest.mark.parametrize("trigger", ["", "accept Stop "])
+def test_the_contract_of_a_do_behaviour_can_be_satisfied(trigger):
+    """Who abandons and starts it in each step does not let it end; the contract allows that."""
+    graph = compile_robot(in_busy(f"transition first Busy {trigger}then Idle;"))
+    (contract,) = (c for c in graph.derived(Contract) if c.component.endswith(".pick"))
+    place = Place("model.sysml")
+    assert decide(contract, lambda _: Subject("pick", place=place), Sink(), Options()).is_realizable
 
 
 CALLER = """

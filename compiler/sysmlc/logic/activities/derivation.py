@@ -295,11 +295,14 @@ def _capitalize(text: str) -> str:
 def _derive_progress(formulas: StepFormulas) -> Iterator[Conjunct]:
     """Yield the liveness guarantees: the activity finishes, or passes its loops, repeatedly."""
     graph, handshake = formulas.graph, formulas.graph.handshake
-    idle = f.FALSE if handshake is None else f.negate(f.var(handshake.running))
+    idle = f.FALSE
+    if handshake is not None:
+        idle = f.either(f.negate(f.var(handshake.running)), formulas.stop_formula())
     if graph.finishes:
         text = f"{_capitalize(graph.label)} finishes again and again."
         if handshake is not None:
-            text = f"Whenever {graph.label} runs, it ends sooner or later."
+            unless = f", unless '{handshake.stop}' abandons it" if handshake.stop else ""
+            text = f"Whenever {graph.label} runs, it ends sooner or later{unless}."
         ends = f.either(idle, formulas.complete_formula(ACTIVITY_REGION))
         yield Conjunct(ends, Class.LIVENESS, graph.activity, text)
         return
