@@ -28,14 +28,12 @@ def test_outputs_depend_neither_on_the_hash_seed_nor_on_the_folder(tmp_path):
     copy = tmp_path / "elsewhere" / "lego-recipe.uml"
     copy.parent.mkdir()
     copy.write_bytes(LEGO.read_bytes())
-    emit = ("--emit", "+graph,+ir,+ecore")
+    emit = ("--emit", "+graph,+ir,+ecore,+aml,+uml,+sysml")
     first = run_sysmlc(tmp_path, LEGO, "-o", "a", *emit, PYTHONHASHSEED="1")
     assert first.returncode == 0, first.stderr
-    second = run_sysmlc(
-        tmp_path, copy, "-o", "b", "--emit", "+graph,+ir,+ecore", PYTHONHASHSEED="2"
-    )
+    second = run_sysmlc(tmp_path, copy, "-o", "b", *emit, PYTHONHASHSEED="2")
     assert second.returncode == 0
-    assert {"contracts", "diagrams", "recipes"} <= {
+    assert {"contracts", "diagrams", "recipes", "aml", "uml", "sysml"} <= {
         path.name for path in (tmp_path / "a").iterdir()
     }
     assert read_files(tmp_path / "a") == read_files(tmp_path / "b")

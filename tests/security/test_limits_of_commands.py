@@ -166,7 +166,7 @@ def wait_for(process, condition):
         time.sleep(0.02)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux enforces memory limits")
 @pytest.mark.usefixtures("default_signals")
 def test_watch_continues_after_a_limit_or_a_crash(project):
