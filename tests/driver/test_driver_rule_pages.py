@@ -94,7 +94,11 @@ REPORTED_BY_SYSMLX = "SM759"
 def test_a_rule_reports_its_wrong_example_and_not_its_right_one(rule, tmp_path):
     page = rule.read_page()
     backends = list_backend_names() if rule.code == REPORTED_BY_SYSMLX else QUICK_BACKENDS
-    assert rule.code in find_codes(rule, page.wrong, tmp_path, backends)
+    # Most rules are reported by front ends and passes, so that back ends need not run.
+    if rule.code in find_codes(rule, page.wrong, tmp_path, ()):
+        backends = ()
+    else:
+        assert rule.code in find_codes(rule, page.wrong, tmp_path, backends)
     assert rule.code not in find_codes(rule, page.right, tmp_path, backends)
 
 
