@@ -138,17 +138,27 @@ def _connect_relation(lowering: "Lowering", feature: Element, relation: Relation
     if relation.kind == "Redefinition":
         lowering.connect_reference(Edge.REDEFINES, feature, reference)
     else:
+        lowering.defer_until_elements(
+            lambda: _connect_behaviour(lowering, feature, reference.target)
+        )
         lowering.defer_until_edges(lambda: _connect_subsetted(lowering, feature, reference.target))
 
 
-def _connect_subsetted(lowering: "Lowering", feature: Element, target: Node | None) -> None:
-    """Connect a feature of the owner, or an inherited one, as subsetted; another as referenced.
+def _connect_behaviour(lowering: "Lowering", feature: Element, target: Node | None) -> None:
+    """Connect a subsetted behaviour as type: a behaviour of UML is no feature."""
+    behaviour = lowering.element_of(target)
+    if behaviour is not None and _is_typed_by(feature, behaviour):
+        lowering.graph.connect(Edge.TYPED_BY, feature, behaviour)
 
-    A behaviour of UML is no feature but a type.
-    """
+
+def _is_typed_by(feature: Element, subsetted: Element) -> bool:
+    return subsetted.kind in BEHAVIORS and feature.kind is Kind.PROPERTY
+
+
+def _connect_subsetted(lowering: "Lowering", feature: Element, target: Node | None) -> None:
+    """Connect a feature of the owner, or an inherited one, as subsetted; another as referenced."""
     subsetted = lowering.element_of(target)
-    if subsetted is not None and subsetted.kind in BEHAVIORS and feature.kind is Kind.PROPERTY:
-        lowering.graph.connect(Edge.TYPED_BY, feature, subsetted)
+    if subsetted is not None and _is_typed_by(feature, subsetted):
         return
     classifier = lowering.graph.owner(feature)
     declaring = None if subsetted is None else lowering.graph.owner(subsetted)
