@@ -165,7 +165,7 @@ class BranchPlan:
         self._planned = planned
         self._counts: list[int] = []
 
-    def choose(self, _node: TokenNode, options: Sequence[_T]) -> _T:
+    def choose(self, _node: TokenNode | None, options: Sequence[_T]) -> _T:
         """Return the planned option, or the first one."""
         self._counts.append(len(options))
         position = len(self._counts) - 1

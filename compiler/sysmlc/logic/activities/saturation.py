@@ -20,7 +20,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.activities import interpreter as token_game
 from sysmlc.logic.activities.concurrency import ConcurrencyRelation
 from sysmlc.logic.activities.step_formulas import StepFormulas
-from sysmlc.logic.activities.token_graph import Store, TokenGraph, TokenNode, Write
+from sysmlc.logic.activities.token_graph import Store, TokenGraph, Write
 from sysmlc.logic.activities.value_analysis import MAX_VALUES, ValueAnalysis
 from sysmlc.logic.contract import Domain
 from sysmlc.logic.formula import Const, Formula, Literal
@@ -145,18 +145,14 @@ def _initial_states(graph: TokenGraph, unset: Mapping[str, Domain]) -> Iterator[
         yield replace(default, stored=stored)
 
 
-class _PlannedChoices:
-    """Decisions of the environment in one step, for an exhaustive search by backtracking.
-
-    The first decisions follow the plan, all later ones take the first alternative. The number of
-    alternatives of each decision is recorded, so that the search can plan the others.
-    """
+class _PlannedChoices(token_game.BranchPlan):
+    """Decisions of the environment in one step: open branches, and conditions over its inputs."""
 
     def __init__(
         self, inputs: Mapping[str, Literal], variable_domains: Mapping[str, Domain], plan: list[int]
     ) -> None:
-        self._inputs, self._domains, self._plan = inputs, variable_domains, plan
-        self._counts: list[int] = []
+        super().__init__(plan)
+        self._inputs, self._domains = inputs, variable_domains
         self._answers: dict[Formula, bool] = {}
 
     def holds(self, formula: Formula, values: Mapping[str, Literal]) -> bool:
@@ -175,24 +171,7 @@ class _PlannedChoices:
             (False, is_satisfiable(f.negate(formula), self._domains)),
         )
         possible = [answer for answer, can_be in ways if can_be]
-        return possible[self._next_choice(len(possible))]
-
-    def choose(self, node: TokenNode, options: Sequence[_T]) -> _T:
-        """Return one of several open branches."""
-        del node
-        return options[self._next_choice(len(options))]
-
-    def _next_choice(self, count: int) -> int:
-        index = len(self._counts)
-        self._counts.append(count)
-        return self._plan[index] if index < len(self._plan) else 0
-
-    def list_alternatives(self) -> Iterator[list[int]]:
-        """Yield the plans for the other alternatives of the decisions after the planned ones."""
-        taken = [*self._plan, *[0] * (len(self._counts) - len(self._plan))]
-        for index in range(len(self._plan), len(self._counts)):
-            for other in range(1, self._counts[index]):
-                yield [*taken[:index], other]
+        return self.choose(None, possible)
 
 
 _CACHE_SIZE = 256
