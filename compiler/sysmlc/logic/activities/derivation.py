@@ -295,7 +295,7 @@ def _capitalize(text: str) -> str:
 def _derive_progress(formulas: StepFormulas) -> Iterator[Conjunct]:
     """Yield the liveness guarantees: the activity finishes, or passes its loops, repeatedly."""
     graph, handshake = formulas.graph, formulas.graph.handshake
-    idle = f.FALSE
+    idle: Formula = f.FALSE
     if handshake is not None:
         idle = f.either(f.negate(f.var(handshake.running)), formulas.stop_formula())
     if graph.finishes:
