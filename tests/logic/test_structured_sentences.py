@@ -48,7 +48,10 @@ TIMINGS = {
     "after": "after {n} ticks",
     "until": "until s",
     "before": "before s",
+    "finally": "finally",
 }
+NEVER_ENDING = ("", "after", "only before")
+"""Scopes without a last step, in which 'finally' has no meaning."""
 
 
 # -- the meaning of a sentence on a run ------------------------------------------------------------
@@ -157,6 +160,8 @@ def is_response_due(run, trigger, last, timing, n, is_negated):
             stop = stops[0] if stops else end
             truth = any(map(response, range(trigger, stop)))
             truth = truth if stops or is_negated else None
+        case "finally":
+            truth = None if last is None else response(last)
     return True if truth is None else truth != is_negated
 
 
@@ -178,7 +183,7 @@ def evaluate(formula, run):
     What the past operators state repeats with the loop after one round for each of them.
     """
     period = len(run.steps) - run.loop
-    rounds = 4
+    rounds = 12
     steps = run.steps + run.steps[run.loop :] * rounds
     loop = len(steps) - period
     columns = [dict(step) for step in steps]
@@ -223,6 +228,8 @@ CASES = list(itertools.product(SCOPES, CONDITIONS))
 def test_the_formula_is_true_on_the_runs_that_satisfy_the_sentence(scope, condition):
     draw = random.Random(f"{scope} {condition}")
     for timing, words in TIMINGS.items():
+        if timing == "finally" and scope in NEVER_ENDING:
+            continue
         verdicts = set()
         for index in range(600):
             if index >= 24 and len(verdicts) == 2:
@@ -237,6 +244,53 @@ def test_the_formula_is_true_on_the_runs_that_satisfy_the_sentence(scope, condit
             assert evaluate(formula, run) == expected, (text, run.steps, run.loop)
             verdicts.add(expected)
         assert verdicts == {True, False}, (scope, condition, timing)
+
+
+PREDICATES = {
+    "persisted": lambda values, n: len(values) > n and all(values[-n - 1 :]),
+    "occurred": lambda values, n: any(values[-n - 1 :]),
+}
+
+
+UNLIMITED = [scope for scope in SCOPES if not scope.startswith("only")]
+
+
+@pytest.mark.parametrize(("scope", "predicate"), list(itertools.product(UNLIMITED, PREDICATES)))
+def test_predicates_about_the_past_look_back_to_the_begin_of_the_interval(scope, predicate):
+    draw = random.Random(f"{scope} {predicate}")
+    verdicts = set()
+    for index in range(300):
+        n, run, has_restriction = draw.randrange(4), make_run(draw), bool(scope) and index % 4 == 3
+        restriction = "while w, " if has_restriction else ""
+        text = f"{SCOPES[scope]}{restriction}the gate shall always satisfy {predicate}({n}, r) | s"
+        expected = all(
+            PREDICATES[predicate]([run.is_true("r", i) for i in range(start, step + 1)], n)
+            or run.is_true("s", step)
+            for start, end in list_scope_intervals(run, scope, has_restriction)
+            for step in range(start, run.horizon if end is None else end + 1)
+            if step in run.triggers
+        )
+        formula = read_requirement(text, DOMAINS)
+        assert evaluate(formula, run) == expected, (text, run.steps, run.loop)
+        verdicts.add(expected)
+    assert verdicts == {True, False}
+
+
+@pytest.mark.parametrize(
+    ("duration", "tick_seconds", "steps"),
+    [
+        ("3 seconds", 1.0, 3),
+        ("1 minute", 20.0, 3),
+        ("300 milliseconds", 0.1, 3),
+        ("1 sec", 0.5, 2),
+        ("2 hours", 3600.0, 2),
+        ("2 ticks", 0.5, 2),
+    ],
+)
+def test_durations_are_numbers_of_steps(duration, tick_seconds, steps):
+    text = "Whenever c, the gate shall for {} satisfy r"
+    expected = read_requirement(text.format(f"{steps} ticks"), DOMAINS)
+    assert read_requirement(text.format(duration), DOMAINS, (), tick_seconds) == expected
 
 
 # -- readers and results ---------------------------------------------------------------------------
@@ -264,6 +318,10 @@ def test_the_formula_is_true_on_the_runs_that_satisfy_the_sentence(scope, condit
         ),
         ("Whenever c the gate shall, within 1 step, satisfy r", "G (c -> r | X r)"),
         ("The bay gate shall always satisfy r", "G r"),
+        ("In m, the gate shall finally satisfy r", "G (!m & Y m -> Y r)"),
+        ("Before m, the gate shall at the last timepoint satisfy r", "G (m & Y !O m -> Y r)"),
+        ("The gate shall always satisfy persisted(1, r) -> s", "G (r & Y r -> s)"),
+        ("In m, the gate shall always satisfy occurred(1, r)", "G (m -> m & r | m & Y (m & r))"),
     ],
 )
 def test_sentences_in_other_words(sentence, formula):
@@ -292,15 +350,44 @@ def test_sentences_in_other_words(sentence, formula):
         ),
         ("the gate shall within five ticks satisfy r", (1, 23), "a number is expected, not 'five'"),
         (
-            "the gate shall within 3 seconds satisfy r",
+            "the gate shall within 3 weeks satisfy r",
             (1, 25),
-            "'steps' or 'step' is expected, not 'seconds'",
+            "'hours' or 'hour' is expected, not 'weeks'",
         ),
-        ("the gate shall for 65 ticks satisfy r", (1, 20), "a number from 0 to 64 is expected"),
+        (
+            "the gate shall for 65 ticks satisfy r",
+            (1, 20),
+            "a number of steps from 0 to 64 is expected",
+        ),
+        (
+            "the gate shall within 1500 milliseconds satisfy r",
+            (1, 23),
+            "1500 milliseconds are no whole number of steps of 1 s: write ticks",
+        ),
+        (
+            "after m, the gate shall finally satisfy r",
+            (1, 25),
+            "the scope has no last step: add one that ends, such as 'in m' or 'before m'",
+        ),
+        (
+            "the gate shall always satisfy persists(2, r)",
+            (1, 31),
+            "'persists' cannot be read: write a timing, 'for 3 ticks', or persisted(3, p)",
+        ),
+        (
+            "the gate shall always satisfy preBool(true, r)",
+            (1, 31),
+            "'preBool' cannot be read: write the requirement in LTL",
+        ),
+        (
+            "the gate shall always satisfy occurred(65, r)",
+            (1, 40),
+            "a number from 0 to 64 is expected",
+        ),
         (
             "the gate shall at once satisfy r",
             (1, 16),
-            "'at the next timepoint' is expected, not 'at'",
+            "'at the next timepoint' or 'at the last timepoint' is expected, not 'at'",
         ),
         ("the gate shall always satisfy q", (1, 31), "'q' is neither a variable nor a literal"),
         (
@@ -360,6 +447,8 @@ def test_a_mode_that_two_variables_may_have_is_ambiguous():
 @pytest.mark.parametrize(("scope", "timing"), list(itertools.product(SCOPES, TIMINGS)))
 def test_history_bits_bring_every_sentence_into_gr1(scope, timing):
     """So that synthesis and the other tools can use it."""
+    if timing == "finally" and scope in NEVER_ENDING:
+        return
     for condition in CONDITIONS.values():
         text = f"{SCOPES[scope]}{condition}the gate shall {TIMINGS[timing].format(n=2)} satisfy r"
         assert reduce_formula(read_requirement(text, DOMAINS), History(DOMAINS))

@@ -33,8 +33,9 @@ _SENTENCE = re.compile(
 )
 """The start of a sentence that no informal text contains: tools label any prose as English."""
 _REQUIREMENT = re.compile(
-    r"\bshall(?:\s+the\s+\w+)?(?:\s+|\s*,\s*)(always|never|immediately|eventually|until|before"
-    r"|at\s+the\s+next\s+timepoint|(within|for|after)\s+\d+\s+(tick|step)s?)\b",
+    r"\bshall(?:\s+the\s+\w+)?(?:\s+|\s*,\s*)(always|never|immediately|eventually|finally|until|before"
+    r"|at\s+the\s+(next|last)\s+timepoint|(within|for|after)\s+\d+\s+"
+    r"(tick|step|(micro|milli)?sec(ond)?|minute|hour)s?)\b",
     re.IGNORECASE,
 )
 """Words that only a structured requirement contains, before the word "satisfy"."""
@@ -59,18 +60,23 @@ def _is_requirement(text: str) -> bool:
 
 
 def read_formal(
-    text: str, language: str, variables: Mapping[str, Domain], components: Collection[str] = ()
+    text: str,
+    language: str,
+    variables: Mapping[str, Domain],
+    components: Collection[str] = (),
+    tick_seconds: float = 1.0,
 ) -> Formula:
     """Return the formula of a formal text; it may have operators of the past.
 
-    *components* are names of the component, which a structured requirement states. Raises
+    *components* are names of the component, which a structured requirement states, and
+    *tick_seconds* is the length of a step, for durations in a structured requirement. Raises
     FormulaError, which ``describe_error`` shows with its location.
     """
     if not text.strip():
         raise FormulaError("it is empty", 0)
     name = language.lower()
     if "fret" in name or ("english" in name and _is_requirement(text)):
-        return read_requirement(text, variables, components)
+        return read_requirement(text, variables, components, tick_seconds)
     if "pattern" in name or "english" in name:
         return read_sentence(text, variables)
     return read_temporal_logic(text, variables)

@@ -13,16 +13,58 @@ from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Domain, EnumerationDomain
 from sysmlc.logic.formula import Formula, has_future, has_primes
-from sysmlc.logic.infix import FormulaReader
-from sysmlc.logic.structured_sentences import Sentence, Timing, formalize
+from sysmlc.logic.infix import BOOLEAN, FormulaReader, Term
+from sysmlc.logic.structured_sentences import (
+    Sentence,
+    Timing,
+    find_inside,
+    formalize,
+    formalize_occurred,
+    formalize_persisted,
+)
 from sysmlc.logic.syntax import NEUTRAL, Cursor, FormulaError, Token, tokenize
 from sysmlc.support.suggestions import find_similar
 
 SENTENCE_SYNTAX = replace(NEUTRAL, signs=(",", "."))
 
 
+MAX_STEPS = 64
+"""Most steps of a duration; the formula has an X or a Y for each."""
+_PREDICATES = {"persisted": formalize_persisted, "occurred": formalize_occurred}
+_NO_PREDICATES = {
+    "persists": "write a timing, 'for 3 ticks', or persisted(3, p) about the past",
+    "occurs": "write a timing, 'within 3 ticks', or occurred(3, p) about the past",
+    "prebool": "write the requirement in LTL, where Y p is p one step ago",
+    "preint": "write the requirement in LTL, with the next value x'",
+    "prereal": "write the requirement in LTL, with the next value x'",
+}
+"""Predicates of FRET that are not read, in small letters, with advice."""
+
+
 class ConditionReader(FormulaReader):
-    """Reader of conditions about the present: no temporal operators, no primes."""
+    """Reader of conditions about the present: no temporal operators, no primes.
+
+    In a structured requirement, ``inside`` is the condition that a step is in its scope:
+    ``persisted`` and ``occurred`` do not look farther back. In other sentences it is None.
+    """
+
+    inside: Formula | None = None
+
+    def resolve_name(self, token: Token) -> Term:
+        if self.inside is None or not self.cursor.is_next("("):
+            return super().resolve_name(token)
+        if token.text.lower() in _NO_PREDICATES:
+            advice = _NO_PREDICATES[token.text.lower()]
+            raise FormulaError(f"'{token.text}' cannot be read: {advice}", token.offset)
+        predicate = _PREDICATES.get(token.text.lower())
+        if predicate is None:
+            return super().resolve_name(token)
+        self.cursor.expect("(")
+        steps = read_number(self.cursor, MAX_STEPS)
+        self.cursor.expect(",")
+        condition = self.read_formula()
+        self.cursor.expect(")")
+        return Term(predicate(steps, condition, self.inside), BOOLEAN, token.offset)
 
     def read_formula(self, min_precedence: int = 0) -> Formula:
         offset = self.cursor.next.offset
@@ -30,6 +72,15 @@ class ConditionReader(FormulaReader):
         if has_primes(formula) or has_future(formula):
             raise FormulaError("a condition of a sentence is about the present", offset)
         return formula
+
+
+def read_number(cursor: Cursor, largest: int) -> int:
+    """Read a number from 0 to *largest*. Raises FormulaError."""
+    token = cursor.next
+    number = cursor.read_integer()
+    if not 0 <= number <= largest:
+        raise FormulaError(f"a number from 0 to {largest} is expected", token.offset)
+    return number
 
 
 class WordReader:
@@ -51,10 +102,7 @@ class WordReader:
 
     def _read_count(self, largest: int, *units: str) -> int:
         """Read a number from 0 to *largest* and one of the *units*."""
-        token = self._cursor.next
-        number = self._cursor.read_integer()
-        if not 0 <= number <= largest:
-            raise FormulaError(f"a number from 0 to {largest} is expected", token.offset)
+        number = read_number(self._cursor, largest)
         self._expect_one_of(*units)
         return number
 
@@ -84,8 +132,6 @@ class WordReader:
 
 # -- structured requirements -----------------------------------------------------------------------
 
-_MAX_STEPS = 64
-"""Most steps of a duration; the formula has an X for each."""
 _QUALIFIERS = ("when", "if", "upon", "where", "whenever", "unless")
 _SCOPES = ("in", "during", "while", "before", "after", "only", "except", "not")
 _TIMINGS = {
@@ -98,20 +144,40 @@ _TIMINGS = {
     "eventually": "eventually",
     "always": "always",
     "never": "never",
+    "finally": "finally",
+    "at the last timepoint": "finally",
 }
+_SECONDS = {
+    "tick": 0.0,
+    "step": 0.0,
+    "microsecond": 1e-6,
+    "microsec": 1e-6,
+    "millisecond": 1e-3,
+    "millisec": 1e-3,
+    "second": 1.0,
+    "sec": 1.0,
+    "minute": 60.0,
+    "hour": 3600.0,
+}
+"""Units of durations in seconds; 0 for steps. Each may have a plural s."""
+_MAX_DURATION = 10**9
 _TIMING_WORDS = (*_TIMINGS, "within", "for", "after", "until", "before")
 
 
 def read_requirement(
-    text: str, variables: Mapping[str, Domain], components: Collection[str] = ()
+    text: str,
+    variables: Mapping[str, Domain],
+    components: Collection[str] = (),
+    tick_seconds: float = 1.0,
 ) -> Formula:
     """Return the formula of a structured requirement, which may have operators of the past.
 
     *components* are the names that the component may have; if it is empty, any name is accepted.
-    Raises FormulaError with the offset of the fault.
+    *tick_seconds* is the length of a step. Raises FormulaError with the offset of the fault.
     """
     cursor = Cursor(tokenize(text, SENTENCE_SYNTAX))
     reader = _RequirementReader(cursor, variables)
+    reader.tick_seconds = tick_seconds
     sentence = reader.read(components)
     reader.read_end()
     return formalize(sentence)
@@ -123,6 +189,8 @@ class _RequirementReader(WordReader):
     In sentences with "only", the component may follow "shall".
     """
 
+    tick_seconds = 1.0
+
     def read(self, components: Collection[str]) -> Sentence:
         scope, mode = self._read_scope()
         restriction: Formula = f.TRUE
@@ -131,6 +199,7 @@ class _RequirementReader(WordReader):
             restriction = self._read_mode()
             self._cursor.accept(",")
         self._accept("and")
+        self._conditions.inside = find_inside(scope, mode, restriction)
         condition, is_continual = self._read_conditions()
         if self._accept("shall"):
             self._read_component(components)
@@ -138,7 +207,12 @@ class _RequirementReader(WordReader):
             self._read_component(components)
             self._expect("shall")
         self._cursor.accept(",")
+        offset = self._cursor.next.offset
         timing = self._read_timing()
+        may_end = scope not in ("", "after", "only before") or restriction != f.TRUE
+        if timing.kind == "finally" and not may_end:
+            reason = "the scope has no last step: add one that ends, such as 'in m' or 'before m'"
+            raise FormulaError(reason, offset)
         self._cursor.accept(",")
         self._accept("satisfy")
         response = self._read_response()
@@ -282,18 +356,35 @@ class _RequirementReader(WordReader):
                 return Timing(kind)
         for kind in ("within", "for", "after"):
             if self._accept(kind):
-                return Timing(kind, self._read_count(_MAX_STEPS, "ticks", "tick", "steps", "step"))
+                return Timing(kind, self._read_duration())
         for kind in ("until", "before"):
             if self._accept(kind):
                 return Timing(kind, stop=self._read_condition())
         if self._cursor.next.text.lower() == "at":
-            self._fail("'at the next timepoint'")
+            self._fail("'at the next timepoint' or 'at the last timepoint'")
         token = self._cursor.next
         similar = find_similar(token.text, (*_TIMING_WORDS, "satisfy"))
         is_value = any(domains.contains(domain, token.text) for domain in self._variables.values())
         if similar and token.text not in (similar, *self._variables) and not is_value:
             self._fail(f"'{similar}' or a condition")
         return Timing()
+
+    def _read_duration(self) -> int:
+        """Read a number and a unit; return the number of steps."""
+        start = self._cursor.next.offset
+        number = read_number(self._cursor, _MAX_DURATION)
+        unit = self._expect_one_of(*(f"{unit}{end}" for unit in _SECONDS for end in ("s", "")))
+        seconds = _SECONDS[unit.removesuffix("s")]
+        steps = number * seconds / self.tick_seconds if seconds else number
+        if abs(steps - round(steps)) > 1e-9 * steps:
+            reason = (
+                f"{number} {unit} are no whole number of steps of {self.tick_seconds:g} s: write "
+                "ticks, or change tick_seconds"
+            )
+            raise FormulaError(reason, start)
+        if steps > MAX_STEPS:
+            raise FormulaError(f"a number of steps from 0 to {MAX_STEPS} is expected", start)
+        return round(steps)
 
     def _read_response(self) -> Formula:
         """Read a condition, or ``if P then Q``."""

@@ -43,6 +43,27 @@ class Sentence(Struct, frozen=True):
     is_continual: bool = False
 
 
+def find_inside(scope: str, mode: Formula, restriction: Formula) -> Formula:
+    """Return the condition that a step is in an interval of the scope."""
+    return f.both(_recognise_intervals(scope, mode).inside, restriction)
+
+
+def formalize_persisted(steps: int, condition: Formula, inside: Formula) -> Formula:
+    """Return that a condition holds now and held in the last *steps* steps of the interval."""
+    formula = held = f.both(inside, condition)
+    for _ in range(steps):
+        formula = f.both(held, _previous(formula))
+    return formula
+
+
+def formalize_occurred(steps: int, condition: Formula, inside: Formula) -> Formula:
+    """Return that a condition holds now or held in one of the last *steps* of the interval."""
+    formula = now = f.both(inside, condition)
+    for _ in range(steps):
+        formula = f.either(now, f.both(inside, _previous(formula)))
+    return formula
+
+
 def formalize(sentence: Sentence) -> Formula:
     """Return the formula of a sentence; it may have operators of the past.
 
@@ -53,6 +74,8 @@ def formalize(sentence: Sentence) -> Formula:
     inside = f.both(interval.inside, sentence.restriction)
     end = f.either(interval.end, f.negate(sentence.restriction))
     timing, response = sentence.timing, sentence.response
+    if timing.kind == "finally":
+        return _demand_finally(sentence, inside, end)
     if sentence.scope.startswith("only"):
         demand = _NEGATED_TIMINGS[timing.kind](response, timing, end)
     else:
@@ -63,10 +86,28 @@ def formalize(sentence: Sentence) -> Formula:
             return f.always(f.implies(inside, step))
         if inside == f.TRUE:
             return demand
+    return f.always(f.implies(_find_trigger(sentence, inside), demand))
+
+
+def _find_trigger(sentence: Sentence, inside: Formula) -> Formula:
     trigger = inside if sentence.condition is None else f.both(inside, sentence.condition)
     if not sentence.is_continual or sentence.condition is None:
         trigger = f.both(trigger, f.negate(_previous(trigger)))
-    return f.always(f.implies(trigger, demand))
+    return trigger
+
+
+def _demand_finally(sentence: Sentence, inside: Formula, end: Formula) -> Formula:
+    """In the step after an interval with a trigger, the response held one step ago.
+
+    The formula is about the past, because a weak until with ``X end`` is not reduced to GR(1).
+    """
+    response = sentence.response
+    if sentence.scope.startswith("only"):
+        response = f.negate(response)
+    is_due = inside
+    if sentence.condition is not None:
+        is_due = Apply(Op.SINCE, (inside, _find_trigger(sentence, inside)))
+    return f.always(f.implies(f.both(end, _previous(is_due)), _previous(response)))
 
 
 def _stepwise_demand(sentence: Sentence) -> Formula | None:

@@ -62,12 +62,12 @@ class Contracts(Struct, frozen=True):
     def run(self, graph: Graph, sink: Sink) -> None:
         """Store the Contracts of behaviours, of subjects of requirements and of services."""
         assumed_range = self.assumed_low, self.assumed_high
+        options = MachineOptions(self.tick_seconds, assumed_range)
         # `_add_formulas` finds contracts by component, so that these names must be distinct before.
         drawn = (*self._derive_machines(graph, sink), *_derive_activities(graph))
         derived = list(map(mark_derived, drawn))
         derived = _number_components(graph, derived, sink)
-        derived = _add_formulas(graph, derived, assumed_range, sink)
-        options = MachineOptions(self.tick_seconds, assumed_range)
+        derived = _add_formulas(graph, derived, options, sink)
         checked = list(requirements.derive(graph, derived, options, sink))
         required = [subject.contract for subject in checked]
         graph.store(
@@ -189,7 +189,7 @@ OUTSIDE_GR1 = rule(
 
 
 def _add_formulas(
-    graph: Graph, contracts: list[Contract], assumed_range: tuple[int, int], sink: Sink
+    graph: Graph, contracts: list[Contract], options: MachineOptions, sink: Sink
 ) -> list[Contract]:
     """Return the contracts, extended by the formulas in constraints of the model."""
     by_component = {contract.component: contract for contract in contracts}
@@ -200,8 +200,10 @@ def _add_formulas(
         for component in _list_components(graph, constraint, performed):
             if component in by_component:
                 contract = by_component[component]
-                scope = _find_scope(graph, contract, assumed_range)
-                by_component[component] = _add_formula(graph, contract, constraint, scope, sink)
+                scope = _find_scope(graph, contract, options.assumed_range)
+                by_component[component] = _add_formula(
+                    graph, contract, constraint, scope, options.tick_seconds, sink
+                )
             else:
                 _report_orphan(graph, constraint, component, sink)
     return list(by_component.values())
@@ -270,7 +272,12 @@ def _report_orphan(graph: Graph, constraint: Element, component: str, sink: Sink
 
 
 def _add_formula(
-    graph: Graph, contract: Contract, constraint: Element, scope: Scope | None, sink: Sink
+    graph: Graph,
+    contract: Contract,
+    constraint: Element,
+    scope: Scope | None,
+    tick_seconds: float,
+    sink: Sink,
 ) -> Contract:
     """Return the contract, extended by the formula of a constraint; report a formula with a fault.
 
@@ -282,7 +289,8 @@ def _add_formula(
     subject = graph.subject(constraint)
     body = str(constraint.attrs.get("body", ""))
     try:
-        formula = read_formal(body, str(constraint.attrs["language"]), domains)
+        language = str(constraint.attrs["language"])
+        formula = read_formal(body, language, domains, (), tick_seconds)
         if scope is not None:
             formula = scope.substitute_constants(formula)
             contract = add_features(contract, scope, formula)

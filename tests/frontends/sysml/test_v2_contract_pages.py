@@ -4,8 +4,11 @@ import pytest
 from reading_v2 import read
 
 from sysmlc.backends.contract_pages import print_page
+from sysmlc.diagnostics import Sink
 from sysmlc.logic.contract import Contract
+from sysmlc.logic.printing import print_formula
 from sysmlc.passes import pipeline
+from sysmlc.passes.contracts import Contracts
 
 LINE = """
 package Plant {
@@ -98,6 +101,33 @@ def test_a_formula_without_meaning_is_reported_with_the_reason(language, text, r
     messages = [item.message for item in reading.sink if item.rule.code == "SM522"]
     start = "the formula of 'the constraint' in requirement 'Lock' is not understood: "
     assert messages == ([start + reason] if reason else [])
+
+
+TIMED = """package Plant {
+    private import ScalarValues::*;
+    part def Gate { in attribute open : Boolean; out attribute shut : Boolean; }
+    requirement def Shuts { subject gate : Gate; require constraint { language "fret"
+        /* Whenever open, the Gate shall within 2 seconds satisfy shut. */ } }
+}"""
+
+
+def test_a_duration_in_seconds_depends_on_the_length_of_a_step():
+    reading = read(TIMED)
+    pipeline.run(reading.graph, Sink())
+    Contracts(tick_seconds=2.0).run(reading.graph, Sink())
+    (contract,) = reading.graph.derived(Contract)
+    assert [print_formula(item.formula) for item in contract.guarantees] == ["open -> shut | shut'"]
+
+
+def test_a_duration_between_two_steps_is_reported():
+    reading, sink = read(TIMED), Sink()
+    pipeline.run(reading.graph, Sink())
+    Contracts(tick_seconds=1.5).run(reading.graph, sink)
+    (finding,) = sink
+    assert finding.message.endswith(
+        "2 seconds are no whole number of steps of 1.5 s: write ticks, or change tick_seconds "
+        "(column 38)"
+    )
 
 
 def test_an_empty_formula_of_a_constraint_is_reported():

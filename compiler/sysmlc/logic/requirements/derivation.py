@@ -82,7 +82,7 @@ def derive(
     writers = WriterIndex(graph)
     for subject, statements in collect_statements(graph):
         behaviour = behaviour_by_component.get(component_of(graph, subject))
-        scope = make_scope(graph, subject, behaviour, options.assumed_range)
+        scope = make_scope(graph, subject, behaviour, options.assumed_range, options.tick_seconds)
         component, obstacle = _open_component(graph, subject, options, writers)
         if component is not None:
             scope = replace(scope, names=ComponentNames(component))
@@ -251,9 +251,9 @@ def _read_temporal(graph: Graph, scope: Scope, statement: Statement, sink: Sink)
     body = str(constraint.attrs.get("body", ""))
     try:
         text, meanings = scope.replace_names(body)
-        domains = {name: meaning.domain for name, meaning in meanings.items()}
-        all_domains = {**scope.domains, **domains}
-        formula = read_formal(text, statement.language, all_domains, scope.component_names)
+        all_domains = scope.domains | {name: item.domain for name, item in meanings.items()}
+        component = scope.component_names, scope.tick_seconds
+        formula = read_formal(text, statement.language, all_domains, *component)
     except FormulaError as error:
         sink.report(
             NOT_A_FORMULA,

@@ -42,6 +42,8 @@ class Scope(Struct, frozen=True):
     """Names of actions, states and parts; None if the subject has no behaviour to describe."""
     component_names: tuple[str, ...] = ()
     """Names by which formulas and structured requirements may call the subject."""
+    tick_seconds: float = 1.0
+    """Length of a step."""
 
     @property
     def domains(self) -> dict[str, Domain]:
@@ -164,9 +166,16 @@ def restore_names(formula: Formula, meanings: Mapping[str, Meaning]) -> Formula:
 
 
 def make_scope(
-    graph: Graph, subject: Element, behaviour: Contract | None, assumed_range: tuple[int, int]
+    graph: Graph,
+    subject: Element,
+    behaviour: Contract | None,
+    assumed_range: tuple[int, int],
+    tick_seconds: float,
 ) -> Scope:
-    """Return the scope of a subject; *behaviour* is its contract if it has a behaviour."""
+    """Return the scope of a subject; *behaviour* is its contract if it has a behaviour.
+
+    *tick_seconds* is the length of a step.
+    """
     context = context_of(
         graph,
         definition_of(graph, subject),
@@ -174,7 +183,8 @@ def make_scope(
         find_redefining_operation(graph, subject),
     )
     scope = scope_of(context, () if behaviour is None else behaviour.variables)
-    return replace(scope, component_names=list_component_names(graph, subject))
+    names = list_component_names(graph, subject)
+    return replace(scope, component_names=names, tick_seconds=tick_seconds)
 
 
 def scope_of(context: Context, behaviour_variables: Iterable[Variable]) -> Scope:
