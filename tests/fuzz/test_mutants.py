@@ -14,7 +14,7 @@ from fuzz.hunt import Hunter
 from fuzz.mutants import list_models, make_mutant, make_unchanged
 from long_runs import quick_first
 
-BATCH = 10
+BATCH = 5
 EXAMPLE_BATCHES = range(0, 60, BATCH)
 REAL_BATCHES = range(0, 140, BATCH)
 PLANT_BATCHES = range(0, 200, BATCH)

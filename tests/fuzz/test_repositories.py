@@ -30,10 +30,10 @@ def find_unanswered(fork_server, folder, seeds, models):
     return failures
 
 
-@pytest.mark.parametrize("first", quick_first(range(FIRST_SEED, FIRST_SEED + 60, 10)))
+@pytest.mark.parametrize("first", quick_first(range(FIRST_SEED, FIRST_SEED + 60, 5)))
 def test_hostile_repositories_change_only_their_output_folder(fork_server, tmp_path, first):
     models = list_models(None, 0, [*SUFFIXES])
-    assert find_unanswered(fork_server, tmp_path, range(first, first + 10), models) == []
+    assert find_unanswered(fork_server, tmp_path, range(first, first + 5), models) == []
 
 
 @pytest.mark.long
