@@ -21,7 +21,9 @@ DEFAULT_SECONDS = 300.0
 DEFAULT_GIBIBYTES = 8.0
 _GIBIBYTE = 1 << 30
 _OWN_MEMORY = 64 << 20
-"""Bytes that the interpreter and libraries need in any command; the limit excludes them."""
+"""Bytes that the interpreter and libraries need in any command; the limit excludes them..."""
+_MAX_EXCESS = 5
+"""... up to this part of the limit, a fifth."""
 _MAX_AMOUNT = 1_000_000_000
 _MIN_SECONDS = 0.001
 """The shortest timer in seconds: setitimer with 0 would switch the timer off."""
@@ -115,7 +117,8 @@ class Limits:
         remaining = max(seconds - (time.monotonic() - self._start), _MIN_SECONDS)
         is_limited = self._is_timed and seconds
         signal.setitimer(signal.ITIMER_REAL, remaining if is_limited else 0)
-        _set_memory_limit(self.memory + _OWN_MEMORY if gibibytes else None)
+        own_memory = min(_OWN_MEMORY, self.memory // _MAX_EXCESS)
+        _set_memory_limit(self.memory + own_memory if gibibytes else None)
 
     def release_memory(self) -> None:
         """End the memory limit, so that a diagnostic about it can be printed."""

@@ -208,12 +208,18 @@ def _report_time_limit(seconds: float) -> None:
     _report(faults.TIME_LIMIT, seconds=f"{seconds:g}")
 
 
+_OWN_GIBIBYTES = 0.06
+"""Memory that a command needs without any model."""
+
+
 def report_memory_limit(gibibytes: float) -> None:
     """Report that the command ran out of memory; *gibibytes* is its limit, 0 if it has none."""
     from sysmlc.driver import faults
 
     limit = f"{gibibytes:g} GiB of memory are" if gibibytes else "the memory of this machine is"
-    _report(faults.MEMORY_LIMIT, limit=limit)
+    is_small = 0 < gibibytes < _OWN_GIBIBYTES
+    notes = (f"the interpreter and its libraries need up to {_OWN_GIBIBYTES} GiB",) * is_small
+    _report(faults.MEMORY_LIMIT, notes, limit=limit)
 
 
 def _report_crash(number: int) -> None:
@@ -224,13 +230,13 @@ def _report_crash(number: int) -> None:
     _report(faults.CRASH, signal=name)
 
 
-def _report(rule: "Rule", **facts: str) -> None:
+def _report(rule: "Rule", notes: tuple[str, ...] = (), **facts: str) -> None:
     """Print a diagnostic as text on standard error; standard output may belong to a report."""
     from sysmlc.diagnostics import Sink, Subject
     from sysmlc.diagnostics.renderers import make_report, render
 
     sink = Sink()
-    sink.report(rule, Subject(), notes=(), help="", **facts)
+    sink.report(rule, Subject(), notes=notes, help="", **facts)
     # The bar of a command that was ended may still stand in the last line of the terminal.
     line_start = "\r\x1b[K" if sys.stderr.isatty() else ""
     with suppress(OSError):
