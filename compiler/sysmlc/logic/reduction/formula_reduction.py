@@ -100,7 +100,7 @@ class FormulaReduction:
             yield Class.SAFETY, f.implies(trigger, body)
             return
         assert isinstance(body, Apply)
-        bounded = self._reduce_next(trigger, body)
+        bounded = None if self._is_stepwise(trigger, body) else self._reduce_next(trigger, body)
         if bounded is not None:
             yield Class.SAFETY, bounded
             return
@@ -194,6 +194,23 @@ class FormulaReduction:
         yield from self._reduce_obligation(f.both(present, is_due), future)
 
     # -- bounded look-ahead: X --------------------------------------------------------------------
+
+    def _is_stepwise(self, trigger: Formula, body: Apply) -> bool:
+        """Whether each X of the body can be reduced by itself.
+
+        A bit for each step then stores what is still due, as for ``q | X (q | X q)``. To evaluate
+        the whole body in its last step takes a bit for each step and each of its conditions.
+        """
+        depth = _next_depth(body)
+        if depth is None or depth < 2 or has_primes(body) or has_primes(trigger):
+            return False
+        if depth > _MAX_NEXT_DEPTH:
+            raise NotReducibleError(body)
+        is_single = sum(map(has_future, body.args)) == 1
+        is_premise_present = body.op is Op.IMPLIES and not has_future(body.args[0])
+        return (
+            body.op in (Op.NEXT, Op.AND) or (body.op is Op.OR and is_single) or is_premise_present
+        )
 
     def _reduce_next(self, trigger: Formula, body: Formula) -> Formula | None:
         """Return the obligation for a body with no temporal operator but X; None for another body.

@@ -4,6 +4,7 @@
 remaining part depends on it.
 """
 
+from collections import Counter
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 
@@ -125,17 +126,21 @@ def _order_stages(clusters: Sequence[_Cluster]) -> Iterable[_Stage]:
     A greedy choice: next is the cluster with the most bits that no other remaining cluster reads.
     """
     remaining = list(clusters)
+    readers = Counter(bit for cluster in clusters for bit in cluster.support)
     while remaining:
         best = max(
             remaining,
-            key=lambda cluster: (_count_last_bits(cluster, remaining), -len(cluster.support)),
+            key=lambda cluster: (
+                sum(readers[bit] == 1 for bit in cluster.support),
+                -len(cluster.support),
+            ),
         )
         # A cluster without quantified bits lets no bit die; it waits until the product is small.
         if not best.support:
             best = next((cluster for cluster in remaining if cluster.support), best)
         remaining.remove(best)
-        later_bits = frozenset().union(*(cluster.support for cluster in remaining))
-        yield _Stage(best.node, best.support - later_bits)
+        readers.subtract(best.support)
+        yield _Stage(best.node, frozenset(bit for bit in best.support if not readers[bit]))
 
 
 def _join_small_stages(stages: Iterable[_Stage], unread_bits: frozenset[str]) -> Iterable[_Stage]:
@@ -157,8 +162,3 @@ def _join_small_stages(stages: Iterable[_Stage], unread_bits: frozenset[str]) ->
 
 def _can_join(left: _Stage, right: _Stage) -> bool:
     return len(left.node) + len(right.node) <= MAX_JOINED_STAGE_NODES
-
-
-def _count_last_bits(cluster: _Cluster, remaining: Sequence[_Cluster]) -> int:
-    other_bits = frozenset().union(*(other.support for other in remaining if other is not cluster))
-    return len(cluster.support - other_bits)
