@@ -224,10 +224,12 @@ def _is_second_end(difference: Difference) -> bool:
 def _is_flow_of_action(difference: Difference) -> bool:
     """Whether an object flow leads to or from an action itself, or a pin is added for it."""
     trip = difference.trip
-    if difference.old is None:
-        new = difference.new
-        return new is not None and new.kind is Kind.PIN and new.name == difference.change.name
     edges = (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)
+    if difference.old is None:
+        owners = trip.old_by_name.get(difference.change.owner, [])
+        flows = [flow for o in owners for edge in edges for flow in trip.old.sources(o, edge)]
+        is_pin = difference.kind is Kind.PIN
+        return is_pin and any(flow.kind is Kind.OBJECT_FLOW for flow in flows)
     ends = [trip.old.target(difference.old, edge) for edge in edges]
     is_of_action = any(end is not None and end.kind is Kind.ACTION for end in ends)
     return difference.kind is Kind.OBJECT_FLOW and is_of_action and difference.is_about("ends")
