@@ -225,6 +225,60 @@ def test_an_output_without_attribute_changes_no_other_feature(decide):
     ]
 
 
+# -- signals between parts -------------------------------------------------------------------------
+
+PIECES = "item def Piece; port def Chute { out item piece : Piece; }"
+SOURCE = """part a { port outlet : Chute; exhibit state M { entry; then Ready; state Ready;
+    transition first Ready accept Go do send new Piece() via outlet then Sent; state Sent; } }"""
+RELAY = """part m { port inlet : ~Chute; port outlet : Chute; exhibit state M { entry; then Empty;
+    state Empty;
+    transition first Empty accept Piece via inlet do send new Piece() via outlet then Full;
+    state Full; transition first Full accept Piece via inlet then Over; state Over; } }"""
+SINK = """part {} {{ port inlet : ~Chute; exhibit state M {{ entry; then Empty; state Empty;
+    transition first Empty accept Piece via inlet then Full; state Full; }} }}"""
+CHAIN = "connect a.outlet to m.inlet; connect m.outlet to c.inlet;"
+
+
+def test_a_part_does_not_receive_what_it_sends(decide):
+    """The relay gets one piece from ``a``, and not its own one."""
+    block = SOURCE + RELAY + SINK.format("c") + CHAIN
+    formulas = ("G !(m.state=Over)", "G (m.state=Full -> F m.state=Over)", "G !(c.state=Full)")
+    assert decide(block, *formulas, others=PIECES) == ["holds", "broken", "broken"]
+
+
+def test_a_part_that_is_connected_with_itself_receives_what_it_sends(decide):
+    block = SOURCE + RELAY + CHAIN.replace("c.inlet", "m.inlet")
+    formulas = ("G !(m.state=Over)", "G (m.state=Full -> F m.state=Over)")
+    assert decide(block, *formulas, others=PIECES) == ["broken", "holds"]
+
+
+def test_a_signal_leaves_through_its_port_only(decide):
+    source = SOURCE.replace("port outlet", "port second : Chute; port outlet")
+    block = source + SINK.format("c") + SINK.format("d")
+    block += "connect a.outlet to c.inlet; connect a.second to d.inlet;"
+    formulas = ("G (a.state=Sent -> F c.state=Full)", "F a.state=Sent -> F d.state=Full")
+    assert decide(block, *formulas, others=PIECES) == ["holds", "broken"]
+
+
+def test_two_senders_to_one_port_do_not_receive_from_each_other(decide):
+    """The piece of ``a`` does not get from the inlet of ``c`` over the outlet of ``m`` to ``d``."""
+    block = SOURCE + RELAY + SINK.format("c") + SINK.format("d")
+    block += (
+        "connect a.outlet to c.inlet; connect m.outlet to c.inlet; connect m.outlet to d.inlet;"
+    )
+    formulas = ("F a.state=Sent -> F c.state=Full", "F a.state=Sent -> F d.state=Full")
+    assert decide(block, *formulas, others=PIECES) == ["holds", "broken"]
+
+
+def test_one_signal_through_two_ports_is_not_decided(decide):
+    source = SOURCE.replace("port outlet", "port second : Chute; port outlet").replace(
+        "state Sent;",
+        "state Sent; transition first Sent accept Go do send new Piece() via second then Ready;",
+    )
+    block = source + SINK.format("c") + "connect a.outlet to c.inlet;"
+    assert decide(block, "G !(c.state=Full)", others=PIECES) == ["not-decided"]
+
+
 # -- wording -------------------------------------------------------------------------------------
 
 
@@ -294,6 +348,13 @@ def test_an_activity_that_is_the_component_has_its_attributes_once(decide):
     formulas = ("G (finished(a) -> X x)", "G !running(keep)", "G !running(drop)")
     verdicts = decide(job, *formulas, others=SENSE, kind="action def")
     assert verdicts == ["holds", "broken", "holds"]
+
+
+def test_an_output_without_finite_values_leaves_the_rest_decided(decide):
+    sense = SENSE.replace("out attribute r : Boolean := false", "out attribute r : Real")
+    sense = sense.replace("assign r := not p", "assign x := true")
+    job = "attribute level : Real; " + JOB.format("out attribute :>> r = level;", "then done;")
+    assert decide(FLAGS + sense + job, "G (finished(a) -> X x)") == ["holds"]
 
 
 def test_an_assigned_input_is_not_decided(decide):

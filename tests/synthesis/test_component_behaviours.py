@@ -10,6 +10,8 @@ from random import Random
 import pytest
 from component_runs import EVENTS, FEATURES, list_observed_steps, make_block, write_block
 from msgspec.structs import replace
+from signal_runs import PARTS, SIGNALS, STATES, make_line, write_line
+from signal_runs import list_observed_steps as list_signal_steps
 
 from sysmlc import compile_model
 from sysmlc.logic import evaluate
@@ -35,11 +37,9 @@ def open_component(path):
     return Component(graph, block, MachineOptions())
 
 
-def list_atoms(component, block):
+def list_atoms(component, facts):
     """Return the observed facts with their formulas in the component."""
     names = ComponentNames(component)
-    facts = [f"state={state}" for state in block.states]
-    facts += [f"event={event}" for event in ("none", *EVENTS)]
     atoms = {}
     for fact in facts:
         name, _, value = fact.partition("=")
@@ -54,9 +54,14 @@ def list_atoms(component, block):
     return atoms
 
 
-def read_observed_steps(component, block):
+def list_facts(block):
+    facts = [f"state={state}" for state in block.states]
+    return facts + [f"event={event}" for event in ("none", *EVENTS)]
+
+
+def read_observed_steps(component, facts):
     """Return the pairs of observations of successive steps of the component's relation."""
-    atoms = list_atoms(component, block)
+    atoms = list_atoms(component, facts)
     contract = describe_component(component, "P::B").contract
     declared = {variable.name for variable in contract.variables}
     atoms |= {name: f.var(name) for name in FEATURES if name in declared}
@@ -100,9 +105,9 @@ def describe(runs, observation, facts):
     return node
 
 
-def play_observed_steps(player, block):
+def play_observed_steps(player, facts):
     """Return the pairs of observations of successive steps of the player."""
-    atoms = list_atoms(player.parts, block)
+    atoms = list_atoms(player.parts, facts)
     declared = {variable.name for variable in player.variables}
     atoms |= {name: f.var(name) for name in FEATURES if name in declared}
     inputs = [variable for variable in player.variables if variable.owner is Owner.ENVIRONMENT]
@@ -148,15 +153,75 @@ def compare(seed, tmp_path):
     path = tmp_path / f"block{seed}.sysml"
     path.write_text(write_block(block), "utf-8")
     component = open_component(path)
-    observed, actual = read_observed_steps(component, block)
+    observed, actual = read_observed_steps(component, list_facts(block))
     # Facts that the component has no name for, because it never reads them.
     visible = {(before & observed, after & observed) for before, after in expected}
     missing, surplus = visible - actual, actual - visible
     assert (missing, surplus) == (set(), set()), path.read_text("utf-8")
-    observed, played = play_observed_steps(open_player(component.graph, component.subject), block)
+    player = open_player(component.graph, component.subject)
+    observed, played = play_observed_steps(player, list_facts(block))
     visible = {(before & observed, after & observed) for before, after in expected}
     assert played == visible, path.read_text("utf-8")
     return True
+
+
+def play_signals(player, facts):
+    """Return the pairs of observations of a player that decides some of the events itself."""
+    atoms = list_atoms(player.parts, facts)
+    inputs = [variable for variable in player.variables if variable.owner is Owner.ENVIRONMENT]
+    rows = [
+        dict(zip((variable.name for variable in inputs), row, strict=True))
+        for row in product(*(values(variable.domain) for variable in inputs))
+    ]
+
+    def observe(valuation):
+        return frozenset(fact for fact in atoms if evaluate.is_true(atoms[fact], valuation))
+
+    worklist = [valuation for row in rows for valuation in player.initial(row)]
+    seen = {frozenset(valuation.items()) for valuation in worklist}
+    pairs = set()
+    while worklist:
+        now = worklist.pop()
+        for row in rows:
+            for following in player.successors(now, row):
+                pairs.add((observe(now), observe(following)))
+                if frozenset(following.items()) not in seen:
+                    seen.add(frozenset(following.items()))
+                    worklist.append(following)
+    return frozenset(atoms), pairs
+
+
+def compare_signals(seed, tmp_path):
+    """Compare the readings of random parts that send signals."""
+    line = make_line(Random(seed))
+    expected, _ = list_signal_steps(line)
+    path = tmp_path / f"line{seed}.sysml"
+    path.write_text(write_line(line), "utf-8")
+    component = open_component(path)
+    facts = [
+        f"{part}.{name}"
+        for part in PARTS
+        for name in (*(f"state={state}" for state in STATES), "event=none", "event=Go")
+    ]
+    facts += [f"{part}.event={signal}" for part in PARTS for signal in SIGNALS]
+    player = open_player(component.graph, component.subject)
+    for observed, actual in (
+        read_observed_steps(component, facts),
+        play_signals(player, facts),
+    ):
+        visible = {(before & observed, after & observed) for before, after in expected}
+        assert actual == visible, path.read_text("utf-8")
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_random_signals_have_the_steps_of_both_interpreters(seed, tmp_path):
+    compare_signals(seed, tmp_path)
+
+
+@pytest.mark.long
+def test_many_random_signals_have_the_steps_of_both_interpreters(tmp_path):
+    for seed in range(100, 150):
+        compare_signals(seed, tmp_path)
 
 
 @pytest.mark.parametrize("seed", range(6))

@@ -26,10 +26,10 @@ from sysmlc.logic.components.component import Component, Root
 from sysmlc.logic.components.derivation import ComponentBehaviour, describe_component
 from sysmlc.logic.components.machines import EVENT, PlacedMachine
 from sysmlc.logic.components.objects import ComponentError
-from sysmlc.logic.components.signals import derive_events
-from sysmlc.logic.contract import Conjunct, Owner, Variable
+from sysmlc.logic.components.signals import Wiring, derive_events
+from sysmlc.logic.contract import Owner, Variable
 from sysmlc.logic.domains import values
-from sysmlc.logic.formula import TRUE, Apply, Const, Literal, Op, Var
+from sysmlc.logic.formula import TRUE, Literal
 from sysmlc.logic.machines import interpreter as machine_interpreter
 from sysmlc.logic.machines.interpreter import Valuation
 from sysmlc.logic.machines.machine import Vertex
@@ -39,8 +39,10 @@ from sysmlc.simulation.performances import (
     ParameterStep,
     PerformanceStep,
     bind_arguments,
+    choose_values,
     evaluate_cases,
     list_first_options,
+    receive_messages,
 )
 
 MAX_RUNS = 10_000
@@ -73,13 +75,13 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
     parts: Component
     behaviour: ComponentBehaviour
     component: str
-    messages: Mapping[str, tuple[str, str]]
-    """The event and its literal for each variable that tells whether a message is received."""
+    wiring: Wiring
 
     @cached_property
     def variables(self) -> tuple[Variable, ...]:
+        accepted = self.wiring.accepted
         return tuple(
-            replace(variable, owner=Owner.SYSTEM) if variable.name in self.messages else variable
+            replace(variable, owner=Owner.SYSTEM) if variable.name in accepted else variable
             for variable in self.behaviour.contract.variables
         )
 
@@ -120,10 +122,10 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
                 for state in self._list_first_states(combination):
                     stored = list_first_options(self.parts.arguments, state.running)
                     options = {**_merge_options(combination), **stored}
-                    for written in _choose_values(options):
+                    for written in choose_values(options):
                         after = {**before, **written}
-                        yield self._complete(
-                            after, after, inputs, combination, state, is_first=True
+                        yield from self._receive(
+                            self._complete(after, after, inputs, combination, state, is_first=True)
                         )
 
     def _list_first_values(self) -> Iterator[Valuation]:
@@ -191,10 +193,12 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
             for following in self._list_states(state, now, starts, stops):
                 started = starts | (following.running - state.running)
                 stored = parameters.list_options(started)
-                for written in _choose_values({**options, **stored}):
+                for written in choose_values({**options, **stored}):
                     after = {**inputs, **kept, **written}
-                    yield self._complete(
-                        now, after, inputs, combination, following, finished=finished
+                    yield from self._receive(
+                        self._complete(
+                            now, after, inputs, combination, following, finished=finished
+                        )
                     )
 
     def _list_writes(
@@ -229,7 +233,7 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
                 is_over = bool(now[root.over]) or root.id in finished
                 own_values[root.state.done] = is_over
         names = {variable: own for own, variable in machine.variables.items()}
-        for seen in _choose_values(done_options):
+        for seen in choose_values(done_options):
             written = {names[name]: value for name, value in seen.items() if name in names}
             for reaction in machine_interpreter.list_reactions(
                 machine.machine, own_values, written
@@ -323,21 +327,16 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
                     )
                     is_moved = entry.enters(root.state) or entry.leaves(root.state)
                     valuation[root.over] = is_over and not is_moved
-        return bind_arguments(self.parts.arguments, self._receive(valuation))
+        return valuation
 
-    def _receive(self, valuation: Valuation) -> Valuation:
-        """Return the valuation with the messages that are received in the step."""
-        received = {
-            name: valuation[event] == literal for name, (event, literal) in self.messages.items()
-        }
-        return {**valuation, **received}
+    def _receive(self, valuation: Valuation) -> Iterator[Valuation]:
+        """Yield the valuations with the messages received, and with the values of arguments."""
+        for received in receive_messages(self.wiring, valuation):
+            yield bind_arguments(self.parts.arguments, received)
 
 
 def open_component(graph: Graph, subject: Element) -> ComponentPlayer | None:
-    """Return the player of a block; None if not all that it does is known.
-
-    Signals between parts are not played yet.
-    """
+    """Return the player of a block; None if not all that it does is known."""
     name = query.component_name(graph, subject)
     try:
         component = Component(graph, subject, MachineOptions())
@@ -350,20 +349,9 @@ def open_component(graph: Graph, subject: Element) -> ComponentPlayer | None:
         wiring = derive_events(component)
     except ComponentError:
         return None
-    messages = dict(filter(None, map(_read_message, wiring.conjuncts)))
-    is_unclear = behaviour.gaps or component.performances.quiets
-    if is_unclear or len(messages) < len(wiring.conjuncts):
+    if behaviour.gaps or component.performances.quiets:
         return None
-    return ComponentPlayer(graph, component, behaviour, name, messages)
-
-
-def _read_message(conjunct: Conjunct) -> tuple[str, tuple[str, str]] | None:
-    """Return a variable of an acceptance, and the event and the literal that it stands for."""
-    match conjunct.formula:
-        case Apply(Op.IFF, (Var(name), Apply(Op.EQ, (Var(event), Const(literal))))):
-            return name, (event, str(literal))
-        case _:
-            return None
+    return ComponentPlayer(graph, component, behaviour, name, wiring)
 
 
 def _select(machine: PlacedMachine, valuation: Mapping[str, Literal]) -> Valuation:
@@ -381,12 +369,6 @@ def _merge_options(reactions: tuple[_MachineReaction, ...]) -> _Options:
         for name, choices in reaction.options.items():
             options[name] = [*options.get(name, []), *choices]
     return options
-
-
-def _choose_values(options: _Options) -> Iterator[Valuation]:
-    """Yield each choice of one value for each feature."""
-    for row in product(*(dict.fromkeys(choices) for choices in options.values())):
-        yield dict(zip(options, row, strict=True))
 
 
 def _limit_valuations(iterator: Iterator[Valuation]) -> list[Valuation]:

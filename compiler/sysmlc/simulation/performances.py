@@ -1,14 +1,17 @@
-"""One step of the performances of a component, which others start and stop."""
+"""One step of the performances of a component, of their variables, and of messages."""
 
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import product
 
 from sysmlc.logic import domains, evaluate
 from sysmlc.logic.activities import interpreter as token_game
 from sysmlc.logic.activities.token_graph import Firing, NodeKind, TokenEdge, TokenNode
 from sysmlc.logic.components.arguments import Arguments, Output
 from sysmlc.logic.components.objects import Slot
+from sysmlc.logic.components.signals import Wiring
 from sysmlc.logic.formula import Formula, Literal
 from sysmlc.logic.machines.interpreter import Valuation
+from sysmlc.logic.machines.machine import NO_EVENT
 
 
 class PerformanceStep(token_game.TokenStep):
@@ -152,6 +155,31 @@ def list_first_options(arguments: Arguments, running: Iterable[str]) -> dict[str
         any_value = any_value if node in running else any_value[:1]
         options[store.variable.name] = list(any_value if store.first is None else [store.first])
     return options
+
+
+def choose_values(options: Mapping[str, Iterable[Literal]]) -> Iterator[Valuation]:
+    """Yield each choice of one value for each variable."""
+    for row in product(*(dict.fromkeys(choices) for choices in options.values())):
+        yield dict(zip(options, row, strict=True))
+
+
+def receive_messages(wiring: Wiring, valuation: Valuation) -> Iterator[Valuation]:
+    """Yield the valuations of a step with the events that occur in it.
+
+    One of the messages that are sent to an object occurs. Otherwise the event of the environment
+    occurs, unless only others in the component send it.
+    """
+    options: dict[str, list[Literal]] = {}
+    for event in dict.fromkeys(delivery.event for delivery in wiring.deliveries):
+        deliveries = [delivery for delivery in wiring.deliveries if delivery.event == event]
+        sent = [d.message for d in deliveries if any(valuation[name] for name in d.outputs)]
+        is_impossible = any(d.message == valuation[event] and not d.is_open for d in deliveries)
+        options[event] = [*sent] or [NO_EVENT if is_impossible else valuation[event]]
+    for events in choose_values(options):
+        step = {**valuation, **events}
+        yield step | {
+            name: step[event] == message for name, (event, message) in wiring.accepted.items()
+        }
 
 
 def bind_arguments(arguments: Arguments, valuation: Valuation) -> Valuation:

@@ -171,15 +171,24 @@ class Arguments:
             self.origins.add(copy.caller.call.id)
 
     def _find_target(self, copy: Copy, pin: Element) -> Slot | str | None:
-        """Return the feature or the variable of the calling activity that an output sets."""
+        """Return what an output sets: a feature or a variable of the calling activity.
+
+        The result is None if its values are not finite, too: then nothing reads it.
+        """
+        try:
+            target = self._resolve_target(copy, pin)
+            if isinstance(target, tuple):
+                self._tree.read_slot(target)
+        except (ComponentError, ExpressionError):
+            return None
+        return target
+
+    def _resolve_target(self, copy: Copy, pin: Element) -> Slot | str | None:
         call, parent = copy.caller.call, copy.caller.parent
         assert call is not None
         assert parent is not None
         path = find_bound_name(self._tree.graph, call, pin)
-        try:
-            name = None if path is None else name_of(parse_expression(path))
-        except ExpressionError:
-            return None
+        name = None if path is None else name_of(parse_expression(path))
         if name is None:
             return None
         variable = self._find_own(parent, name)

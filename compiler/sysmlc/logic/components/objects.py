@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from msgspec import Struct
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.logic.composition.structure import End, iter_links, iter_usages, join_path
+from sysmlc.logic.composition.structure import Channels, End, iter_links, iter_usages, join_path
 from sysmlc.logic.contract import Domain, Owner, Variable
 from sysmlc.logic.expressions.context import Context, context_of
 from sysmlc.logic.expressions.features import Feature
@@ -73,7 +73,7 @@ class ObjectTree:
         self.root = ComponentObject("", type_)
         self.objects = [self.root]
         self.joined: DisjointSets[Slot] = DisjointSets()
-        self.channels: DisjointSets[Slot] = DisjointSets()
+        self.channels = Channels()
         self._contexts: dict[str, Context] = {}
         self._slots: dict[Slot, FeatureSlot] = {}
         self._add_parts(self.root, {type_.id})
@@ -99,7 +99,7 @@ class ObjectTree:
         for left_ends, right_ends in iter_links(self.graph, owner.type_, owner.path):
             for left in left_ends:
                 for right in right_ends:
-                    self.channels.union((left.path, left.feature), (right.path, right.feature))
+                    self.channels.connect(owner.path, left, right)
                     self._join_ends(left, right)
 
     def _join_ends(self, left: End, right: End) -> None:

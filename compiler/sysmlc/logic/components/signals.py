@@ -5,17 +5,21 @@ in the step after the reaction, and is the event of the receiver in that same st
 connected receives from its connections only; of several signals for one receiver one occurs.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from msgspec import Struct
 from msgspec.structs import replace
 
-from sysmlc.ir import Edge, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic import formula as f
 from sysmlc.logic.components.objects import ComponentError, ComponentObject
 from sysmlc.logic.composition.members import Block, Member
-from sysmlc.logic.composition.messages import derive_wiring
+from sysmlc.logic.composition.messages import (
+    derive_wiring,
+    is_reachable_from_outside,
+    iter_listeners,
+)
 from sysmlc.logic.composition.naming import Wire
 from sysmlc.logic.contract import (
     BooleanDomain,
@@ -27,7 +31,10 @@ from sysmlc.logic.contract import (
     Source,
     Variable,
 )
+from sysmlc.logic.expressions.expression import ExpressionError, Send, name_of
+from sysmlc.logic.expressions.parsing import parse_effect
 from sysmlc.logic.formula import Const
+from sysmlc.logic.identifiers import identifier
 from sysmlc.logic.machines.machine import NO_EVENT
 
 if TYPE_CHECKING:
@@ -36,12 +43,30 @@ if TYPE_CHECKING:
 _RECEIVE = "receive_"
 
 
+class Delivery(Struct, frozen=True):
+    """A message that connections lead to an object: a literal of its event, and the senders.
+
+    ``outputs`` are the variables that are true when the message is sent. ``is_open`` is true if the
+    message may come from outside the component, too.
+    """
+
+    event: str
+    message: str
+    outputs: tuple[str, ...]
+    is_open: bool
+
+
 class Wiring(Struct, frozen=True):
-    """The variables of events, and what restricts them."""
+    """The variables of events, and what restricts them.
+
+    ``accepted`` has the event and its literal for each variable of an acceptance.
+    """
 
     variables: list[Variable]
     conjuncts: list[Conjunct]
     gaps: Mapping[str, str]
+    accepted: Mapping[str, tuple[str, str]]
+    deliveries: list[Delivery]
 
 
 def derive_events(component: "Component") -> Wiring:
@@ -50,6 +75,7 @@ def derive_events(component: "Component") -> Wiring:
     conjuncts: list[Conjunct] = []
     members: list[Member] = []
     wires: list[Wire] = []
+    acceptances: dict[str, tuple[str, str]] = {}
     for object_ in component.tree.objects:
         literals: dict[str, None] = {}
         origin = object_.type_.id
@@ -68,10 +94,13 @@ def derive_events(component: "Component") -> Wiring:
             event = Variable(name, Owner.ENVIRONMENT, domain, origin)
             variables.append(event)
             for variable, message in accepted.items():
+                acceptances[variable] = name, message
                 formula = f.iff(f.var(variable), f.eq(f.var(name), Const(message)))
                 conjuncts.append(Conjunct(formula, Class.SAFETY, origin, source=Source.DERIVED))
-            _add_member(component, object_, members, wires, [(replace(event, name="event"), name)])
-        _add_member(component, object_, members, wires, _list_outputs(component, object_))
+            pairs = [(replace(event, name="event"), name)]
+            _add_member(object_, members, wires, pairs, _find_ports(component, object_, sent=False))
+        ports = _find_ports(component, object_, sent=True)
+        _add_member(object_, members, wires, _list_outputs(component, object_), ports)
     block = Block(component.graph, component.tree.root.type_, {})
     block.members = members
     block.channels = component.tree.channels
@@ -79,15 +108,29 @@ def derive_events(component: "Component") -> Wiring:
         replace(conjunct, source=Source.DERIVED)
         for conjunct in derive_wiring(block, members, wires)
     ]
-    return Wiring(variables, [*conjuncts, *wiring], _find_unwired(members, wires, wiring))
+    gaps = _find_unwired(block, wires, wiring)
+    deliveries = list(_iter_deliveries(block, members, wires))
+    return Wiring(variables, [*conjuncts, *wiring], gaps, acceptances, deliveries)
+
+
+def _iter_deliveries(block: Block, members: list[Member], wires: list[Wire]) -> Iterator[Delivery]:
+    names = {id(member): wire.name for wire in wires for member, _ in wire.ends}
+    for member, receipts in iter_listeners(block, members, tuple(wires)):
+        is_open = is_reachable_from_outside(block, member)
+        for receipt, sendings in receipts:
+            outputs = [v.name for sending in sendings for v in f.variables(sending.is_sent)]
+            yield Delivery(names[id(member)], receipt.message, tuple(outputs), is_open)
 
 
 def check_signal_names(component: "Component") -> None:
-    """Raise ComponentError if an object reacts to two signals of one name.
+    """Raise ComponentError if an object reacts to two signals of one name, or at several ports.
 
     Its behaviours would wrongly see them as one event.
     """
     graph = component.graph
+    for object_ in component.tree.objects:
+        _find_ports(component, object_, sent=True)
+        _find_ports(component, object_, sent=False)
     behaviours = [(machine.owner, machine.element) for machine in component.machines]
     behaviours += [
         (copy.caller.owner, copy.activity) for copy in component.performances.copies.values()
@@ -131,12 +174,69 @@ def _list_outputs(component: "Component", object_: ComponentObject) -> list[tupl
     return outputs
 
 
+def _find_ports(
+    component: "Component", object_: ComponentObject, *, sent: bool
+) -> Mapping[str, str]:
+    """Return the port of each signal that an object sends, or else receives, if it names one.
+
+    Raises ComponentError if it names several, or only some of the time: they are one event.
+    """
+    ports: dict[str, str] = {}
+    find = _iter_sent_signals if sent else _iter_received_signals
+    own_ports = {port.name for port in query.ports(component.graph, object_.type_)}
+    for behaviour in _list_behaviours(component, object_):
+        for element in component.graph.subtree(behaviour):
+            for signal, name in find(component.graph, element):
+                port = name if name in own_ports else ""
+                if ports.setdefault(identifier(signal), port) != port:
+                    verb = "sends" if sent else "receives"
+                    reason = f"'{object_.type_.name}' {verb} '{signal}' in several ways"
+                    raise ComponentError(reason)
+    return {message: port for message, port in ports.items() if port}
+
+
+def _list_behaviours(component: "Component", object_: ComponentObject) -> list[Element]:
+    machines = [entry.element for entry in component.machines if entry.owner is object_]
+    copies = component.performances.copies.values()
+    return machines + [copy.activity for copy in copies if copy.caller.owner is object_]
+
+
+def _iter_received_signals(graph: Graph, trigger: Element) -> Iterator[tuple[str, str]]:
+    """Yield the signal of a trigger, and the name of its port or ""."""
+    signal = graph.target(trigger, Edge.TYPED_BY)
+    if trigger.kind is Kind.TRIGGER and signal is not None:
+        yield signal.name, _name_port(graph, trigger.attrs.get("port"))
+
+
+def _iter_sent_signals(graph: Graph, element: Element) -> Iterator[tuple[str, str]]:
+    """Yield the signals that an action or the text of an effect sends, and their ports or ""."""
+    signal = graph.target(element, Edge.CALLS)
+    if element.subkind in ("send", "broadcast") and signal is not None:
+        yield signal.name, _name_port(graph, element.attrs.get("on_port"))
+    body = element.attrs.get("body")
+    if element.kind is not Kind.ACTIVITY or not isinstance(body, str) or "send" not in body:
+        return
+    try:
+        statements = parse_effect(body)
+    except ExpressionError:
+        return
+    for statement in statements:
+        if isinstance(statement, Send):
+            receiver = None if statement.receiver is None else name_of(statement.receiver)
+            yield statement.signal.path[-1], receiver or ""
+
+
+def _name_port(graph: Graph, id: object) -> str:
+    port = graph.get(id) if isinstance(id, str) else None
+    return "" if port is None else port.name
+
+
 def _add_member(
-    component: "Component",
     object_: ComponentObject,
     members: list[Member],
     wires: list[Wire],
     pairs: list[tuple[Variable, str]],
+    ports: Mapping[str, str],
 ) -> None:
     """Add the variables of an object as a member; a wire gives each its name in the component."""
     if not pairs:
@@ -144,25 +244,39 @@ def _add_member(
     by_name = {variable.name: variable for variable, _ in pairs}
     contract = Contract(object_.path, object_.type_.id, tuple(by_name.values()), (), ())
     # Members are compared by identity, so that each has the variables of one object.
-    member = Member(object_.path, object_.path, object_.type_.id, contract, {})
+    member = Member(object_.path, object_.path, object_.type_.id, contract, {}, ports)
     members.append(member)
     wires += (Wire(name, ((member, variable),)) for variable, name in pairs)
 
 
-def _find_unwired(
-    members: list[Member], wires: list[Wire], wiring: list[Conjunct]
-) -> dict[str, str]:
-    """Return the sent messages that some other object could receive but that lead nowhere."""
+def _find_unwired(block: Block, wires: list[Wire], wiring: list[Conjunct]) -> dict[str, str]:
+    """Return the sent messages that some other object could receive but that lead nowhere.
+
+    A message through a port leads where the connectors of the port lead, if they are read.
+    """
     read = {variable.name for conjunct in wiring for variable in f.variables(conjunct.formula)}
     gaps: dict[str, str] = {}
     for wire in wires:
         ((member, variable),) = wire.ends
         message = variable.name.removeprefix("send_").rpartition("_")[2]
-        if variable.owner is not Owner.SYSTEM or wire.name in read:
+        port = member.ports.get(message, "")
+        is_followed = port and not _has_unread_connector(block, member, port)
+        if variable.owner is not Owner.SYSTEM or wire.name in read or is_followed:
             continue
-        for other in members:
+        for other in block.members:
             for event in other.contract.variables:
                 literals = getattr(event.domain, "literals", ())
                 if other.path != member.path and message in literals:
                     gaps[wire.name] = f"no connection leads '{message}' from '{member.name}'"
     return gaps
+
+
+def _has_unread_connector(block: Block, member: Member, name: str) -> bool:
+    """Whether connectors or flows of the model name a port of an object, and are not read."""
+    if block.channels.list_reached((member.path, name)):
+        return False
+    edges = (Edge.ROLE, Edge.FLOW_SOURCE, Edge.FLOW_TARGET)
+    ports = query.ports(block.graph, block.graph[member.origin])
+    return any(
+        block.graph.sources(port, edge) for port in ports if port.name == name for edge in edges
+    )

@@ -10,6 +10,7 @@ from sysmlc.ir import Element, Graph, Kind, query
 from sysmlc.logic.composition.structure import (
     EXECUTED,
     ITSELF,
+    Channels,
     End,
     Usage,
     iter_links,
@@ -32,7 +33,8 @@ Slot = tuple[str, str]
 class Member(Struct, frozen=True):
     """A member of a composition: a usage of the block, or the block itself, with its contract.
 
-    ``features`` maps dotted names of features to variables of the contract.
+    ``features`` maps dotted names of features to variables of the contract. ``ports`` has the name
+    of the port through which a message passes; a message without one passes through any port.
     """
 
     path: str
@@ -40,6 +42,7 @@ class Member(Struct, frozen=True):
     origin: str
     contract: Contract
     features: Mapping[str, str]
+    ports: Mapping[str, str] = {}
 
     def owner(self, variable: str) -> Owner:
         """Return the owner of a variable from the member's point of view."""
@@ -68,7 +71,7 @@ class Block:
     steps: set[Slot] = field(default_factory=set)
     """The features that report the end of a step of an operation."""
     features: DisjointSets[Slot] = field(default_factory=DisjointSets)
-    channels: DisjointSets[Slot] = field(default_factory=DisjointSets)
+    channels: Channels = field(default_factory=Channels)
     """Ends between which messages pass."""
 
 
@@ -97,6 +100,7 @@ def _open_usage(block: Block, element: Element, path: str, enclosing: set[str]) 
     for left_ends, right_ends in iter_links(block.graph, element, path):
         for left in left_ends:
             for right in right_ends:
+                block.channels.connect(path, left, right)
                 _join_ends(block, left, right)
     # A binding states which action performs a step; otherwise the only suitable action does.
     for step, action in iter_performed_steps(block.graph, element, path):
@@ -172,7 +176,6 @@ def _share_block_features(block: Block, owner: Element, path: str, member: Membe
 
 
 def _join_ends(block: Block, left: End, right: End) -> None:
-    block.channels.union((left.path, left.feature), (right.path, right.feature))
     left, right = (
         _resolve_step_end(block, end, opposite) for end, opposite in ((left, right), (right, left))
     )

@@ -51,8 +51,8 @@ def derive_wiring(
     block: Block, members: Sequence[Member], wires: Iterable[Wire]
 ) -> Iterator[Conjunct]:
     """Yield the conjuncts that relate sent messages to their occurrences at the receivers."""
-    for member, receipts in _iter_listeners(block, members, tuple(wires)):
-        yield from _derive_occurrences(member, receipts, _is_reachable_from_outside(block, member))
+    for member, receipts in iter_listeners(block, members, tuple(wires)):
+        yield from _derive_occurrences(member, receipts, is_reachable_from_outside(block, member))
 
 
 def derive_exclusions(
@@ -62,7 +62,7 @@ def derive_exclusions(
 
     Otherwise a message is lost. No contract of a member guarantees this, so that it is checked.
     """
-    for member, receipts in _iter_listeners(block, members, tuple(wires)):
+    for member, receipts in iter_listeners(block, members, tuple(wires)):
         sent = [
             (receipt, sending)
             for receipt, sendings in receipts
@@ -87,7 +87,7 @@ def _describe_sending(receipt: Receipt, sending: Sending) -> str:
 _Receipts = Sequence[tuple[Receipt, list[Sending]]]
 
 
-def _iter_listeners(
+def iter_listeners(
     block: Block, members: Sequence[Member], wires: tuple[Wire, ...]
 ) -> Iterator[tuple[Member, _Receipts]]:
     """Yield each member that receives messages of others, with its receipts and their senders."""
@@ -101,12 +101,12 @@ def _iter_listeners(
             yield member, receipts
 
 
-def _is_reachable_from_outside(block: Block, member: Member) -> bool:
+def is_reachable_from_outside(block: Block, member: Member) -> bool:
     """Whether a port of the block leads to the member, so that others can send to it."""
-    ends = {block.channels.find(end) for end in _iter_ends(block, member)}
     ports = query.ports(block.graph, block.element)
-    block_channels = {block.channels.find((ITSELF, port.name)) for port in ports}
-    return member.path != ITSELF and not ends.isdisjoint(block_channels)
+    reached = (block.channels.list_reached((ITSELF, port.name)) for port in ports)
+    ends = set(_iter_ends(block, member))
+    return member.path != ITSELF and not all(map(ends.isdisjoint, reached))
 
 
 def _derive_occurrences(member: Member, receipts: _Receipts, is_open: bool) -> Iterator[Conjunct]:
@@ -180,21 +180,29 @@ def _iter_sendings(
 def _addressed_names(block: Block, sender: Member, receipt: Receipt) -> Iterator[str]:
     """Yield the names of outputs with which a sender can address the receiver's event."""
     receiver = receipt.member
-    if sender is not receiver and _are_joined(block, sender, receiver):
+    if sender is not receiver and _are_joined(block, sender, receiver, receipt.message):
         yield receipt.message
     if sender.path == ITSELF and receiver.path != ITSELF:
         yield identifier(join_path(receiver.path, receipt.message))
 
 
-def _are_joined(block: Block, left: Member, right: Member) -> bool:
-    """Whether a connector joins two members, each by a port or by the member itself."""
-    left_channels, right_channels = (
-        {block.channels.find(end) for end in _iter_ends(block, member)} for member in (left, right)
+def _are_joined(block: Block, left: Member, right: Member, message: str) -> bool:
+    """Whether connectors can lead a message from one member to the other.
+
+    Each end is the member itself or a port.
+    """
+    ends = set(_iter_ends(block, right, message))
+    return any(
+        not ends.isdisjoint(block.channels.list_reached(end))
+        for end in _iter_ends(block, left, message)
     )
-    return not left_channels.isdisjoint(right_channels)
 
 
-def _iter_ends(block: Block, member: Member) -> Iterator[tuple[str, str]]:
+def _iter_ends(block: Block, member: Member, message: str = "") -> Iterator[tuple[str, str]]:
+    """Yield the ends of connectors at a member through which a message can pass."""
+    if message in member.ports:
+        yield member.path, member.ports[message]
+        return
     yield member.path, ""
     element = block.element if member.path == ITSELF else _type_of(block, member)
     for port in query.ports(block.graph, element):

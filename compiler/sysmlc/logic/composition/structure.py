@@ -102,6 +102,35 @@ Link = tuple[list[End], list[End]]
 """The ends at both sides of a connection. A side that leads to copies of a part has several."""
 
 
+class Channels:
+    """The connectors through which messages pass between ends: paths of objects and their ports.
+
+    A message passes a port of an object only inwards or outwards: of two connectors at one port, it
+    takes the second one only if another block has it (a delegation). Two senders that are connected
+    with one port do not receive what the other sends.
+    """
+
+    def __init__(self) -> None:
+        self._links: dict[tuple[str, str], list[tuple[str, tuple[str, str]]]] = {}
+
+    def connect(self, block: str, left: End, right: End) -> None:
+        """Add a connector of a block, which has a path."""
+        for end, other in ((left, right), (right, left)):
+            links = self._links.setdefault((end.path, end.feature), [])
+            links.append((block, (other.path, other.feature)))
+
+    def list_reached(self, start: tuple[str, str]) -> set[tuple[str, str]]:
+        """Return the ends that a message from an end can reach."""
+        visited: set[tuple[str, tuple[str, str]]] = set()
+        worklist = list(self._links.get(start, ()))
+        while worklist:
+            block, end = worklist.pop()
+            if (block, end) not in visited:
+                visited.add((block, end))
+                worklist += [link for link in self._links.get(end, ()) if link[0] != block]
+        return {end for _, end in visited}
+
+
 def iter_links(graph: Graph, block: Element, path: str = ITSELF) -> Iterator[Link]:
     """Yield the pairs of sides that connectors, bindings and flows of a block join."""
     for owner in (block, *query.generals(graph, block)):
