@@ -6,6 +6,7 @@ states the same in other words.
 """
 
 import re
+from collections import Counter
 from collections.abc import Callable
 
 from text_differences import BEHAVIOURS, Difference, Reason
@@ -429,6 +430,42 @@ def _is_id_as_tag(difference: Difference) -> bool:
     return is_tag and element is not None and not element.name
 
 
+def _is_beside_omitted_connector(difference: Difference) -> bool:
+    """Whether the text has all connectors of the owner except those with an end without a name.
+
+    The comparison pairs an omitted connector with a similar one of the text.
+    """
+    old, trip = difference.old, difference.trip
+    owner = None if old is None else trip.old.owner(old)
+    if old is None or owner is None or old.kind is not Kind.CONNECTOR:
+        return False
+    path = trip.old.qualified_name(owner)
+    others = [e for e in trip.new.of_kind(owner.kind) if trip.new.qualified_name(e) == path]
+    kept = [
+        connector
+        for connector in _list_connectors(trip.old, [owner])
+        if not any(loss.startswith("SM736 end") for loss in trip.list_losses(connector))
+    ]
+    before = Counter(_list_end_names(trip.old, connector) for connector in kept)
+    return before == Counter(
+        _list_end_names(trip.new, connector) for connector in _list_connectors(trip.new, others)
+    )
+
+
+def _list_connectors(graph: Graph, owners: list[Element]) -> list[Element]:
+    return [c for owner in owners for c in graph.owned(owner) if c.kind is Kind.CONNECTOR]
+
+
+def _list_end_names(graph: Graph, connector: Element) -> tuple[tuple[str, ...], ...]:
+    """Return the paths of names to the roles of a connector, sorted."""
+    return tuple(
+        sorted(
+            tuple(step.name for edge in (Edge.PATH, Edge.ROLE) for step in graph.targets(end, edge))
+            for end in graph.targets(connector, Edge.END)
+        )
+    )
+
+
 def _is_redundant_alias(difference: Difference) -> bool:
     """Whether only aliases are missing that equal the names of the imported elements."""
     old, graph = difference.old, difference.trip.old
@@ -653,6 +690,10 @@ REASONS: list[Reason] = [
         _is_id_as_tag,
         "SM734 a tagged value that refers to an element without a name",
     ),
+    Reason(
+        "a connector beside one that the text omits is compared with that one",
+        _is_beside_omitted_connector,
+    ),
     Reason("an alias that equals the name says nothing", _is_redundant_alias),
     Reason(
         "in the library ISQ, a unit determines its quantity kind",
@@ -676,11 +717,6 @@ REASONS: list[Reason] = [
     Reason(
         "metadata has values of declared attributes: the text declares tags of unread stereotypes",
         _is_undeclared_tag,
-    ),
-    Reason(
-        "a multiplicity is a range of numbers",
-        _is_attribute("multiplicity"),
-        "SM732 multiplicity",
     ),
     Reason(
         "several final nodes that end nothing else are one done of SysML v2",

@@ -208,6 +208,16 @@ def test_a_default_is_the_literal_that_its_text_denotes_for_the_type(text, type,
 
 
 @pytest.mark.parametrize(
+    ("type", "kind"), [("sysml.ValueType", "DataType"), ("sysml.Metaclass", "Class")]
+)
+def test_a_type_that_is_not_exported_has_the_kind_that_mtip_states(type, kind):
+    record = data("ValueProperty", "p", "b", "time", typedBy="gone")
+    record = record.replace("<typedBy><type>x</type>", f"<typedBy><type>{type}</type>")
+    read = Read(packet(data("Block", "b", name="Belt"), record))
+    assert str(read.graph.target(read.graph["p"], Edge.TYPED_BY).kind) == kind
+
+
+@pytest.mark.parametrize(
     ("default", "types", "findings"),
     [
         ("false", ["Boolean"], []),

@@ -98,10 +98,44 @@ Package p "Plant"
     Property c.q "walking" role="reference"
       -> typed-by a
     StateMachine m "Run"
+      Property m.q "doing" role="reference"
+        -> typed-by a
       Region m.r ""
         State m.s "S"
   Activity a "Walk"
     Action a.x "x" subkind="opaque"
+"""
+INHERITED_UNIT = """
+Package p "Plant"
+  DataType l "length[nanometre]" role="value type"
+    -> references l.u
+    Unit l.u "nanometre" external=true library=true
+  DataType e "Error" role="value type"
+    -> specializes l
+"""
+END_TYPED_BY_BEHAVIOUR = """
+Package p "Plant"
+  Association k ""
+    -> end m.q k.e
+    Property k.e ""
+      -> typed-by m
+  Class c "Gate" role="block"
+    StateMachine m "Run"
+      Property m.q "doing" role="reference" aggregation="composite"
+        -> typed-by a
+      Region m.r ""
+        State m.s "S"
+          Activity a "Walk"
+            Action a.x "x" subkind="opaque"
+"""
+SPARE = """
+Package p "Plant"
+  Class e "Lamp" role="block"
+    Property e.p "spare" role="part" aggregation="composite" default="bulb" default_instance="i"
+      -> typed-by b
+  Class b "Bulb" role="block"
+  Instance i "bulb"
+    -> instance-of b
 """
 MATRIX = """
 Package p "Plant"
@@ -140,6 +174,9 @@ Package p "Plant"
         VIEW.format(kind="Package"),
         VIEW.format(kind="Class"),
         BEHAVIOURS_AS_TYPES,
+        END_TYPED_BY_BEHAVIOUR,
+        SPARE,
+        INHERITED_UNIT,
         MATRIX,
         MATRIX.replace("2x1024", "2..1024"),
         OWN_UNIT.format(unit="km/hr"),

@@ -171,9 +171,15 @@ def write_value_type(writer: Writer, member: Member) -> list[Line]:
         if unit_name is not None:
             reference = writer.refer_to_library(member, unit_name)
             body.insert(0, Line(f"attribute :>> mRef = {reference}"))
-    elif unit is not None and not has_own_measure(writer, element, unit):
+    elif unit is not None and _needs_unit_annotation(writer, element, unit):
         body.insert(0, _annotate_unit(writer, member, unit))
     return [Line(head.format(), body)]
+
+
+def _needs_unit_annotation(writer: Writer, type_: Element, unit: Element) -> bool:
+    """Whether neither a general nor a reference to a member of the text states the unit."""
+    is_own = unit in writer.graph.targets(type_, Edge.REFERENCES)
+    return is_own and not has_own_measure(writer, type_, unit)
 
 
 def _record_other_quantity(writer: Writer, element: Element, quantity: str) -> None:

@@ -7,6 +7,7 @@ relations are pairs of a name and an id inside the record.
 import re
 from collections.abc import Iterator
 from math import isfinite
+from sys import intern
 from typing import NamedTuple
 
 from sysmlc.ir import AttrValue
@@ -27,6 +28,14 @@ class _Part(NamedTuple):
     type: str
 
 
+class Relation(NamedTuple):
+    """A relation of an element: its name, and the id and the type of its target."""
+
+    name: str
+    id: str
+    type: str
+
+
 class Record(NamedTuple):
     """The entry ``<data>`` of one element of the model."""
 
@@ -36,8 +45,7 @@ class Record(NamedTuple):
     id: str
     attributes: list[tuple[str, list[_Part]]]
     """Names of attributes with their parts."""
-    relations: list[tuple[str, str]]
-    """Names of relations with the id of their target."""
+    relations: list[Relation]
 
     @property
     def local_type(self) -> str:
@@ -63,11 +71,11 @@ class Record(NamedTuple):
 
     def targets(self, name: str) -> list[str]:
         """Return the ids to which a relation leads, in order."""
-        return [id for relation, id in self.relations if relation == name]
+        return [relation.id for relation in self.relations if relation.name == name]
 
     def find_target(self, name: str) -> str:
         """Return the first id to which a relation leads, or the empty string."""
-        return next((id for relation, id in self.relations if relation == name), "")
+        return next((relation.id for relation in self.relations if relation.name == name), "")
 
     def list_stereotypes(self) -> list[tuple[str, str]]:
         """Return name and profile of the stereotypes that are applied, sorted."""
@@ -137,12 +145,12 @@ class _RecordReader:
         self.texts: list[str] = []
         self._source, self._parser = source, xml_parser
         self._depth = self._count = self._ordinal = 0
-        self._section = self._relation = self._type = self._id = ""
+        self._section = self._relation = self._type = self._id = self._target_type = ""
         self._keys: list[tuple[str, str]] = []
         """Keys and types of the open parts of an attribute."""
         self._attributes: list[tuple[str, list[_Part]]] = []
         self._parts: list[_Part] = []
-        self._relations: list[tuple[str, str]] = []
+        self._relations: list[Relation] = []
 
     def start(self, tag: str, values: dict[str, str]) -> None:
         """Handle the start of an XML element."""
@@ -155,7 +163,7 @@ class _RecordReader:
             if depth > DEFAULT_LIMITS.depth:
                 refuse_depth(self._source, self._parser)
         elif depth == 4:
-            self._relation = tag
+            self._relation, self._target_type = tag, ""
             if self._section == "attributes":
                 self._parts = []
                 self._attributes.append((values.get("key", ""), self._parts))
@@ -175,7 +183,10 @@ class _RecordReader:
             if key in _READ_PARTS and self.texts:
                 self._parts.append(_Part(key, "".join(self.texts), type))
         elif depth > 4 and tag == "id":
-            self._relations.append((self._relation, "".join(self.texts)))
+            target = "".join(self.texts), intern(self._target_type)
+            self._relations.append(Relation(self._relation, *target))
+        elif depth > 4 and tag == "type":
+            self._target_type = "".join(self.texts)
         elif depth == 4 and section == "id":
             self._id = "".join(self.texts)
         elif depth == 3 and tag == "type":

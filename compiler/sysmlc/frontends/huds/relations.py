@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable
 from typing import Protocol
 
 from sysmlc.frontends.huds import vocabulary as v
-from sysmlc.frontends.huds.records import Record, parse_literal
+from sysmlc.frontends.huds.records import Record, Relation, parse_literal
 from sysmlc.ir import Edge, Element, Graph, Kind, Reference
 from sysmlc.ir.element import derived_id
 
@@ -32,23 +32,31 @@ def add_relations(file: _FileLowering, record: Record, element: Element | None) 
         if record.local_type in _EDGES:
             _add_edge(file, record, _EDGES[record.local_type])
         return
-    for relation, id in record.relations:
-        edge = v.RELATIONS.get(relation)
+    for relation in record.relations:
+        edge = v.RELATIONS.get(relation.name)
         if edge is Edge.TYPED_BY and element.kind is Kind.LIFELINE and record.targets("represents"):
             # UML: only the represented element has a type, which MTIP repeats.
             continue
-        if edge is Edge.TYPED_BY and not id:
+        if edge is Edge.TYPED_BY and not relation.id:
             _add_unnamed_type(file, record, element)
         elif edge is Edge.INSTANCE_OF and element.kind not in v.INSTANCES:
             # MTIP repeats the general of a value type as its classifier.
-            _refer(file, Edge.SPECIALIZES, element.id, [id])
+            _refer(file, Edge.SPECIALIZES, element.id, [relation.id], element.kind)
         elif edge is not None:
-            kind = v.TARGET_KINDS.get(relation, Kind.CLASS)
-            _refer(file, edge, element.id, [id], kind)
+            _refer(file, edge, element.id, [relation.id], _find_target_kind(relation))
     if element.kind in v.ENDS:
         _add_ends(file, record, element)
     if element.kind in _COMPLETIONS:
         _COMPLETIONS[element.kind](file, record, element)
+
+
+def _find_target_kind(relation: Relation) -> Kind:
+    """Return the kind of the stub for a target that MTIP does not export.
+
+    The type that MTIP states for the target determines it, else the relation.
+    """
+    mapped = v.KINDS.get(relation.type.rpartition(".")[2])
+    return v.TARGET_KINDS.get(relation.name, Kind.CLASS) if mapped is None else mapped[0]
 
 
 def _add_unnamed_type(file: _FileLowering, record: Record, feature: Element) -> None:

@@ -240,8 +240,15 @@ def _find_opposite_feature(lowering: "Lowering", end: Node, ends: list[Node]) ->
             feature = lowering.element_of(member)
             if feature is None or feature.kind not in _FEATURES:
                 continue
-            feature_type = type_of(lowering.graph, feature)
-            is_behaviour = feature_type is not None and feature_type.kind in BEHAVIORS
-            if feature_type in end_types or (is_behaviour and not end_types):
+            if type_of(lowering.graph, feature) in end_types:
+                return feature
+            if not end_types and _subsets_behaviour(lowering, member):
                 return feature
     return None
+
+
+def _subsets_behaviour(lowering: "Lowering", usage: Node) -> bool:
+    """Whether a usage subsets a behaviour, which is then its type; edges may not exist yet."""
+    references = nodes.list_references(usage, "Subsetting")
+    elements = [lowering.element_of(reference.target) for reference in references]
+    return any(element is not None and element.kind in BEHAVIORS for element in elements)

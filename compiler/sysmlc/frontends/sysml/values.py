@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import expressions, nodes, quantities
-from sysmlc.ir import AttrValue, Edge, Element
+from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.language.tree import Node
 
 if TYPE_CHECKING:
@@ -15,8 +15,9 @@ _LITERALS = frozenset({"LiteralBoolean", "LiteralString", "LiteralInteger", "Lit
 def set_value(lowering: "Lowering", element: Element, key: str, expression: Node) -> None:
     """Set the attribute *key* to the value of an expression.
 
-    An enumeration value also sets ``<key>_instance``, any other expression that must be computed
-    ``<key>_language``. A quantity sets ``<key>_unit``, and ``:=`` sets ``<key>_kind``.
+    The name of a literal or an instance also sets ``<key>_instance``, any other expression that
+    must be computed ``<key>_language``. A quantity sets ``<key>_unit``, and ``:=`` sets
+    ``<key>_kind``.
     """
     quantities.set_kind(lowering, element, key, expression)
     constant = constant_of(expression)
@@ -35,6 +36,9 @@ def _set_computed(lowering: "Lowering", element: Element, key: str, expression: 
     literal = lowering.element_of(target)
     if target is not None and target.kind == "EnumerationUsage" and literal is not None:
         _set_literal(lowering, element, key, literal)
+        return
+    if literal is not None and literal.kind is Kind.INSTANCE:
+        lowering.graph.set(element, **{key: literal.name, f"{key}_instance": literal.id})
         return
     text = _write(expression, lowering)
     lowering.graph.set(element, **{key: text, f"{key}_language": ""})

@@ -218,33 +218,16 @@ _THRESHOLD = 0.5
 """Least likeness of two elements of a pair."""
 _COMMON = 64
 """A fact about more elements than these does not distinguish them."""
-_RELATIONS = frozenset(
-    {
-        Kind.CONNECTOR,
-        Kind.CONTROL_FLOW,
-        Kind.DEPENDENCY,
-        Kind.ITEM_FLOW,
-        Kind.MESSAGE,
-        Kind.OBJECT_FLOW,
-        Kind.TRANSITION,
-    }
-)
-"""Kinds of elements whose content is mostly their ends."""
 _Portrait = Counter[Token]
 """Facts about an element, its children and its incoming edges, with the number of each."""
 
 
 def pair_by_likeness(pairs: Pairs) -> None:
-    """Pair unpaired siblings of one kind and type, the most similar first.
-
-    Relations are paired when no other siblings can be: their ends distinguish them.
-    """
+    """Pair unpaired siblings of one kind and type, the most similar first."""
     for olds, news in list(pairs.iter_unpaired()):
         old_own = [element for element in olds if not is_external(element)]
         new_own = [element for element in news if not is_external(element)]
-        best = list(_iter_best_pairs(pairs, old_own, new_own))
-        others = [(old, new) for old, new in best if old.kind not in _RELATIONS]
-        for old, new in others or best:
+        for old, new in _iter_best_pairs(pairs, old_own, new_own):
             pairs.add(old, new)
 
 
