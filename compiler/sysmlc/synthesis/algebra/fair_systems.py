@@ -70,7 +70,8 @@ class Universe:
             *self._ranges,
             *(node for node in nodes[Class.SAFETY] if not self.symbols.names(node, primed=True)),
         )
-        init = conjoin(self.manager, (*invariants, *nodes[Class.INIT]))
+        # Initial values first: few states remain, and conditions on them have small diagrams.
+        init = conjoin(self.manager, (*nodes[Class.INIT], *invariants))
         next_invariants = map(self.symbols.prime, invariants)
         parts = (*self._ranges, *next_invariants, *nodes[Class.SAFETY])
         return FairSystem(self.symbols, init, parts, tuple(nodes[Class.LIVENESS]))
