@@ -7,6 +7,7 @@ the corpus or PlantUML may not be skipped: a skip is reported as a failure.
 import difflib
 import gc
 import os
+import shutil
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -124,6 +125,8 @@ def pytest_runtest_setup(item):
     is_on_corpus = "corpus" in item.fixturenames or item.get_closest_marker("corpus")
     if is_on_corpus and not os.environ.get("SYSMLC_CORPUS"):
         pytest.skip("SYSMLC_CORPUS is not set")
+    if item.get_closest_marker("nusmv") and not (shutil.which("NuSMV") or shutil.which("nuXmv")):
+        pytest.skip("NuSMV and nuXmv are not installed")
 
 
 @pytest.fixture(scope="session")
@@ -160,6 +163,8 @@ def pytest_make_collect_report(collector):
 
 def must_run(item) -> bool:
     """Whether the environment requires the test, so that a skip of it is a failure."""
+    if item.get_closest_marker("nusmv"):
+        return False
     required_by = {"corpus": ("SYSMLC_CORPUS",), "plantuml": ("CI", "SYSMLC_CORPUS")}
     return any(
         item.get_closest_marker(mark) and any(os.environ.get(name) for name in names)

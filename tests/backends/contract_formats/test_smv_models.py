@@ -25,7 +25,6 @@ from sysmlc.logic.evaluate import is_true
 from sysmlc.support.output import Output
 
 CHECKER = shutil.which("NuSMV") or shutil.which("nuXmv")
-needs_nusmv = pytest.mark.skipif(CHECKER is None, reason="needs NuSMV or nuXmv")
 
 LEVELS = [["->"], ["<->"], ["|"], ["&"], ["=", "!=", "<", "<=", ">", ">="], ["+", "-"], ["*"]]
 """Operators from weak to strong; ! is stronger than all."""
@@ -173,13 +172,13 @@ def verify(text, tmp_path):
     return {name: answer == "true" for name, answer in zip(names, answers, strict=True)}
 
 
-@needs_nusmv
+@pytest.mark.nusmv
 def test_nusmv_decides_each_requirement(tmp_path):
     _, files = write_press(tmp_path)
     assert verify(files["contracts/Shop.Press.requirements.smv"], tmp_path) == EXPECTED
 
 
-@needs_nusmv
+@pytest.mark.nusmv
 def test_nusmv_finds_a_fault_in_the_model(tmp_path):
     """The faulty press opens while it closes."""
     _, files = write_press(tmp_path)
@@ -198,7 +197,7 @@ def test_constants_are_written_as_nusmv_reads_them(tmp_path):
     assert re.findall(r"\b(?:true|false)\b", model) == []
 
 
-@needs_nusmv
+@pytest.mark.nusmv
 @pytest.mark.long
 @pytest.mark.corpus
 @pytest.mark.parametrize("model", list_models(), ids=lambda model: model.path.stem)
@@ -211,7 +210,7 @@ def test_nusmv_agrees_with_the_oracle(model, tmp_path):
     assert {name: answers[name] for name in expected} == expected
 
 
-@needs_nusmv
+@pytest.mark.nusmv
 @pytest.mark.long
 @pytest.mark.corpus
 @pytest.mark.parametrize("model", list_models(), ids=lambda model: model.path.stem)
