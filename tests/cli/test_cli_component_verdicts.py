@@ -426,3 +426,31 @@ def test_the_verdicts_are_equal_in_xmi(decide, workspace, block, others, formula
     result = workspace.sysmlc("contracts", "check", "--format", "json", "model.uml")
     entries = json.loads(result.stdout)["requirements"]
     assert [entry["verdict"] for entry in entries] == verdicts
+
+
+# -- signals ---------------------------------------------------------------------------------------
+
+PARTS = """part def Sender {{ port left; port right;
+    exhibit state m {{
+        entry; then A; state A; transition first A do send new Go(){} then T; state T;
+    }}
+}}
+part def Receiver {{ port p;
+    exhibit state m {{ entry; then A; state A; transition first A accept {} then T; state T; }}
+}}"""
+
+
+@pytest.mark.parametrize(
+    ("via", "signal", "connections", "verdict"),
+    [
+        ("", "Go", "connect s to r;", "holds"),
+        ("", "Other::Go", "connect s to r;", "not-decided"),
+        (" via left", "Go", "connect s.left to r.p;", "holds"),
+        ("", "Go", "connect s.left to r.p;", "holds"),
+        ("", "Go", "connect s.left to r.p; connect s.right to t.p;", "not-decided"),
+    ],
+)
+def test_signals_and_their_ports_are_told_apart(decide, via, signal, connections, verdict):
+    others = "package Other { item def Go; }" + PARTS.format(via, signal)
+    block = f"part s : Sender; part r : Receiver; part t : Receiver; {connections}"
+    assert decide(block, "F r.m.state=T", others=others) == [verdict]

@@ -133,6 +133,7 @@ def _check(
         (
             *(line for result in alone for line in _format_result(result, settings.verbose)),
             *(result.text() for result in together),
+            *describe_omitted(requirements, alone, contract_file.time_verdicts),
             *describe_texts(requirements, contract_file.time_verdicts, settings.verbose),
         ),
         {
@@ -210,6 +211,19 @@ def describe_verdicts(result: "CheckedContract", is_verbose: bool) -> Iterator[s
         if is_verbose or verdict.answer != "holds":
             name = f"{verdict.conjunct.viewpoint}: " if verdict.conjunct.viewpoint else ""
             yield f"  {name}{_WORDS[verdict.answer]}: {print_temporal(verdict.conjunct)}"
+
+
+def describe_omitted(
+    requirements: "Iterable[StatedRequirement]",
+    results: "Iterable[CheckedContract]",
+    time_verdicts: "Mapping[str, LimitVerdict]",
+) -> Iterator[str]:
+    """Yield a line for each formal requirement that is in no contract, with the reason."""
+    decided = {verdict.conjunct.origin for result in results for verdict in result.requirements}
+    for requirement in requirements:
+        is_omitted = requirement.is_formal and requirement.constraint not in decided
+        if is_omitted and requirement.reason and requirement.constraint not in time_verdicts:
+            yield f"{requirement.name}: not decided: {requirement.reason}"
 
 
 def describe_texts(

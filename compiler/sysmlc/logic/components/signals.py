@@ -123,26 +123,58 @@ def _iter_deliveries(block: Block, members: list[Member], wires: list[Wire]) -> 
 
 
 def check_signal_names(component: "Component") -> None:
-    """Raise ComponentError if an object reacts to two signals of one name, or at several ports.
+    """Raise ComponentError if signals of one name, or the ports of a signal, cannot be told apart.
 
-    Its behaviours would wrongly see them as one event.
+    Behaviours would wrongly see them as one event.
     """
     graph = component.graph
+    signals: dict[str, Element] = {}
     for object_ in component.tree.objects:
         _find_ports(component, object_, sent=True)
         _find_ports(component, object_, sent=False)
-    behaviours = [(machine.owner, machine.element) for machine in component.machines]
-    behaviours += [
-        (copy.caller.owner, copy.activity) for copy in component.performances.copies.values()
-    ]
-    signals: dict[tuple[str, str], str] = {}
-    for object_, behaviour in behaviours:
-        for trigger in graph.subtree(behaviour):
-            signal = graph.target(trigger, Edge.TYPED_BY)
-            if trigger.kind is not Kind.TRIGGER or signal is None:
-                continue
-            if signals.setdefault((object_.path, signal.name), signal.id) != signal.id:
-                raise ComponentError(f"'{object_.type_.name}' reacts to two '{signal.name}'")
+        for behaviour in _list_behaviours(component, object_):
+            for element in graph.subtree(behaviour):
+                for signal in _iter_signals(graph, element):
+                    if signals.setdefault(signal.name, signal) is not signal:
+                        raise ComponentError(f"two signals are called '{signal.name}'")
+
+
+def _iter_signals(graph: Graph, element: Element) -> Iterator[Element]:
+    """Yield the signals of a trigger, of an action that sends, or of the text of an effect."""
+    signal = _find_signal(graph, element)
+    if signal is not None:
+        yield signal
+    for sending in _iter_sendings(element):
+        visible = (
+            owned
+            for scope in graph.ancestors(element)
+            for owned in graph.owned(scope)
+            if owned.kind in query.CLASSIFIERS and owned.name == sending.signal.path[0]
+        )
+        signal = next(visible, None)
+        # Imported and qualified names are compared by their last part alone.
+        if signal is not None and len(sending.signal.path) == 1:
+            yield signal
+
+
+def _find_signal(graph: Graph, element: Element) -> Element | None:
+    """Return the signal of a trigger or of an action that sends one."""
+    if element.kind is Kind.TRIGGER:
+        return graph.target(element, Edge.TYPED_BY)
+    is_sending = element.subkind in ("send", "broadcast")
+    return graph.target(element, Edge.CALLS) if is_sending else None
+
+
+def _iter_sendings(element: Element) -> Iterator[Send]:
+    """Yield the statements in the text of an effect that send a signal."""
+    body = element.attrs.get("body")
+    if element.kind is not Kind.ACTIVITY or not isinstance(body, str) or "send" not in body:
+        return
+    try:
+        statements = parse_effect(body)
+    except ExpressionError:
+        return
+    yield from (statement for statement in statements if isinstance(statement, Send))
 
 
 def _list_accepted(component: "Component", object_: ComponentObject) -> dict[str, str]:
@@ -179,7 +211,8 @@ def _find_ports(
 ) -> Mapping[str, str]:
     """Return the port of each signal that an object sends, or else receives, if it names one.
 
-    Raises ComponentError if it names several, or only some of the time: they are one event.
+    Raises ComponentError if it names several, or only some of the time: they are one event. A
+    signal without port passes the only port that is connected; of several the port is not known.
     """
     ports: dict[str, str] = {}
     find = _iter_sent_signals if sent else _iter_received_signals
@@ -192,6 +225,11 @@ def _find_ports(
                     verb = "sends" if sent else "receives"
                     reason = f"'{object_.type_.name}' {verb} '{signal}' in several ways"
                     raise ComponentError(reason)
+    connected = [
+        name for name in own_ports if component.tree.channels.list_reached((object_.path, name))
+    ]
+    if sent and len(connected) > 1 and "" in ports.values():
+        raise ComponentError(f"'{object_.type_.name}' sends a signal without naming its port")
     return {message: port for message, port in ports.items() if port}
 
 
@@ -203,27 +241,19 @@ def _list_behaviours(component: "Component", object_: ComponentObject) -> list[E
 
 def _iter_received_signals(graph: Graph, trigger: Element) -> Iterator[tuple[str, str]]:
     """Yield the signal of a trigger, and the name of its port or ""."""
-    signal = graph.target(trigger, Edge.TYPED_BY)
+    signal = _find_signal(graph, trigger)
     if trigger.kind is Kind.TRIGGER and signal is not None:
         yield signal.name, _name_port(graph, trigger.attrs.get("port"))
 
 
 def _iter_sent_signals(graph: Graph, element: Element) -> Iterator[tuple[str, str]]:
     """Yield the signals that an action or the text of an effect sends, and their ports or ""."""
-    signal = graph.target(element, Edge.CALLS)
-    if element.subkind in ("send", "broadcast") and signal is not None:
+    signal = _find_signal(graph, element)
+    if element.kind is not Kind.TRIGGER and signal is not None:
         yield signal.name, _name_port(graph, element.attrs.get("on_port"))
-    body = element.attrs.get("body")
-    if element.kind is not Kind.ACTIVITY or not isinstance(body, str) or "send" not in body:
-        return
-    try:
-        statements = parse_effect(body)
-    except ExpressionError:
-        return
-    for statement in statements:
-        if isinstance(statement, Send):
-            receiver = None if statement.receiver is None else name_of(statement.receiver)
-            yield statement.signal.path[-1], receiver or ""
+    for statement in _iter_sendings(element):
+        receiver = None if statement.receiver is None else name_of(statement.receiver)
+        yield statement.signal.path[-1], receiver or ""
 
 
 def _name_port(graph: Graph, id: object) -> str:
