@@ -37,6 +37,26 @@ def test_a_behaviour_that_violates_a_requirement_is_an_error_with_a_run(workspac
     assert "step 2: event=stop, state=B" in result.stderr
 
 
+def test_a_run_shows_no_history_bits_and_no_tokens_on_flows(workspace, all_passes):
+    activity = "action pick { first start then close; action close; then done; }"
+    machine = "exhibit state S { entry; then A; state A { do pick; } }"
+    workspace.write(
+        "gate.sysml",
+        f"""package Plant {{
+            part def Gate {{ {activity} {machine} }}
+            requirement def R {{
+                subject gate : Gate;
+                require constraint {{ language "ltl" /* G (O running(close) -> running(close)) */ }}
+            }}
+        }}""",
+    )
+    result = workspace.sysmlc("contracts", "check", "gate.sysml", "--verbose")
+    assert "violates 'G (O running(close) -> running(close))'" in result.stderr
+    steps = [line for line in result.stderr.splitlines() if "note: step" in line]
+    assert any("run_close=true" in step for step in steps)
+    assert not any(bit in step for step in steps for bit in ("since_", "was_", "at_start_to_close"))
+
+
 def test_one_component_can_be_selected(workspace, all_passes):
     workspace.write("lamp.ir", contract_checks.BREAKS.read_page().right)
     result = workspace.sysmlc("contracts", "check", "lamp.ir", "-c", "Plant::Gate.requirements")

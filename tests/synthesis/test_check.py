@@ -50,7 +50,7 @@ def test_a_violated_requirement_is_reported_with_a_run():
 
 
 def test_checks_that_reach_a_limit_are_reported(monkeypatch):
-    def give_up(*_):
+    def give_up(*_, **__):
         raise LimitError("of CPU time", "1 s")
 
     monkeypatch.setattr("sysmlc.synthesis.contract_checks.lint", give_up)

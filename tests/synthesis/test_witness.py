@@ -37,6 +37,17 @@ def test_constant_values_are_shown_only_if_the_conjunct_refers_to_them():
     assert next(describe_run(RUN, about)) == "step 1: power=true, ready=false, arm=0"
 
 
+def test_auxiliary_variables_are_omitted_unless_the_conjunct_names_them():
+    steps = ({"ready": False, "was_1": False}, {"ready": False, "was_1": True})
+    run = Trace(steps, 0, frozenset({"was_1"}))
+    assert list(describe_run(run))[:2] == [
+        "step 1: ready=false",
+        "step 2: only auxiliary variables change",
+    ]
+    about = Conjunct(parse_formula("was_1", {"was_1": BooleanDomain()}), Class.LIVENESS, "")
+    assert list(describe_run(run, about))[:2] == ["step 1: was_1=false", "step 2: was_1=true"]
+
+
 def test_a_long_run_is_cut():
     lines = list(describe_run(Trace(tuple({"n": number} for number in range(30)), 0)))
     assert lines[-2:] == ["and 18 more", "then again from step 1"]

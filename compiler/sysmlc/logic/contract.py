@@ -45,12 +45,17 @@ Domain = BooleanDomain | IntegerDomain | EnumerationDomain
 
 
 class Variable(Struct, frozen=True):
-    """One variable of a contract; ``origin`` is the id of the element it stands for."""
+    """One variable of a contract; ``origin`` is the id of the element it stands for.
+
+    An auxiliary variable stores the past or stands for a token on a flow. The author has no name
+    for it, so that texts about runs omit it.
+    """
 
     name: str
     owner: Owner
     domain: Domain
     origin: str = ""
+    is_auxiliary: bool = False
 
 
 def equals(variable: Variable, value: Formula, *, is_next: bool = False) -> Formula:

@@ -51,15 +51,20 @@ def _iter_changes(trace: Trace) -> Iterator[Values]:
 def describe_run(trace: Trace, broken: Conjunct | None = None) -> Iterator[str]:
     """Yield a line for each step with the changed values.
 
-    With *broken*, variables are omitted that never change and that *broken* does not read.
+    Auxiliary variables are omitted and, with *broken*, variables that never change. Those that the
+    text of *broken* names are shown.
     """
-    hidden = _constant_variables(trace, broken) if broken else set()
+    hidden = set(trace.auxiliary)
+    if broken is not None:
+        hidden -= {variable.name for variable in f.variables(broken.wording or broken.formula)}
+        hidden |= _constant_variables(trace, broken)
     for number, changed in enumerate(_iter_changes(trace), 1):
         if number > _MAX_SHOWN_STEPS:
             yield f"and {len(trace.steps) - _MAX_SHOWN_STEPS} more"
             break
         shown_names = [name for name in changed if name not in hidden]
-        yield f"step {number}: {_print_values(changed, shown_names) or 'nothing changes'}"
+        unchanged = "only auxiliary variables change" if changed else "nothing changes"
+        yield f"step {number}: {_print_values(changed, shown_names) or unchanged}"
     is_ended = trace.loop == len(trace.steps)
     yield "then there is no answer" if is_ended else f"then again from step {trace.loop + 1}"
 

@@ -102,15 +102,15 @@ def list_variables(graph: TokenGraph) -> tuple[Variable, ...]:
     ]
     system_variables = (
         Variable(name, Owner.SYSTEM, BooleanDomain(), origin)
-        for name, origin in (
-            *((name, graph.activity) for name in outputs),
-            *run_variables,
-            *token_variables,
-            *region_variables,
-        )
+        for name, origin in (*((name, graph.activity) for name in outputs), *run_variables)
+    )
+    auxiliary_variables = (
+        Variable(name, Owner.SYSTEM, BooleanDomain(), origin, is_auxiliary=True)
+        for name, origin in (*token_variables, *region_variables)
     )
     calls = (Variable(name, Owner.ENVIRONMENT, BooleanDomain(), graph.activity) for name in inputs)
-    return (*calls, *graph.inputs, *(store.variable for store in graph.stores), *system_variables)
+    stored = (store.variable for store in graph.stores)
+    return (*calls, *graph.inputs, *stored, *system_variables, *auxiliary_variables)
 
 
 def _list_completions(graph: TokenGraph) -> list[tuple[str, str]]:

@@ -178,7 +178,8 @@ class Component:
         Return the variable that remembers the end.
         """
         name = self.names.new(f"over_{machine.variables[state.do]}")
-        self.variables.append(Variable(name, Owner.SYSTEM, BooleanDomain(), state.id))
+        memory = Variable(name, Owner.SYSTEM, BooleanDomain(), state.id, is_auxiliary=True)
+        self.variables.append(memory)
         is_over = f.either(f.var(name), finish_variable(id))
         self.ends[machine.variables[state.done]] = is_over
         remains = f.both(is_over, f.negate(left), f.negate(entered))

@@ -341,12 +341,12 @@ class _Description:
         graph = formulas.graph
         variables += graph.inputs
         variables += (store.variable for store, _ in self.performances.locals)
-        for name, origin in (
-            *((node.run, node.origin) for node in graph.workers()),
-            *((edge.variable, edge.origin) for edge in graph.edges),
-            *((name, graph.activity) for _, name in graph.quiets),
+        for name, origin, is_auxiliary in (
+            *((node.run, node.origin, False) for node in graph.workers()),
+            *((edge.variable, edge.origin, True) for edge in graph.edges),
+            *((name, graph.activity, True) for _, name in graph.quiets),
         ):
-            variables.append(Variable(name, Owner.SYSTEM, BooleanDomain(), origin))
+            variables.append(Variable(name, Owner.SYSTEM, BooleanDomain(), origin, is_auxiliary))
         by_name: dict[str, Variable] = {}
         for variable in variables:
             by_name.setdefault(variable.name, variable)

@@ -137,6 +137,14 @@ class ReadingContext:
             self.auxiliary[key] = Variable(self.names.new(name), owner, domain, origin)
         return self.auxiliary[key].name
 
+    def memory_for(self, key: str, name: str, domain: Domain, origin: str) -> str:
+        """Return the name of the output with this key that stores the past, as ``variable_for``."""
+        if key not in self.auxiliary:
+            new_name = self.names.new(name)
+            variable = Variable(new_name, Owner.SYSTEM, domain, origin, is_auxiliary=True)
+            self.auxiliary[key] = variable
+        return self.auxiliary[key].name
+
     def input_for(self, key: str, name: str, origin: str) -> str:
         """Return the name of the Boolean input with this key; create the input on first use."""
         return self.variable_for(key, name, Owner.ENVIRONMENT, BooleanDomain(), origin)

@@ -14,7 +14,6 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph
 from sysmlc.logic.contract import (
     BooleanDomain,
-    Owner,
 )
 from sysmlc.logic.expressions.expression import Binary, Expression, Unary
 from sysmlc.logic.expressions.expression import Literal as Written
@@ -81,9 +80,7 @@ def _read_change(draft: MachineDraft, trigger: Element) -> Occurrence:
     text = str(trigger.attrs.get("condition", "")).strip() or trigger.name
     condition = read_condition(draft.reading, text, "change condition", trigger)
     key = f"memory {text}"
-    memory = draft.reading.variable_for(
-        key, f"was_{text}", Owner.SYSTEM, BooleanDomain(), trigger.id
-    )
+    memory = draft.reading.memory_for(key, f"was_{text}", BooleanDomain(), trigger.id)
     draft.memories[memory] = condition
     return OnRise(memory, condition)
 

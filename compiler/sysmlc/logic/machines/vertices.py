@@ -210,9 +210,7 @@ def _add_memory(draft: MachineDraft, id: str) -> None:
         candidate for candidate in reading.auxiliary.values() if candidate.name == region.variable
     )
     name = f"last_{region.variable}"
-    memory = reading.variable_for(
-        f"last {id}", name, Owner.SYSTEM, variable.domain, variable.origin
-    )
+    memory = reading.memory_for(f"last {id}", name, variable.domain, variable.origin)
     draft.regions[id] = replace(region, memory=memory)
 
 

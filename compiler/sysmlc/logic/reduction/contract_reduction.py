@@ -92,6 +92,7 @@ def _replace_past(conjuncts: Iterable[Conjunct], history: History) -> tuple[Conj
         replace(
             conjunct,
             formula=FormulaReduction(history, conjunct.origin).replace_past(conjunct.formula),
+            wording=conjunct.wording or as_ltl(conjunct),
         )
         if has_past(conjunct.formula)
         else conjunct

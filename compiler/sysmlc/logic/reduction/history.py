@@ -87,7 +87,8 @@ class History:
         text = f"'{name}' remembers {print_formula(rule)}."
         self._taken.add(name)
         self.bits.append(HistoryBit(name, start, rule))
-        self.variables.append(Variable(name, Owner.SYSTEM, BooleanDomain(), origin))
+        variable = Variable(name, Owner.SYSTEM, BooleanDomain(), origin, is_auxiliary=True)
+        self.variables.append(variable)
         for formula, class_ in ((initial, Class.INIT), (update, Class.SAFETY)):
             conjunct = Conjunct(formula, class_, origin, text, source=Source.DERIVED)
             self.conjuncts.append(conjunct)

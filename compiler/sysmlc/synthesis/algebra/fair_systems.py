@@ -270,11 +270,13 @@ class Trace(Struct, frozen=True):
     """Values of all variables in each step; after the last step the run continues at step ``loop``.
 
     A run may also end because one side has no allowed values. Then ``loop`` is the number of steps,
-    and the variables of this side have no value in the last step.
+    and the variables of this side have no value in the last step. ``auxiliary`` are the names of
+    auxiliary variables (``Variable``).
     """
 
     steps: tuple[Mapping[str, Literal], ...]
     loop: int
+    auxiliary: frozenset[str] = frozenset()
 
 
 def shortest_path(runs: Runs, target: Node) -> list[Node]:
@@ -353,4 +355,6 @@ def _shortest_walk(
 def _decode_trace(runs: Runs, states: list[Node], loop: int) -> Trace:
     symbols = runs.system.symbols
     assignments = (runs.manager.pick(state, runs.bits) or {} for state in states)
-    return Trace(tuple(symbols.decode(assignment) for assignment in assignments), loop)
+    auxiliary = (variable.name for variable in symbols.variables.values() if variable.is_auxiliary)
+    steps = tuple(symbols.decode(assignment) for assignment in assignments)
+    return Trace(steps, loop, frozenset(auxiliary))

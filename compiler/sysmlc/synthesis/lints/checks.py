@@ -353,9 +353,13 @@ def _states_without_frame(game: Game, variable: Variable) -> Node:
 
 
 def _describe_state(game: Game, states: Node) -> str:
-    """Return one of the states as text, without variables on which *states* do not depend."""
+    """Return one of the states as text, without variables on which *states* do not depend.
+
+    Auxiliary variables are omitted unless the states depend only on them.
+    """
     symbols, manager = game.symbols, game.manager
     all_bits = symbols.all_bits(symbols.variables)
     values = symbols.decode(manager.pick(states, all_bits) or {})
     names = symbols.names(states) or tuple(values)
-    return ", ".join(f"{name}={print_literal(values[name])}" for name in names)
+    shown = [name for name in names if not symbols.variables[name].is_auxiliary] or names
+    return ", ".join(f"{name}={print_literal(values[name])}" for name in shown)
