@@ -428,6 +428,18 @@ def test_the_verdicts_are_equal_in_xmi(decide, workspace, block, others, formula
     assert [entry["verdict"] for entry in entries] == verdicts
 
 
+# -- components without a step relation ------------------------------------------------------------
+
+ASSIGN = "do action a { first start then s; action s assign k := true; then done; }"
+
+
+def test_formulas_about_a_machine_that_is_not_described_are_not_decided(decide):
+    block = "exhibit state M { attribute k : Boolean := false; entry; then S; "
+    block += f"state S {{ {ASSIGN} }} transition first S accept Go if k then T; state T; }}"
+    formulas = ("G (running(a) -> M.state=S)", "G !(M.state=T)")
+    assert decide(block, *formulas) == ["not-decided", "not-decided"]
+
+
 # -- signals ---------------------------------------------------------------------------------------
 
 PARTS = """part def Sender {{ port left; port right;

@@ -93,7 +93,12 @@ def derive(
             is not None
         ]
         # The formulas have named all features that the behaviour has to describe.
-        whole = _describe_behaviour(graph, subject, component, behaviour, obstacle)
+        try:
+            whole = _describe_behaviour(graph, subject, component, behaviour, obstacle)
+        except ComponentError as problem:
+            for statement, _ in formulas:
+                informal.add(statement, str(problem))
+            continue
         if whole is not None:
             variables = scope_of(scope.context, whole.contract.variables).variables
             scope = replace(scope, variables=variables)
@@ -127,28 +132,23 @@ def _describe_behaviour(
     behaviour: Contract | None,
     obstacle: str,
 ) -> ComponentBehaviour | None:
-    """Return the behaviour that has to satisfy the requirements of a subject, or None."""
+    """Return the behaviour that requirements of a subject are about. Raises ComponentError."""
     if component is not None:
-        try:
-            whole = describe_component(component, component_of(graph, subject))
-        except ComponentError as problem:
-            obstacle = str(problem)
-        else:
-            if behaviour is None:
-                return replace(whole, is_of_parts=True)
-            return add_stated_conjuncts(whole, behaviour)
+        whole = describe_component(component, component_of(graph, subject))
+        if behaviour is None:
+            return replace(whole, is_of_parts=True)
+        return add_stated_conjuncts(whole, behaviour)
     if behaviour is None or not obstacle:
         return None
-    is_machine = graph[behaviour.origin].kind is Kind.STATE_MACHINE
-    return _describe_alone(behaviour, obstacle, is_machine=is_machine)
+    return _describe_alone(graph, behaviour, obstacle)
 
 
-def _describe_alone(behaviour: Contract, reason: str, *, is_machine: bool) -> ComponentBehaviour:
+def _describe_alone(graph: Graph, behaviour: Contract, reason: str) -> ComponentBehaviour:
     """Return a behaviour as its own contract describes it, which refutes nothing.
 
     The contract of an activity describes one that starts again, so that it proves nothing either.
     """
-    if not is_machine:
+    if graph[behaviour.origin].kind is not Kind.STATE_MACHINE:
         stated = tuple(item for item in behaviour.guarantees if not item.is_derived)
         behaviour = replace(behaviour, guarantees=stated)
     return ComponentBehaviour(behaviour, gaps={"": reason})
