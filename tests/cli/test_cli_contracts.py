@@ -141,6 +141,52 @@ def test_a_transition_to_a_state_that_is_required_to_be_unreachable_is_not_repor
     assert not check_rule_example(rules.NEVER_TAKEN, required, workspace)
 
 
+ARM = """package Line {
+    item def Go;
+    part def Robot {
+        attribute mode : ScalarValues::Boolean := false;
+        exhibit state S {
+            entry; then Idle;
+            state Idle;
+            transition first Idle accept Go do assign mode := false then Busy;
+            state Busy;
+            state Service;
+        }
+    }
+    part def Cell { part robot : Robot; }
+    requirement def OfCell {
+        subject cell : Cell; require constraint { language "ltl" /* robot.state=Idle */ }
+    }
+    OF_ROBOT
+}
+"""
+OF_ROBOT = """requirement def OfRobot {
+    subject robot : Robot; require constraint { language "ltl" /* state=Idle */ }
+}"""
+
+
+@pytest.mark.parametrize(
+    ("of_robot", "findings"),
+    [
+        ("", ["'Line::Cell' reaches 'robot.Service'", "'robot.mode' of 'Line::Cell' is assigned"]),
+        (OF_ROBOT, ["'Line::Robot' reaches 'Service'", "'mode' of 'Line::Robot' is assigned"]),
+        # The author of the part requires that the state is never reached.
+        (
+            OF_ROBOT.replace("state=Idle", "G !(state=Service)"),
+            ["'mode' of 'Line::Robot' is assigned"],
+        ),
+    ],
+)
+def test_a_block_does_not_repeat_what_the_check_of_its_part_finds(
+    of_robot, findings, workspace, all_passes
+):
+    workspace.write("line.sysml", ARM.replace("OF_ROBOT", of_robot))
+    result = workspace.sysmlc("contracts", "check", "--min-severity", "info", "line.sysml")
+    lines = [line for line in result.stderr.splitlines() if "SM559" in line or "SM519" in line]
+    assert len(lines) == len(findings)
+    assert all(finding in line for finding, line in zip(findings, lines, strict=True))
+
+
 ROBOT = """
     part def Robot {
         attribute gripped : ScalarValues::Boolean := false;

@@ -283,10 +283,10 @@ def list_behaviours(results: "Iterable[CheckedContract]") -> list[dict[str, obje
     return [
         {
             "component": result.verdict.component,
-            "unreachable": list(result.findings.unreachable.get(PlaceKind.ACTIVITY, ())),
-            "never_taken": list(result.findings.unreachable.get(PlaceKind.TRANSITION, ())),
-            "never_true": list(result.findings.unreachable.get(PlaceKind.GUARD, ())),
-            "never_changed": list(result.findings.unreachable.get(PlaceKind.FEATURE, ())),
+            "unreachable": result.findings.list_unreachable(PlaceKind.ACTIVITY),
+            "never_taken": result.findings.list_unreachable(PlaceKind.TRANSITION),
+            "never_true": result.findings.list_unreachable(PlaceKind.GUARD),
+            "never_changed": result.findings.list_unreachable(PlaceKind.FEATURE),
             "write_conflicts": list(result.findings.conflicts),
         }
         for result in results

@@ -8,7 +8,6 @@ from msgspec.structs import replace
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.logic import formula as f
 from sysmlc.logic.components.derivation import ComponentBehaviour
-from sysmlc.logic.components.names import PlaceKind
 from sysmlc.logic.contract import Conjunct, Contract, Owner
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import reduce_contract
@@ -21,12 +20,11 @@ from sysmlc.synthesis.decision import Options, Place, Verdict, decide
 from sysmlc.synthesis.games.game import OutsideGr1Error, make_game
 from sysmlc.synthesis.lints import lint
 from sysmlc.synthesis.requirement_verdicts import (
-    UNREACHABLE_RULES,
     Answer,
     BehaviourCheck,
     BehaviourFindings,
     RequirementVerdict,
-    iter_negations,
+    report_unreachable,
 )
 from sysmlc.synthesis.rules import CONFLICT, VACUOUS
 from sysmlc.synthesis.unrealizable import find_unrealizable_core, is_won
@@ -117,6 +115,7 @@ def check_contracts(
     the contract of a component describes its behaviour completely.
     """
     all_by_component = {contract.component: contract for contract in contracts}
+    checks: list[tuple[ComponentBehaviour, Contract, BehaviourFindings]] = []
     for contract in chosen:
         component = contract.component
         behaviour = all_by_component.get(component.removesuffix(SUFFIX))
@@ -128,7 +127,10 @@ def check_contracts(
         whole = behaviours.get(component)
         if whole is not None and whole.is_of_parts:
             verdict = _decide_consistency(contract, whole, place, sink, options)
-            yield _check_requirements(verdict, whole, contract, place, sink, options)
+            result = _check_requirements(verdict, whole, contract, place, sink, options)
+            if result.findings is not None:
+                checks.append((whole, contract, result.findings))
+            yield result
             continue
         verdict = decide(contract, place, sink, options)
         # Lints play games and explore runs, so an undecided contract would meet the same obstacle.
@@ -141,7 +143,11 @@ def check_contracts(
             yield CheckedContract(verdict)
         else:
             checked = behaviours.get(component) or ComponentBehaviour(contract)
-            yield _check_requirements(verdict, checked, requirements, place, sink, options)
+            result = _check_requirements(verdict, checked, requirements, place, sink, options)
+            if result.findings is not None:
+                checks.append((checked, requirements, result.findings))
+            yield result
+    report_unreachable(checks, place, sink)
 
 
 def _is_requirement_contract(contract: Contract) -> bool:
@@ -271,10 +277,7 @@ def _find_behaviour_findings(
     place: Place,
     sink: Sink,
 ) -> BehaviourFindings | None:
-    """Report write conflicts, and places that no run reaches; None if a limit is reached.
-
-    A state that the author requires to be never reached is not reported, nor a transition to it.
-    """
+    """Report write conflicts, and return all findings; None if a limit is reached."""
     component = behaviour.contract.component
     try:
         conflicts = tuple(check.find_conflicts())
@@ -291,19 +294,7 @@ def _find_behaviour_findings(
             component=component,
             variable=conflict.variable,
         )
-    required = {conjunct.formula for conjunct in requirements.guarantees}
-    for place_ in unreachable:
-        negations = (*iter_negations(place_.is_active), *iter_negations(place_.leads_to))
-        if required.isdisjoint(negations):
-            rule_ = UNREACHABLE_RULES[place_.kind]
-            sink.report(rule_, place(place_.origin), component=component, name=place_.name)
-    return BehaviourFindings(
-        tuple(conflict.variable for conflict in conflicts),
-        {
-            kind: tuple(place_.name for place_ in unreachable if place_.kind is kind)
-            for kind in PlaceKind
-        },
-    )
+    return BehaviourFindings(tuple(conflict.variable for conflict in conflicts), unreachable)
 
 
 def _find_undischarged(

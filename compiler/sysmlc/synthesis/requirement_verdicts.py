@@ -5,13 +5,14 @@ they do if each action ends, or a run violates it. The assumptions that actions 
 left are derived by the compiler: they may prove a requirement, and never refute one.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Sequence
 from enum import StrEnum
-from itertools import combinations
+from itertools import chain, combinations
 
 from msgspec import Struct
 from msgspec.structs import replace
 
+from sysmlc.diagnostics import Sink
 from sysmlc.logic import formula as f
 from sysmlc.logic.components.derivation import ComponentBehaviour
 from sysmlc.logic.components.names import PlaceInBehaviour, PlaceKind
@@ -32,7 +33,7 @@ from sysmlc.synthesis import rules
 from sysmlc.synthesis.algebra.fair_systems import DomainError, Trace
 from sysmlc.synthesis.algebra.refinement import RunSearch
 from sysmlc.synthesis.bdd.limits import LimitError
-from sysmlc.synthesis.decision import Options
+from sysmlc.synthesis.decision import Options, Place
 from sysmlc.synthesis.games.game import OutsideGr1Error
 from sysmlc.synthesis.witnesses import describe_problem, manager_factory
 
@@ -74,11 +75,15 @@ class BehaviourFindings(Struct, frozen=True):
     """Faults of a behaviour that are found without a requirement.
 
     ``conflicts`` are the features to which two writers may give different values in one step,
-    ``unreachable`` the names of places that no run reaches, by kind.
+    ``unreachable`` the places that no run reaches.
     """
 
     conflicts: tuple[str, ...] = ()
-    unreachable: Mapping[PlaceKind, tuple[str, ...]] = {}
+    unreachable: tuple[PlaceInBehaviour, ...] = ()
+
+    def list_unreachable(self, kind: PlaceKind) -> list[str]:
+        """Return the names of the places of a kind that no run reaches."""
+        return [place.name for place in self.unreachable if place.kind is kind]
 
 
 UNREACHABLE_RULES = {
@@ -288,6 +293,39 @@ class BehaviourCheck:
             if conjunct.is_derived and conjunct.class_ is not Class.LIVENESS
         )
         return (*self._facts, *steps, *facts)
+
+
+def report_unreachable(
+    checks: Sequence[tuple[ComponentBehaviour, Contract, BehaviourFindings]],
+    place: Place,
+    sink: Sink,
+) -> None:
+    """Report the places that no run reaches, from the behaviours with requirements and findings.
+
+    A state that the author requires to be never reached is not reported, nor a transition to it.
+    Nor does a component report what the check of a part, or of an activity that it performs, finds.
+    """
+    places_by_component = {
+        behaviour.contract.origin: {(item.kind, item.origin) for item in findings.unreachable}
+        for behaviour, _, findings in checks
+    }
+    for behaviour, requirements, findings in checks:
+        required = {conjunct.formula for conjunct in requirements.guarantees}
+        inner = set[tuple[PlaceKind, str]]().union(
+            *(places_by_component.get(id, ()) for id in behaviour.constituents)
+        )
+        for unreached in findings.unreachable:
+            negations = iter_negations(unreached.is_active), iter_negations(unreached.leads_to)
+            if (unreached.kind, unreached.origin) not in inner and required.isdisjoint(
+                chain(*negations)
+            ):
+                component = behaviour.contract.component
+                sink.report(
+                    UNREACHABLE_RULES[unreached.kind],
+                    place(unreached.origin),
+                    component=component,
+                    name=unreached.name,
+                )
 
 
 def _names_of(conjuncts: Iterable[Conjunct]) -> set[str]:

@@ -291,6 +291,17 @@ class Component:
         first = f.TRUE if is_started else f.var(run)
         self.roots.append(Root(id, may_start, f.FALSE, first, service=start))
 
+    def list_constituents(self) -> frozenset[str]:
+        """Return the ids of the types of the parts, and of the activities that are performed."""
+        types = {
+            type_.id
+            for object_ in self.tree.objects
+            if object_.path
+            for type_ in object_.list_family(self.graph)
+        }
+        activities = {copy.activity.id for copy in self.performances.copies.values()}
+        return frozenset(types | activities) - {self.subject.id}
+
     def add(self, formula: Formula, class_: Class, origin: str) -> None:
         """Add a fact about all runs."""
         self.conjuncts.append(Conjunct(formula, class_, origin, source=Source.DERIVED))

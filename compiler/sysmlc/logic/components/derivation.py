@@ -19,6 +19,7 @@ from sysmlc.logic.components.machines import PlacedMachine, find_unread_features
 from sysmlc.logic.components.names import PlaceInBehaviour, iter_places
 from sysmlc.logic.components.objects import Slot
 from sysmlc.logic.components.signals import derive_events
+from sysmlc.logic.composition.structure import join_path
 from sysmlc.logic.contract import (
     BooleanDomain,
     Class,
@@ -49,8 +50,8 @@ class ComponentBehaviour(Struct, frozen=True):
     actions end. A variable in ``gaps`` is restricted by the model, but not here; the value is the
     reason in words. Variables in ``ends`` are gaps too: they tell when an action ends that may take
     as long as the environment wants. ``writers`` are the writers of the features with several.
-    ``places`` are its states and actions.
-    ``is_of_parts`` is true if the component has no contract of a behaviour of its own.
+    ``places`` are its states and actions. ``constituents`` are ids: of the types of its parts, and
+    of the activities it performs. ``is_of_parts``: no contract describes a behaviour of its own.
     """
 
     contract: Contract
@@ -58,6 +59,7 @@ class ComponentBehaviour(Struct, frozen=True):
     ends: frozenset[str] = frozenset()
     writers: Mapping[str, tuple[Writer, ...]] = {}
     places: tuple[PlaceInBehaviour, ...] = ()
+    constituents: frozenset[str] = frozenset()
     is_of_parts: bool = False
 
 
@@ -103,7 +105,7 @@ class _Description:
         self._conjuncts += self._arguments.derive(formulas)
         gaps = dict(self.performances.gaps) | self._arguments.gaps
         writers = self._list_writers(formulas)
-        assigned = [self.tree.read_slot(slot).variable for slot in writers]
+        assigned = [(join_path(*slot), self.tree.read_slot(slot).variable) for slot in writers]
         self._reset_own_features(writers)
         gaps |= self._derive_updates(writers)
         gaps |= self._derive_starts(gaps)
@@ -136,7 +138,9 @@ class _Description:
             for place in iter_places(self.component, formulas.graph, assigned)
         )
         long_ends = self.performances.long_ends
-        return ComponentBehaviour(contract, gaps | long_ends, frozenset(long_ends), shared, places)
+        inner = self.component.list_constituents()
+        gaps |= long_ends
+        return ComponentBehaviour(contract, gaps, frozenset(long_ends), shared, places, inner)
 
     def _make_formulas(self, name: str) -> PerformanceFormulas:
         """Return the formulas about the steps of all performances."""

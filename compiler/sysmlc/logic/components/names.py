@@ -192,11 +192,12 @@ def _iter_regions(component: "Component", machine: PlacedMachine) -> Iterator[tu
 
 
 def iter_places(
-    component: "Component", tokens: TokenGraph, assigned: Iterable[Variable]
+    component: "Component", tokens: TokenGraph, assigned: Iterable[tuple[str, Variable]]
 ) -> Iterator[PlaceInBehaviour]:
     """Yield states, actions, transitions, guards of decisions, and the features that are assigned.
 
-    Conditions may have placeholders for the ends of performances.
+    *assigned* are names and variables of features. Conditions may have placeholders for the ends of
+    performances.
     """
     for machine in component.machines:
         yield from _iter_machine_places(component, machine)
@@ -218,11 +219,11 @@ def iter_places(
                 PlaceKind.GUARD,
                 f.either(*arrives),
             )
-    for variable in assigned:
+    for name, variable in assigned:
         now = f.var(variable.name)
         is_boolean = isinstance(variable.domain, BooleanDomain)
         stays = f.iff(f.prime(now), now) if is_boolean else f.eq(f.prime(now), now)
-        yield PlaceInBehaviour(variable.name, variable.origin, f.negate(stays), PlaceKind.FEATURE)
+        yield PlaceInBehaviour(name, variable.origin, f.negate(stays), PlaceKind.FEATURE)
 
 
 def _iter_machine_places(
