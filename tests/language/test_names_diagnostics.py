@@ -92,6 +92,23 @@ def test_only_close_names_of_the_needed_kind_are_suggested():
     ]
 
 
+def test_a_definition_where_a_usage_is_needed_is_used_with_its_keyword():
+    model = """
+        package Plant {{
+            requirement def Clean; use case def Fill;
+            part cell {{ satisfy {}; }}
+            use case run {{ include {}; }}
+        }}
+    """
+    needed = "a usage or feature is needed here; write"
+    assert list_name_errors(model.format("Clean", "Fill")) == [
+        "4: unknown name 'Clean': 'Clean' is a requirement definition, "
+        f"{needed} 'requirement : Clean'",
+        f"5: unknown name 'Fill': 'Fill' is a use case definition, {needed} 'use case : Fill'",
+    ]
+    assert list_name_errors(model.format("requirement : Clean", "use case : Fill")) == []
+
+
 def test_the_advice_about_a_member_of_another_element_names_that_element():
     assert list_name_errors("""
         package Plant {

@@ -198,4 +198,5 @@ def describe_kind(node: Node) -> str:
         return "a package"
     words = "".join(f" {c.lower()}" if c.isupper() else c for c in node.kind).strip()
     words = words.removesuffix(" usage")
-    return f"{'an' if words[0] in 'aeiou' else 'a'} {words}"
+    has_vowel_sound = words[0] in "aeiou" and not words.startswith("use")
+    return f"{'an' if has_vowel_sound else 'a'} {words}"

@@ -105,7 +105,12 @@ def _explain_obstacle(
     of_other_kind = _search_regardless(lookup, names, context, container, everything=False)
     if of_other_kind is not None and relation.kind in _EXPECTED_WORDS:
         kind, expected = describe_kind(of_other_kind), _EXPECTED_WORDS[relation.kind]
-        return f"'{names[-1]}' is {kind}, {expected} is needed here"
+        advice = ""
+        if relation.kind == "ReferenceSubsetting" and kind.endswith(" definition"):
+            # 'satisfy R' refers to a usage; 'satisfy requirement : R' declares one.
+            keyword = kind.partition(" ")[2].removesuffix(" definition")
+            advice = f"; write '{keyword} : {names[-1]}'"
+        return f"'{names[-1]}' is {kind}, {expected} is needed here{advice}"
     private = _explain_privacy(lookup, names, context, container, searches_imports)
     if private and of_other_kind is None:
         return private
