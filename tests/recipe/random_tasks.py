@@ -7,6 +7,8 @@ machines needs for it; a machine does one service at a time and is never idle wh
 from collections.abc import Iterator
 from random import Random
 
+from msgspec.structs import replace
+
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import parse_text
 from sysmlc.logic import evaluate
@@ -203,10 +205,11 @@ def derive_task(graph: TaskGraph) -> Task:
 
 
 def build_token_graph(graph: TaskGraph) -> TokenGraph:
-    """Return the token graph of the task."""
+    """Return the token graph of the task, which starts in the first step."""
     ir_graph = parse_text(str(graph))
     Activities().run(ir_graph, Sink())
-    return next(tokens for tokens in ir_graph.derived(TokenGraph) if tokens.activity == "t")
+    tokens = next(tokens for tokens in ir_graph.derived(TokenGraph) if tokens.activity == "t")
+    return replace(tokens, handshake=None)
 
 
 class Execution:
