@@ -19,7 +19,6 @@ from sysmlc.logic.activities.token_graph import (
     Duration,
     Handshake,
     TokenGraph,
-    TokenNode,
 )
 from sysmlc.logic.contract import Class, Conjunct
 from sysmlc.logic.expressions.expression import last_name
@@ -106,18 +105,27 @@ class _Performers:
             if activity.name and (owner is None or owner in self._graph.ancestors(behaviour))
         ]
 
-    def can_be_stopped(self, activity: str, around: frozenset[str] = frozenset()) -> bool:
+    def can_be_stopped(self, activity: str) -> bool:
         """Whether something that performs the activity, by its id, may abandon it.
 
-        *around* are the activities that are being looked at, so that the search ends.
+        What abandons a caller abandons what it calls.
         """
-        if activity in around:
-            return False
-        return any(
-            (edge is Edge.DO and self._can_leave(user))
-            or (edge is Edge.CALLS and self._can_abandon(user, around | {activity}))
-            for edge, user in self.iter_uses(self._graph[activity])
-        )
+        worklist = [activity]
+        visited = {activity}
+        for id in worklist:
+            for edge, user in self.iter_uses(self._graph[id]):
+                if edge is Edge.DO and self._can_leave(user):
+                    return True
+                if edge is not Edge.CALLS or user.attrs.get("synchronous") is False:
+                    continue
+                callers = self._games_of_node.get(user.id)
+                if callers is None or any(self._can_abandon(game, user) for game in callers):
+                    # A call in an activity without token game may be abandoned.
+                    return True
+                new = {game.activity for game in callers} - visited
+                visited |= new
+                worklist += sorted(new)
+        return False
 
     def _can_leave(self, state: Element) -> bool:
         """Whether a transition may leave the state although its do behaviour has not ended.
@@ -133,23 +141,9 @@ class _Performers:
             leaving = list(self._graph.subtree(machine))
         return any(self._graph.targets(transition, Edge.TRIGGER) for transition in leaving)
 
-    def _can_abandon(self, call: Element, around: frozenset[str]) -> bool:
-        """Whether the end or the interruption of something around a call action abandons the call.
-
-        A call whose activity has no token game may be abandoned.
-        """
-        if call.attrs.get("synchronous") is False:
-            return False
-        games = self._games_of_node.get(call.id)
-        if games is None:
-            return True
-        return any(
-            self._is_cut_off(game, game.node(call.id)) or self.can_be_stopped(game.activity, around)
-            for game in games
-        )
-
-    def _is_cut_off(self, game: TokenGraph, node: TokenNode) -> bool:
-        """Whether a region around a running node may end, or interrupt it, before it is done."""
+    def _can_abandon(self, game: TokenGraph, call: Element) -> bool:
+        """Whether a region around a call action may end, or interrupt it, before it is done."""
+        node = game.node(call.id)
         if node.duration is not Duration.TIMED:
             return False
         regions = [node.region, *(outer.region for outer in game.regions_around(node.region))]
