@@ -55,8 +55,11 @@ class Universe:
         self.symbols = Symbols(manager, merge_variables(contracts), list_related(related))
         self._ranges = self._compute_ranges()
 
-    def system(self, conjuncts: Iterable[Conjunct]) -> FairSystem:
+    def system(self, conjuncts: Iterable[Conjunct], *, looks_ahead: bool = True) -> FairSystem:
         """Return the system whose runs satisfy all conjuncts and keep variables in their ranges.
+
+        A system that *looks_ahead* neither starts in a state that violates a condition on single
+        states nor has a step to one. Its infinite runs are the same, but not its finite ones.
 
         Raises OutsideGr1Error for a conjunct that is neither initial, nor a safety, nor a liveness
         conjunct.
@@ -64,16 +67,15 @@ class Universe:
         nodes: dict[Class, list[Node]] = {class_: [] for class_ in Class}
         for conjunct in conjuncts:
             nodes[conjunct.class_].append(self.node(conjunct))
-        # A condition on single states holds in the next state, too: without its next value, steps
-        # lead to states that have no successors, which the search for fair runs must find again.
-        invariants = (
-            *self._ranges,
-            *(node for node in nodes[Class.SAFETY] if not self.symbols.names(node, primed=True)),
-        )
+        invariants = self._ranges
+        if looks_ahead:
+            # Else steps lead to states without successors, which the search for fair runs finds.
+            invariants += tuple(
+                node for node in nodes[Class.SAFETY] if not self.symbols.names(node, primed=True)
+            )
         # Initial values first: few states remain, and conditions on them have small diagrams.
         init = conjoin(self.manager, (*nodes[Class.INIT], *invariants))
-        next_invariants = map(self.symbols.prime, invariants)
-        parts = (*self._ranges, *next_invariants, *nodes[Class.SAFETY])
+        parts = (*self._ranges, *map(self.symbols.prime, invariants), *nodes[Class.SAFETY])
         return FairSystem(self.symbols, init, parts, tuple(nodes[Class.LIVENESS]))
 
     def node(self, conjunct: Conjunct) -> Node:

@@ -66,7 +66,8 @@ class _Verification:
         self.symbols = self.universe.symbols
         relation = translate_controller(controller, self.symbols, self.state_variable)
         self.first_relation, self.transitions = relation.first, relation.step
-        assumption_system = self.universe.system(contract.assumptions)
+        # An assumption that the next answer violates does not excuse that answer.
+        assumption_system = self.universe.system(contract.assumptions, looks_ahead=False)
         self.assumptions, self.fairness = assumption_system.parts, assumption_system.fairness
         self.initial_inputs = assumption_system.init
         self.initial = Product(manager, self.first_relation, ())(self.initial_inputs)
