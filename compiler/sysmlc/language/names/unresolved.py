@@ -13,11 +13,7 @@ from sysmlc.language.tree import Document, Node, Reference, Relation, make_subje
 from sysmlc.support.suggestions import find_similar
 
 UNRESOLVED = rule(
-    "SM205",
-    "unresolved-name",
-    Severity.ERROR,
-    "unknown name '{name}'{inside}",
-    help="{advice}",
+    "SM205", "unresolved-name", Severity.ERROR, "unknown name '{name}'{inside}", help="{advice}"
 )
 TOO_CIRCULAR = rule(
     "SM240",
@@ -105,12 +101,11 @@ def _explain_obstacle(
     of_other_kind = _search_regardless(lookup, names, context, container, everything=False)
     if of_other_kind is not None and relation.kind in _EXPECTED_WORDS:
         kind, expected = describe_kind(of_other_kind), _EXPECTED_WORDS[relation.kind]
-        advice = ""
-        if relation.kind == "ReferenceSubsetting" and kind.endswith(" definition"):
-            # 'satisfy R' refers to a usage; 'satisfy requirement : R' declares one.
-            keyword = kind.partition(" ")[2].removesuffix(" definition")
-            advice = f"; write '{keyword} : {names[-1]}'"
-        return f"'{names[-1]}' is {kind}, {expected} is needed here{advice}"
+        advice = f"'{names[-1]}' is {kind}, {expected} is needed here"
+        keyword, definition, _ = kind.partition(" ")[2].partition(" definition")
+        # 'satisfy R' refers to a usage; 'satisfy requirement : R' declares one.
+        declares = definition and relation.kind == "ReferenceSubsetting"
+        return f"{advice}; write '{keyword} : {names[-1]}'" if declares else advice
     private = _explain_privacy(lookup, names, context, container, searches_imports)
     if private and of_other_kind is None:
         return private

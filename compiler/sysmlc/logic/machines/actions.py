@@ -140,9 +140,8 @@ class ReadingContext:
     def memory_for(self, key: str, name: str, domain: Domain, origin: str) -> str:
         """Return the name of the output with this key that stores the past, as ``variable_for``."""
         if key not in self.auxiliary:
-            new_name = self.names.new(name)
-            variable = Variable(new_name, Owner.SYSTEM, domain, origin, is_auxiliary=True)
-            self.auxiliary[key] = variable
+            facts = self.names.new(name), Owner.SYSTEM, domain, origin
+            self.auxiliary[key] = Variable(*facts, is_auxiliary=True)
         return self.auxiliary[key].name
 
     def input_for(self, key: str, name: str, origin: str) -> str:
