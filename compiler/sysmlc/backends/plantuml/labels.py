@@ -310,11 +310,14 @@ def make_notes(
     with_parameters: bool = False,
     inside: Iterable[Element] | None = None,
 ) -> tuple[Note, ...]:
-    """Return notes for the comments *inside* the behaviour, its constraints and its features."""
+    """Return notes for the features, the comments *inside* the behaviour, and its constraints."""
+    items = list(graph.subtree(behaviour) if inside is None else inside)
+    # Tools write comments and constraints in different orders.
     texts = tuple(
         _make_note(graph, item, aliases)
-        for item in (graph.subtree(behaviour) if inside is None else inside)
-        if item.kind in _NOTE_KINDS and _is_note(item, behaviour) and format_label(note_text(item))
+        for kind in _NOTE_KINDS
+        for item in items
+        if item.kind is kind and _is_note(item, behaviour) and format_label(note_text(item))
     )
     kinds = (Kind.PARAMETER, *_FEATURES) if with_parameters else _FEATURES
     return (*_make_feature_note(graph, behaviour, aliases, kinds), *texts)
