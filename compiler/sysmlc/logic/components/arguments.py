@@ -139,8 +139,8 @@ class Arguments:
             self.gaps[variable.name] = f"the check does not follow the value of '{name}'"
             return
         self._performances.inputs.pop(variable.name, None)
-        own = replace(variable, owner=Owner.SYSTEM)
-        self.values.append(Argument(own, copy.id, cases, is_bound))
+        parameter = replace(variable, owner=Owner.SYSTEM)
+        self.values.append(Argument(parameter, copy.id, cases, is_bound))
 
     def _read_unassigned_output(self, copy: Copy, pin: Element) -> None:
         """Read an ``out`` parameter that the called action never assigns.
@@ -239,10 +239,10 @@ class Arguments:
         if feature is None or feature.direction in ("in", "inout") or feature.is_constant:
             return None
         self._performances.inputs.pop(variable.name, None)
-        own = replace(variable, owner=Owner.SYSTEM)
-        copy.parameters[name] = own
-        self.locals.append((Store(own, (), feature.default, local=True), copy.id))
-        return own.name
+        stored = replace(variable, owner=Owner.SYSTEM)
+        copy.parameters[name] = stored
+        self.locals.append((Store(stored, (), feature.default, local=True), copy.id))
+        return stored.name
 
     def _find_unread_writers(self, writers: WriterIndex) -> None:
         """Record the variables of activities that something assigns in a way that is not read.
@@ -273,9 +273,9 @@ class Arguments:
         tree = self._tree
 
         def find_symbol(name: str) -> Symbol | None:
-            own = self._find_own(parent, name)
-            if own is not None:
-                return Symbol(f.var(own.name), own.domain)
+            attribute = self._find_own(parent, name)
+            if attribute is not None:
+                return Symbol(f.var(attribute.name), attribute.domain)
             object_: ComponentObject | None = parent.caller.owner
             while object_ is not None:
                 feature = tree.context(object_).features.get(name)
