@@ -278,7 +278,7 @@ def list_verdicts(
 
 def list_behaviours(results: "Iterable[CheckedContract]") -> list[dict[str, object]]:
     """Return an entry for each behaviour that was checked against requirements."""
-    from sysmlc.logic.components.names import PlaceKind
+    from sysmlc.logic.components.places import PlaceKind
 
     return [
         {

@@ -15,7 +15,7 @@ from msgspec.structs import replace
 from sysmlc.diagnostics import Sink
 from sysmlc.logic import formula as f
 from sysmlc.logic.components.derivation import ComponentBehaviour
-from sysmlc.logic.components.names import PlaceInBehaviour, PlaceKind
+from sysmlc.logic.components.places import PlaceInBehaviour, PlaceKind
 from sysmlc.logic.contract import (
     BooleanDomain,
     Class,

@@ -16,8 +16,8 @@ from sysmlc.logic.activities.derivation import derive_run_update, derive_token_u
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
 from sysmlc.logic.components.component import Component, finish_name
 from sysmlc.logic.components.machines import PlacedMachine, find_unread_features
-from sysmlc.logic.components.names import PlaceInBehaviour, iter_places
 from sysmlc.logic.components.objects import Slot
+from sysmlc.logic.components.places import PlaceInBehaviour, iter_places
 from sysmlc.logic.components.signals import derive_events
 from sysmlc.logic.composition.structure import join_path
 from sysmlc.logic.contract import (
@@ -134,7 +134,7 @@ class _Description:
             if len(group) > 1
         }
         places = tuple(
-            replace(place, is_active=substitute(place.is_active, ends))
+            place.replace_variables(ends)
             for place in iter_places(self.component, formulas.graph, assigned)
         )
         long_ends = self.performances.long_ends

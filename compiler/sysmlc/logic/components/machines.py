@@ -24,7 +24,7 @@ from sysmlc.logic.machines.derivation import (
     iter_change_conditions,
     iter_choices_on_path,
 )
-from sysmlc.logic.machines.machine import Assign, Machine, Vertex, element_id
+from sysmlc.logic.machines.machine import Assign, Machine, Transition, Vertex, element_id
 from sysmlc.logic.machines.moves import (
     Exploration,
     explore_machine,
@@ -175,6 +175,19 @@ class PlacedMachine(Struct, frozen=True):
             )
         )
         return self.rename(f.either(*changes))
+
+    def passed_formula(self, transition: Transition) -> Formula:
+        """A transition that leaves a pseudostate is taken in this step, or at the start."""
+        if any(transition.id in path.passed for path in self.exploration.starts):
+            return f.TRUE
+        passes = (
+            change
+            for move in self.exploration.moves
+            for change in iter_change_conditions(
+                self.exploration, move, transition.id, lambda path, id: id in path.passed
+            )
+        )
+        return self.rename(f.either(*passes))
 
     def list_do_states(self, tree: ObjectTree) -> Iterator[tuple[Vertex, list[Element]]]:
         """Yield the states with do behaviours."""

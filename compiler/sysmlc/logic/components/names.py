@@ -5,21 +5,17 @@ a state, ``m1.state`` and ``m1.event`` about a part, ``m1.using`` about a featur
 """
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
-from enum import StrEnum
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from msgspec import Struct
 
 from sysmlc.logic import formula as f
-from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.components.machines import EVENT, PlacedMachine
 from sysmlc.logic.components.objects import ComponentError
 from sysmlc.logic.components.signals import derive_events
-from sysmlc.logic.composition.structure import join_path
-from sysmlc.logic.contract import BooleanDomain, Domain, Variable
+from sysmlc.logic.contract import BooleanDomain, Domain
 from sysmlc.logic.formula import Formula
-from sysmlc.logic.machines.descriptions import name_transition
 from sysmlc.logic.machines.machine import element_id
 
 if TYPE_CHECKING:
@@ -35,33 +31,6 @@ class Meaning(Struct, frozen=True):
     domain: Domain
     name: str = ""
     """The name in the formula of the author."""
-
-
-class PlaceKind(StrEnum):
-    """What a place in a behaviour is."""
-
-    ACTIVITY = "activity"
-    """A state or an action."""
-    TRANSITION = "transition"
-    GUARD = "guard"
-    FEATURE = "feature"
-
-
-class PlaceInBehaviour(Struct, frozen=True):
-    """A place that runs should reach, its name in the component, and when it is reached.
-
-    It is a state or an action that is active, a transition that is taken, a guard that lets a token
-    pass, or a feature that changes. The question makes sense only in runs that reach ``within``:
-    the source of a transition, or the decision with the guard.
-    """
-
-    name: str
-    origin: str
-    is_active: Formula
-    kind: PlaceKind = PlaceKind.ACTIVITY
-    within: Formula = f.TRUE
-    leads_to: Formula = f.FALSE
-    """The target of a transition is active."""
 
 
 class ComponentNames:
@@ -186,61 +155,3 @@ def _iter_regions(component: "Component", machine: PlacedMachine) -> Iterator[tu
             for path in dict.fromkeys((name, ".".join((*outer, name)))):
                 yield f"{prefix}{path}.state", variable
                 yield f"{named}{path}.state", variable
-
-
-# -- places in the behaviour -----------------------------------------------------------------------
-
-
-def iter_places(
-    component: "Component", tokens: TokenGraph, assigned: Iterable[tuple[str, Variable]]
-) -> Iterator[PlaceInBehaviour]:
-    """Yield states, actions, transitions, guards of decisions, and the features that are assigned.
-
-    *assigned* are names and variables of features. Conditions may have placeholders for the ends of
-    performances.
-    """
-    for machine in component.machines:
-        yield from _iter_machine_places(component, machine)
-    names: dict[str, tuple[str, ...]] = {}
-    for action in component.performances.paths:
-        names.setdefault(action.node, action.names)
-    for id, path in names.items():
-        node = tokens.node(id)
-        yield PlaceInBehaviour(".".join(path), node.origin, f.var(node.run))
-    for edge in tokens.edges:
-        if edge.guard is not None and edge.guard.condition is not None:
-            arrives = (
-                f.var(enter.variable) for enter in tokens.edges if enter.target == edge.source
-            )
-            yield PlaceInBehaviour(
-                edge.guard.text,
-                edge.origin,
-                f.var(edge.variable),
-                PlaceKind.GUARD,
-                f.either(*arrives),
-            )
-    for name, variable in assigned:
-        now = f.var(variable.name)
-        is_boolean = isinstance(variable.domain, BooleanDomain)
-        stays = f.iff(f.prime(now), now) if is_boolean else f.eq(f.prime(now), now)
-        yield PlaceInBehaviour(name, variable.origin, f.negate(stays), PlaceKind.FEATURE)
-
-
-def _iter_machine_places(
-    component: "Component", machine: PlacedMachine
-) -> Iterator[PlaceInBehaviour]:
-    for state in machine.machine.list_states():
-        element = component.graph[element_id(state.id)]
-        name = join_path(machine.owner.path, element.name)
-        yield PlaceInBehaviour(name, element.id, machine.active_formula(state))
-    for move in machine.exploration.moves:
-        source = machine.machine.vertices[move.transition.source]
-        target = machine.machine.vertices[move.transition.target]
-        yield PlaceInBehaviour(
-            join_path(machine.owner.path, name_transition(move.transition)),
-            element_id(move.transition.id),
-            machine.rename(move.fires),
-            PlaceKind.TRANSITION,
-            machine.active_formula(source),
-            machine.active_formula(target) if target.kind == "state" else f.FALSE,
-        )

@@ -78,6 +78,7 @@ class PathExplorer(Struct, frozen=True):
     def _follow(self, path: Path, transition: Transition) -> list[Path]:
         """Return the paths along a transition and through all pseudostates behind it."""
         guarded = self._pass_guard(path, transition)
+        guarded = replace(guarded, passed=(*path.passed, transition.id))
         region = self.machine.find_main_region(transition)
         is_leaving = region and not self.machine.has_concurrent_exits(transition.source)
         paths = self._leave(guarded, region) if region and is_leaving else [guarded]

@@ -41,6 +41,8 @@ class Path(Struct, frozen=True):
     """The literals of the regions that the path changes."""
     raised: tuple[str, ...] = ()
     picked: Mapping[str, str] = field(default_factory=dict)
+    passed: tuple[str, ...] = ()
+    """Ids of the transitions on the path, those behind pseudostates included."""
     left_states: tuple[str, ...] = ()
     saturated: tuple[tuple[str, str], ...] = ()
     """The variable and the origin of each clamped assignment."""
