@@ -173,3 +173,24 @@ def test_guarantees_about_start_and_end(members, lines):
         for conjunct in contract.guarantees
         if conjunct.origin == origin
     ] == lines
+
+
+def list_running(members: str) -> list[str]:
+    """Return the steps of the performed action of a part, by the outputs ``run_<step>``."""
+    (contract,) = compile_robot(members).derived(Contract)
+    names = (variable.name for variable in contract.variables)
+    return [name for name in names if name.startswith("run_")]
+
+
+def test_a_referential_action_without_order_is_not_performed():
+    steps = (
+        "ref action seen; ref accept Go; action a; action b; first start then a; first a then b;"
+    )
+    assert list_running(f"perform action work {{ {steps} }}") == ["run_a", "run_b"]
+
+
+@pytest.mark.parametrize("member", ["ref action seen;", "attribute force;"])
+def test_an_action_without_steps_ends_when_the_environment_ends_it(member):
+    graph = compile_robot(f"perform action work {{ action weld {{ {member} }} }}")
+    (contract,) = graph.derived(Contract)
+    assert "done_weld" in [variable.name for variable in contract.variables]

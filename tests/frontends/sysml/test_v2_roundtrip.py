@@ -175,6 +175,14 @@ def test_the_plant_of_automationml_is_a_plant_again():
     }
 
 
+REFERENCE = """
+Package p "Plant"
+  Activity a "Fill"
+    Action pump "pump" subkind="opaque"
+    Action other "other" subkind="opaque" referential=true
+    Structured group "group" subkind="structured" referential=true
+      Action inner "inner" subkind="opaque"
+"""
 NODES = """
 Package p "Plant"
   Activity a "Fill"
@@ -232,6 +240,7 @@ Package p "Plant"
         pytest.param(NODES.format(subkind="accept"), id="acceptance-of-nothing"),
         pytest.param(ENDS, id="ends-without-names"),
         pytest.param(CONJUGATED, id="conjugated-port-that-redefines"),
+        pytest.param(REFERENCE, id="referential-action"),
         pytest.param(TYPE_WITH_DEFAULT, id="default-of-a-type"),
         pytest.param(SPELLING_OF_XML, id="stereotype-as-xml-spells-it"),
     ],

@@ -181,6 +181,21 @@ def test_findings_about_steps_speak_of_steps():
     ]
 
 
+@pytest.mark.parametrize(
+    "reference",
+    ["ref action other;", "ref action other : Grip;", "ref action other { action part; }"],
+)
+def test_a_referential_action_is_no_step(reference):
+    steps = f"action def Grip {{ in x; }} action run {{ {reference} action a; }}"
+    assert list_action_findings(steps) == []
+
+
+def test_a_referential_action_in_an_order_is_a_step():
+    assert list_action_findings("action run { ref action a; action b; first b then a; }") == []
+    alone = "action run { ref action a; action b; action c; first b then a; }"
+    assert list_action_findings(alone) == list_action_findings(alone.replace("ref ", ""))
+
+
 def test_a_redefined_function_gets_its_arguments_where_the_function_is_called():
     base = "calc def Grade { in x; }"
     assert list_action_findings(f"{base} action def Study {{ calc grade {{ in x; }} }}") == [

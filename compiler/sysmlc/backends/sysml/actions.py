@@ -13,7 +13,7 @@ from sysmlc.backends.sysml.printing import Line, quote_name
 from sysmlc.backends.sysml.references import format_chain, is_accessible, look_up
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import Edge, Element, Kind
-from sysmlc.ir.query import features, generals, type_of
+from sysmlc.ir.query import features, generals, is_referential, type_of
 
 _EXPRESSED_SUBKINDS = frozenset(
     {"", "opaque", "call-behavior", "call-operation", "send", "accept", "value", "read"}
@@ -51,7 +51,8 @@ def write_control_flow(writer: Writer, member: Member) -> list[Line]:
 
 
 def _format_head(writer: Writer, member: Member, element: Element) -> str:
-    return " ".join([*list_visibility(writer, element), "action", quote_name(member.name)])
+    prefixes = [*list_visibility(writer, element), *(["ref"] if is_referential(element) else [])]
+    return " ".join([*prefixes, "action", quote_name(member.name)])
 
 
 def _write_body(writer: Writer, member: Member, element: Element) -> list[Line]:
@@ -79,7 +80,8 @@ def _is_repeated(writer: Writer, action: Element) -> bool:
     """
     is_accept = action.subkind.startswith("accept") and _list_triggers(writer, action)
     flows = writer.graph.sources(action, Edge.FLOW_TARGET)
-    return bool(is_accept) and not any(flow.kind is Kind.CONTROL_FLOW for flow in flows)
+    has_start = any(flow.kind is Kind.CONTROL_FLOW for flow in flows) or is_referential(action)
+    return bool(is_accept) and not has_start
 
 
 # -- calls ---------------------------------------------------------------------------------------

@@ -19,6 +19,7 @@ _STRUCTURED_SUBKINDS = frozenset(
     {"conditional", "loop", "sequence", "expansion", "interruptible", "structured"}
 )
 _PARTITION_KINDS = (Kind.PARTITION, Kind.STRUCTURED)
+_FEATURES = frozenset({"AttributeUsage", "EnumerationUsage"})
 _CONTROL_SUBKINDS = {
     "DecisionNode": "decision",
     "MergeNode": "merge",
@@ -46,8 +47,10 @@ def lower_action(lowering: "Lowering", node: Node, owner: Element) -> Element:
 
 
 def _is_step(node: Node) -> bool:
-    is_parameter = "direction" in node.attributes
-    return not (nodes.is_annotation(node) or is_parameter or _is_nameless_reference(node))
+    """Whether a member makes an action a group: an action with features only is elementary."""
+    is_passed = "direction" in node.attributes or node.attributes.get("isReference")
+    is_feature = node.kind in _FEATURES or _is_nameless_reference(node)
+    return not (nodes.is_annotation(node) or is_passed or is_feature)
 
 
 def _is_nameless_reference(node: Node) -> bool:
@@ -57,12 +60,18 @@ def _is_nameless_reference(node: Node) -> bool:
 def _add_action(
     lowering: "Lowering", node: Node, owner: Element, subkind: str, **attrs: AttrValue
 ) -> Element:
-    attributes = visibility_attributes(node) | attrs
+    attributes = _action_attributes(node) | attrs
     action = lowering.add_element(
         node, Kind.ACTION, nodes.name_of(node), owner, subkind=subkind, **attributes
     )
     _assign_partitions(lowering, node, owner, action)
     return action
+
+
+def _action_attributes(node: Node) -> dict[str, AttrValue]:
+    """Return the attributes for a visibility other than public, and for ``ref``."""
+    attributes = visibility_attributes(node)
+    return attributes | {"referential": True} if node.attributes.get("isReference") else attributes
 
 
 def _lower_group(lowering: "Lowering", node: Node, owner: Element, subkind: str) -> Element:
@@ -72,7 +81,7 @@ def _lower_group(lowering: "Lowering", node: Node, owner: Element, subkind: str)
         nodes.name_of(node),
         owner,
         subkind=subkind or "structured",
-        **visibility_attributes(node),
+        **_action_attributes(node),
     )
     _assign_partitions(lowering, node, owner, group)
     lower_steps(lowering, nodes.body_of(node), group)
@@ -198,7 +207,8 @@ def lower_accept(lowering: "Lowering", node: Node, owner: Element) -> Element:
     subkind = str(annotations.metadata_value(node, "Kind", "name") or "accept")
     action = _add_action(lowering, node, owner, subkind)
     lower_trigger(lowering, node, action)
-    if owner.kind in ACTIVITIES and "Repeated" not in nodes.shipped_metadata_of(node):
+    is_repeated = "Repeated" in nodes.shipped_metadata_of(node)
+    if owner.kind in ACTIVITIES and not is_repeated and "referential" not in action.attrs:
         defer_implied_start(lowering, node, owner, action)
     _lower_members(lowering, node, action)
     return action

@@ -71,7 +71,7 @@ DECLARED_BY: dict[str, frozenset[str]] = {
     "import": frozenset({"exposed", "filters", "import"}),
     "locale": _TEXTS,
     "name": frozenset({"req_id"}),
-    "reference": frozenset({"aggregation"}),
+    "reference": frozenset({"aggregation", "referential"}),
     "short name": frozenset({"req_id", "symbol"}),
     "metadata": frozenset({"stereotype", "tag", "metadata"}),
 }

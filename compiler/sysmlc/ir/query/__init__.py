@@ -1,5 +1,6 @@
 """Queries of passes and back ends to a graph; none of them changes it."""
 
+from sysmlc.ir.query.activities import is_performed, is_referential
 from sysmlc.ir.query.classifiers import (
     BEHAVIORS,
     CLASSIFIERS,
@@ -82,6 +83,8 @@ __all__ = [
     "incoming",
     "is_boundary",
     "is_flow_property",
+    "is_performed",
+    "is_referential",
     "is_requirement",
     "lineage",
     "opposite",

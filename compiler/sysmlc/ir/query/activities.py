@@ -14,6 +14,25 @@ _EXIT = ""
 _Successors = Mapping[str, list[str]]
 
 
+def is_referential(action: Element) -> bool:
+    """Whether an action is declared with ``ref`` (SysML v2)."""
+    return bool(action.attrs.get("referential"))
+
+
+def is_performed(graph: Graph, node: Element) -> bool:
+    """Whether a node of an activity is a step that the activity performs.
+
+    A referential action is none of the subactions (SysML 2.0, 8.3.17,
+    ``checkActionUsageSubactionSpecialization``): it is a name for a performance elsewhere. It is
+    a step only if the model orders it, so that a flow leads to or from it or one of its pins.
+    """
+    if not is_referential(node):
+        return True
+    ends = (node, *(member for member in graph.owned(node) if member.kind is Kind.PIN))
+    edges = (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)
+    return any(True for end in ends for edge in edges for _ in graph.sources(end, edge))
+
+
 def is_joined(graph: Graph, end: Element) -> bool:
     """Whether no other token is left when a token reaches a final node of an activity.
 

@@ -80,7 +80,10 @@ def find_drawn_activity(graph: Graph, action: Element) -> Element:
 
 
 def _is_drawn(graph: Graph, action: Element) -> bool:
-    return any(member.kind in _STEPS for member in graph.owned(action))
+    return any(
+        member.kind in _STEPS and query.is_performed(graph, member)
+        for member in graph.owned(action)
+    )
 
 
 def _copy_names(part: Element) -> Iterator[str]:

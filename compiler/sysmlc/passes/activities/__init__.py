@@ -237,8 +237,11 @@ _STEPS = (Kind.ACTION, Kind.CONTROL, Kind.STRUCTURED)
 
 
 def has_steps(graph: Graph, activity: Element) -> bool:
-    """Whether the activity has nodes of its own, not only inherited ones."""
-    return any(element.kind in _STEPS for element in graph.owned(activity))
+    """Whether the activity has nodes of its own, not only inherited or referential ones."""
+    return any(
+        element.kind in _STEPS and query.is_performed(graph, element)
+        for element in graph.owned(activity)
+    )
 
 
 def _find_drawn(graph: Graph, usage: Element) -> Element:

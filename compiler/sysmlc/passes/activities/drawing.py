@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from msgspec import Struct
 
 from sysmlc.diagnostics import Sink, Subject
-from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic.activities.token_graph import ACTIVITY_REGION
 from sysmlc.logic.feature_writes import takes_one_step
 from sysmlc.passes.activities import rules
@@ -140,7 +140,7 @@ def _collect_nodes(
         drawing.parts[owner.id] = parts
     home = {id: part.id for part in parts for id in part.nodes}
     for element in graph.owned(owner):
-        if element.kind not in NODES:
+        if element.kind not in NODES or not query.is_performed(graph, element):
             continue
         inner_region = home.get(element.id, region)
         if element.subkind == "interruptible" or element.id in dissolved:

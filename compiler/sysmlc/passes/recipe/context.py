@@ -191,7 +191,9 @@ class Context(Struct, frozen=True):
         if nodes is None:
             elements = self.contents(activity)
             nodes = self._nodes[activity.id] = [
-                element for element in elements if element.kind in NODES
+                element
+                for element in elements
+                if element.kind in NODES and query.is_performed(self.graph, element)
             ]
         return nodes
 
@@ -303,7 +305,9 @@ def is_block(graph: Graph, node: Element) -> bool:
 
 def is_inlined(graph: Graph, node: Element) -> bool:
     """Whether the content of the node belongs to the graph of the activity around it."""
-    return node.kind is Kind.STRUCTURED and (is_for_each(node) or is_block(graph, node))
+    if node.kind is not Kind.STRUCTURED or not query.is_performed(graph, node):
+        return False
+    return is_for_each(node) or is_block(graph, node)
 
 
 def _list_contents(graph: Graph, activity: Element) -> Iterator[Element]:
@@ -316,7 +320,11 @@ def _list_contents(graph: Graph, activity: Element) -> Iterator[Element]:
 
 def list_steps(graph: Graph, region: Element) -> list[Element]:
     """Return the nodes that a structured node owns directly, without object nodes."""
-    return [element for element in graph.owned(region) if element.kind in _STEPS]
+    return [
+        element
+        for element in graph.owned(region)
+        if element.kind in _STEPS and query.is_performed(graph, element)
+    ]
 
 
 def find_entries(graph: Graph, region: Element) -> list[Element]:
