@@ -363,6 +363,13 @@ def observe(block: Block, state: State, event: str, ended: frozenset) -> frozens
 
 def list_successors(block: Block, state: State, event: str, ended: frozenset) -> set[State]:
     """Return the states that may follow."""
+    return {after for _, after in list_reactions(block, state, event, ended)}
+
+
+def list_reactions(
+    block: Block, state: State, event: str, ended: frozenset
+) -> set[tuple[Move | None, State]]:
+    """Return the states that may follow, each with the transition that leads to it or None."""
     values = dict(zip(FEATURES, state.values, strict=True))
     do, do_ends, do_writes = state.do, False, []
     own, own_writes = state.own, []
@@ -372,17 +379,17 @@ def list_successors(block: Block, state: State, event: str, ended: frozenset) ->
             own, own_writes = (None if is_finished else after), writes
         else:
             do, do_ends, do_writes = (None if is_finished else after), is_finished, writes
-    successors = set()
+    reactions = set()
     for move in _list_moves(block, state, values, event, do_ends) or [None]:
         for written in _list_values(values, do_writes, own_writes, move):
             if move is None:
                 is_over = state.is_over or do_ends
-                successors.add(State(state.state, written, do, is_over, own))
+                reactions.add((None, State(state.state, written, do, is_over, own)))
             else:
                 target = move.target
                 new = start() if target in block.do else None
-                successors.add(State(target, written, new, False, own))
-    return successors
+                reactions.add((move, State(target, written, new, False, own)))
+    return reactions
 
 
 def _list_moves(

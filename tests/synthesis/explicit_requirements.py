@@ -11,10 +11,11 @@ import spot
 from component_runs import (
     FEATURES,
     Block,
+    Move,
     first_state,
     list_actions,
     list_inputs,
-    list_successors,
+    list_reactions,
     observe,
 )
 from spot import buddy
@@ -90,11 +91,19 @@ def _make_formula(random: Random, atoms: list[str], depth: int) -> str:
 
 
 class ExploredBlock:
-    """The runs of a block as an automaton whose edges say what is observed in a step."""
+    """The runs of a block as an automaton whose edges say what is observed in a step.
+
+    ``observed`` are all facts that some step shows, ``taken`` the transitions that some step takes,
+    and ``changed`` the features that some step changes.
+    """
 
     def __init__(self, block: Block, limit: int) -> None:
         """Explore the block. Raises ValueError if it has more than *limit* states."""
         self._variables = {atom: f"p{number}" for number, atom in enumerate(list_atoms(block))}
+        self._block = block
+        self.observed: set[str] = set()
+        self.taken: set[Move] = set()
+        self.changed: set[str] = set()
         self._actions = list_actions(block, is_elementary=True)
         self._dictionary = spot.make_bdd_dict()
         self._fair_runs = spot.make_twa_graph(self._dictionary)
@@ -104,20 +113,25 @@ class ExploredBlock:
             atom: buddy.bdd_ithvar(self._fair_runs.register_ap(variable))
             for atom, variable in self._variables.items()
         }
-        self._explore(block, limit)
+        self._explore(limit)
         self._runs = spot.twa_graph(self._fair_runs, spot.twa_prop_set.all())
         self._runs.set_acceptance(0, spot.acc_code.t())
         for edge in self._runs.edges():
             edge.acc = spot.mark_t()
 
-    def _explore(self, block: Block, limit: int) -> None:
+    def _explore(self, limit: int) -> None:
+        block = self._block
         numbers = {first_state(block): self._fair_runs.new_state()}
         worklist = [first_state(block)]
         while worklist:
             state = worklist.pop()
             for event, ended in list_inputs(block, state):
                 facts = observe(block, state, event, ended)
-                for after in list_successors(block, state, event, ended):
+                self.observed |= facts
+                for move, after in list_reactions(block, state, event, ended):
+                    self.taken |= set() if move is None else {move}
+                    values = zip(FEATURES, state.values, after.values, strict=True)
+                    self.changed |= {name for name, old, new in values if old != new}
                     if after not in numbers:
                         if len(numbers) == limit:
                             raise ValueError("too many states")
@@ -135,6 +149,22 @@ class ExploredBlock:
             if f"running({action})" not in facts or f"finished({action})" in facts
         ]
         self._fair_runs.new_edge(source, target, label, marks)
+
+    def list_unreached(self) -> dict[str, list[str]]:
+        """Return the names of what no step reaches, in the words of ``contracts check``."""
+        block, observed = self._block, self.observed
+        states = [state for state in block.states if f"state={state}" not in observed]
+        actions = [path for path in list_actions(block) if f"running({path})" not in observed]
+        never_taken = [
+            f"transition '{move.source} to {move.target}{f' [{move.guard}]' if move.guard else ''}'"
+            for move in block.moves
+            if f"state={move.source}" in observed and move not in self.taken
+        ]
+        return {
+            "unreachable": sorted(states + actions),
+            "never_taken": sorted(never_taken),
+            "never_changed": [name for name in FEATURES if name not in self.changed],
+        }
 
     def decide(self, requirement: str) -> str:
         """Return the verdict about a requirement, in the words of ``contracts check``."""

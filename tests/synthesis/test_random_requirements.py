@@ -1,4 +1,8 @@
-"""Verdicts about random requirements of random blocks: ``contracts check`` and an exploration."""
+"""Random requirements of random blocks: ``contracts check`` and an exploration agree.
+
+They agree on the verdicts and on the states, actions, transitions and features that no run reaches
+or changes.
+"""
 
 import json
 from random import Random
@@ -40,24 +44,35 @@ ORDER = ("broken", "not-decided", "holds-if-actions-end", "holds")
 
 
 def check(path):
-    """Return the verdicts of ``contracts check``; a requirement has that of its worst conjunct."""
+    """Return the verdicts of ``contracts check``, and the names of what no run reaches.
+
+    A requirement has the verdict of its worst conjunct.
+    """
     arguments = ["contracts", "check", "--format", "json", str(path)]
     result = CliRunner().invoke(group.sysmlc, arguments, catch_exceptions=False)
     verdicts = {}
-    for entry in json.loads(result.stdout)["requirements"]:
+    document = json.loads(result.stdout)
+    for entry in document["requirements"]:
         verdicts.setdefault(entry["requirement"], []).append(entry["verdict"])
-    return [min(verdicts[name], key=ORDER.index) for name in sorted(verdicts)]
+    (behaviour,) = document["behaviours"]
+    unreached = {
+        member: sorted(behaviour[member])
+        for member in ("unreachable", "never_taken", "never_changed")
+    }
+    return [min(verdicts[name], key=ORDER.index) for name in sorted(verdicts)], unreached
 
 
 def compare(seed, tmp_path):
-    """Compare both answers about a random block."""
+    """Compare both answers about a random block, and what both find that no run reaches."""
     random = Random(seed)
     block, explored = explore_random_block(random)
     formulas = make_requirements(random, block, REQUIREMENTS)
     path = tmp_path / f"block{seed}.sysml"
     path.write_text(require(write_block(block), formulas), "utf-8")
     expected = dict(zip(formulas, map(explored.decide, formulas), strict=True))
-    assert dict(zip(formulas, check(path), strict=True)) == expected, path.read_text("utf-8")
+    verdicts, unreached = check(path)
+    assert dict(zip(formulas, verdicts, strict=True)) == expected, path.read_text("utf-8")
+    assert unreached == explored.list_unreached(), path.read_text("utf-8")
 
 
 @pytest.mark.parametrize("seed", range(3))
