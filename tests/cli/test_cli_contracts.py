@@ -53,8 +53,71 @@ def test_a_run_shows_no_history_bits_and_no_tokens_on_flows(workspace, all_passe
     result = workspace.sysmlc("contracts", "check", "gate.sysml", "--verbose")
     assert "violates 'G (O running(close) -> running(close))'" in result.stderr
     steps = [line for line in result.stderr.splitlines() if "note: step" in line]
-    assert any("run_close=true" in step for step in steps)
+    assert any("running(close)=true" in step for step in steps)
     assert not any(bit in step for step in steps for bit in ("since_", "was_", "at_start_to_close"))
+
+
+def test_a_run_uses_the_names_that_requirements_use(workspace, all_passes):
+    """Step 1 lists actions only if they run; the end of an action of one step is not repeated."""
+    workspace.write(
+        "cell.sysml",
+        """package Shop {
+            private import ScalarValues::*;
+            item def Close;
+            part def Gripper {
+                exhibit state Jaw {
+                    entry; then Open;
+                    state Open;
+                    transition first Open accept Close then Closed;
+                    state Closed;
+                }
+            }
+            part def Robot {
+                attribute holds : Boolean := false;
+                part gripper : Gripper;
+                exhibit state Work { entry; then Busy; state Busy { do handle; } }
+                action handle {
+                    first start then pick;
+                    action pick { action close; first start then close; then done; }
+                    then action store assign holds := true;
+                    then done;
+                }
+            }
+            requirement def R {
+                subject robot : Robot;
+                require constraint { language "ltl" /* G !(holds & gripper.state=Closed) */ }
+            }
+        }""",
+    )
+    shown = workspace.sysmlc("contracts", "check", "cell.sysml", "--verbose", "-o", "out").stderr
+    assert [line[8:] for line in shown.splitlines() if line.startswith("  note: ")] == [
+        "step 1: gripper.event=Close, holds=false, gripper.state=Open, running(handle)=true",
+        "step 2: gripper.event=none, gripper.state=Closed, running(pick)=true",
+        "step 3: finished(pick)=true, running(close)=true, finished(close)=true",
+        "step 4: running(pick)=false, finished(pick)=false, running(close)=false, "
+        "finished(close)=false",
+        "step 5: finished(handle)=true, running(store)=true",
+        "step 6: holds=true, running(handle)=false, finished(handle)=false, running(store)=false",
+        "step 7: nothing changes",
+        "then again from step 7",
+    ]
+    drawn = workspace.read("out/Shop.Robot.run1.puml")
+    assert "p0 -> p1 : finished(close)=true\nhnote over p1 : finished(pick)=true," in drawn
+    report = workspace.sysmlc("contracts", "check", "cell.sysml", "--format", "json").stdout
+    (requirement,) = json.loads(report)["requirements"]
+    assert requirement["witness"]["steps"][1] == {
+        "gripper.event": "none",
+        "holds": False,
+        "state": "Busy",
+        "gripper.state": "Closed",
+        "running(handle)": True,
+        "finished(handle)": False,
+        "running(pick)": True,
+        "finished(pick)": False,
+        "running(close)": False,
+        "finished(close)": False,
+        "running(store)": False,
+    }
 
 
 def test_one_component_can_be_selected(workspace, all_passes):

@@ -96,7 +96,7 @@ FAULTS = [
         ("closed := true", "closed := false"),
         "LegoRecipe::Plant::Robot1",
         "gripper.state=Closed -> gripper.closed",
-        ["p0 -> p1 : gripper_event=CloseGripper", "gripper_state=Closed"],
+        ["p0 -> p1 : gripper.event=CloseGripper", "gripper.state=Closed"],
     ),
     (
         GATE,

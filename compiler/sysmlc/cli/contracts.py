@@ -299,7 +299,7 @@ def _list_entries(
     verdicts: "Sequence[RequirementVerdict]",
     decided: "LimitVerdict | None",
 ) -> Iterator[dict[str, object]]:
-    from sysmlc.synthesis.witnesses import print_temporal
+    from sysmlc.synthesis.witnesses import export_run, print_temporal
 
     for verdict in verdicts:
         trace = verdict.trace
@@ -310,7 +310,7 @@ def _list_entries(
             "verdict": str(verdict.answer),
             "vacuous": bool(verdict.vacuity),
             "needs": [ending.text for ending in verdict.needed],
-            "witness": trace and {"steps": [*map(dict, trace.steps)], "loop": trace.loop},
+            "witness": trace and export_run(trace),
             "reason": verdict.reason or verdict.vacuity or None,
         }
     if not verdicts:

@@ -31,8 +31,10 @@ from sysmlc.synthesis.unrealizable import find_unrealizable_core, is_won
 from sysmlc.synthesis.witnesses import (
     Party,
     Witness,
-    describe_run,
+    describe_named_run,
     manager_factory,
+    name_conjunct,
+    name_run,
     print_temporal,
     report_failure,
     text_in_parentheses,
@@ -252,22 +254,24 @@ def _check_requirements(
     failures = _find_undischarged(contract, requirements, options)
     for failure in failures:
         subject = place(failure.conjunct.origin)
-        report_failure(ASSUMES, failure, contract.component, subject, sink)
+        report_failure(ASSUMES, failure, contract.component, subject, sink, atoms=behaviour.atoms)
     undischarged = [failure.conjunct for failure in failures]
     check = BehaviourCheck(behaviour, requirements, tuple(undischarged), options)
     verdicts = tuple(check.decide_requirements())
     for requirement in verdicts:
-        _report_verdict(contract, requirement, place, sink)
+        _report_verdict(behaviour, requirement, place, sink)
     findings = _find_behaviour_findings(check, behaviour, requirements, place, sink)
     failures += [
         Failure(requirement.conjunct, False, requirement.trace)
         for requirement in verdicts
         if requirement.trace is not None
     ]
-    witnesses = tuple(_build_witness(contract, failure) for failure in failures)
-    return CheckedContract(
-        verdict, verdicts, bool(undischarged), findings=findings, witnesses=witnesses
+    witnesses = tuple(_build_witness(behaviour, failure) for failure in failures)
+    named = tuple(
+        replace(answer, trace=answer.trace and name_run(answer.trace, behaviour.atoms))
+        for answer in verdicts
     )
+    return CheckedContract(verdict, named, bool(undischarged), findings, witnesses=witnesses)
 
 
 def _find_behaviour_findings(
@@ -290,7 +294,7 @@ def _find_behaviour_findings(
         sink.report(
             CONFLICT,
             place(conflict.conjunct.origin),
-            notes=tuple(describe_run(conflict.trace, conflict.conjunct)),
+            notes=describe_named_run(conflict.trace, conflict.conjunct, behaviour.atoms),
             component=component,
             variable=conflict.variable,
         )
@@ -316,13 +320,13 @@ def _find_undischarged(
 
 
 def _report_verdict(
-    behaviour: Contract, requirement: RequirementVerdict, place: Place, sink: Sink
+    behaviour: ComponentBehaviour, requirement: RequirementVerdict, place: Place, sink: Sink
 ) -> None:
-    conjunct, component = requirement.conjunct, behaviour.component
+    conjunct, component = requirement.conjunct, behaviour.contract.component
     subject = place(conjunct.origin)
     if requirement.trace is not None:
         failure = Failure(conjunct, False, requirement.trace)
-        report_failure(BREAKS, failure, component, subject, sink)
+        report_failure(BREAKS, failure, component, subject, sink, atoms=behaviour.atoms)
     elif requirement.vacuity:
         sink.report(
             VACUOUS,
@@ -343,9 +347,19 @@ def _report_verdict(
         )
 
 
-def _build_witness(behaviour: Contract, failure: Failure) -> Witness:
-    parties = (Party(behaviour.component, behaviour),)
-    return Witness(behaviour.component, failure.conjunct, failure.trace, parties)
+def _build_witness(behaviour: ComponentBehaviour, failure: Failure) -> Witness:
+    contract, atoms = behaviour.contract, behaviour.atoms
+    replaced = {atom.replaced for atom in atoms}
+    variables = (
+        *(atom.variable for atom in atoms),
+        *(variable for variable in contract.variables if variable.name not in replaced),
+    )
+    return Witness(
+        contract.component,
+        name_conjunct(failure.conjunct, atoms),
+        name_run(failure.trace, atoms),
+        (Party(contract.component, replace(contract, variables=variables)),),
+    )
 
 
 LEANS = rule(

@@ -1,12 +1,16 @@
 """Runs as explanations for users: text, PlantUML sequence diagrams, and notes of diagnostics."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 
 from msgspec import Struct
+from msgspec.structs import replace
 
 from sysmlc.diagnostics import Rule, Sink, Subject
 from sysmlc.logic import formula as f
+from sysmlc.logic.components.names import Atom
+from sysmlc.logic.composition.naming import rename_variables
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
+from sysmlc.logic.evaluate import value_of
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.printing import print_formula, print_literal
 from sysmlc.support.output import assign_file_names
@@ -41,8 +45,11 @@ class Witness(Struct, frozen=True):
 
 
 def _iter_changes(trace: Trace) -> Iterator[Values]:
-    """Yield for each step the values that have changed; for the first step all values."""
-    previous: Values = {}
+    """Yield for each step the values that have changed; for the first step all values.
+
+    Quiet variables are false before the first step.
+    """
+    previous: Values = dict.fromkeys(trace.quiet, False)
     for values in trace.steps:
         yield {name: value for name, value in values.items() if previous.get(name) != value}
         previous = values
@@ -54,10 +61,7 @@ def describe_run(trace: Trace, broken: Conjunct | None = None) -> Iterator[str]:
     Auxiliary variables are omitted and, with *broken*, variables that never change. Those that the
     text of *broken* names are shown.
     """
-    hidden = set(trace.auxiliary)
-    if broken is not None:
-        hidden -= {variable.name for variable in f.variables(broken.wording or broken.formula)}
-        hidden |= _constant_variables(trace, broken)
+    hidden = _hidden_variables(trace, broken)
     for number, changed in enumerate(_iter_changes(trace), 1):
         if number > _MAX_SHOWN_STEPS:
             yield f"and {len(trace.steps) - _MAX_SHOWN_STEPS} more"
@@ -69,11 +73,60 @@ def describe_run(trace: Trace, broken: Conjunct | None = None) -> Iterator[str]:
     yield "then there is no answer" if is_ended else f"then again from step {trace.loop + 1}"
 
 
+def _hidden_variables(trace: Trace, broken: Conjunct | None) -> Set[str]:
+    """Return the variables that texts and diagrams of a run omit."""
+    if broken is None:
+        return trace.auxiliary
+    named = {variable.name for variable in f.variables(broken.wording or broken.formula)}
+    return (trace.auxiliary - named) | _constant_variables(trace, broken)
+
+
 def _constant_variables(trace: Trace, broken: Conjunct) -> set[str]:
     """Return the variables that never change and that the conjunct does not read."""
     changing = {name for changed in list(_iter_changes(trace))[1:] for name in changed}
     read = {variable.name for variable in f.variables(broken.formula)}
     return set(trace.steps[0]) - changing - read
+
+
+def name_run(trace: Trace, atoms: Sequence[Atom]) -> Trace:
+    """Return a run of a behaviour with the atoms of authors in place of its variables.
+
+    Variables that no atom replaces stay. Without *atoms* the run is returned as it is.
+    """
+    replaced = {atom.replaced for atom in atoms}
+    read = [{variable.name for variable in f.variables(atom.meaning)} for atom in atoms]
+    steps = tuple(
+        {
+            atom.variable.name: value_of(atom.meaning, values)
+            for atom, names in zip(atoms, read, strict=True)
+            if names <= values.keys()
+        }
+        | {name: value for name, value in values.items() if name not in replaced}
+        for values in trace.steps
+    )
+    auxiliary = {atom.variable.name for atom in atoms if atom.variable.is_auxiliary}
+    quiet = frozenset(atom.variable.name for atom in atoms if atom.is_quiet)
+    return Trace(steps, trace.loop, trace.auxiliary | auxiliary, quiet)
+
+
+def name_conjunct(conjunct: Conjunct, atoms: Sequence[Atom]) -> Conjunct:
+    """Return a conjunct about the variables of a behaviour with atoms in their place."""
+    names = {atom.replaced: atom.variable.name for atom in atoms}
+    return replace(conjunct, formula=rename_variables(conjunct.formula, names))
+
+
+def describe_named_run(trace: Trace, broken: Conjunct, atoms: Sequence[Atom]) -> tuple[str, ...]:
+    """Return the lines of ``describe_run`` with *atoms* in place of variables."""
+    return tuple(describe_run(name_run(trace, atoms), name_conjunct(broken, atoms)))
+
+
+def export_run(trace: Trace) -> dict[str, object]:
+    """Return a run for JSON, without auxiliary variables."""
+    steps = [
+        {name: value for name, value in values.items() if name not in trace.auxiliary}
+        for values in trace.steps
+    ]
+    return {"steps": steps, "loop": trace.loop}
 
 
 def witness_files(witnesses: Iterable[Witness]) -> Iterator[tuple[str, str]]:
@@ -90,12 +143,12 @@ def witness_diagram(witness: Witness) -> str:
     """Return the run as a sequence diagram, with the violated conjunct as its title."""
     broken = format_label(print_temporal(witness.broken))
     title = f"{format_label(witness.component)}\\nnot kept: {broken}"
-    hidden = _constant_variables(witness.trace, witness.broken)
+    hidden = _hidden_variables(witness.trace, witness.broken)
     steps = tuple(
         {name: value for name, value in values.items() if name not in hidden}
         for values in witness.trace.steps
     )
-    return run_diagram(title, Trace(steps, witness.trace.loop), witness.parties)
+    return run_diagram(title, replace(witness.trace, steps=steps), witness.parties)
 
 
 def run_diagram(title: str, trace: Trace, parties: Sequence[Party]) -> str:
@@ -198,13 +251,14 @@ def report_failure(
     subject: Subject,
     sink: Sink,
     notes: tuple[str, ...] = (),
+    atoms: Sequence[Atom] = (),
 ) -> None:
-    """Report a violated conjunct with the run that shows it and further notes."""
+    """Report a violated conjunct with the run that shows it, in terms of *atoms*, and notes."""
     conjunct = failure.conjunct
     sink.report(
         rule,
         subject,
-        notes=(*describe_run(failure.trace, conjunct), *notes),
+        notes=(*describe_named_run(failure.trace, conjunct, atoms), *notes),
         component=component,
         formula=print_formula(conjunct.wording or conjunct.formula),
         context=text_in_parentheses(conjunct),

@@ -15,7 +15,8 @@ from sysmlc.logic.activities.assumptions import derive_assumptions
 from sysmlc.logic.activities.derivation import derive_run_update, derive_token_updates
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
 from sysmlc.logic.components.component import Component, finish_name
-from sysmlc.logic.components.machines import PlacedMachine, find_unread_features
+from sysmlc.logic.components.machines import find_unread_features
+from sysmlc.logic.components.names import Atom, iter_atoms
 from sysmlc.logic.components.objects import Slot
 from sysmlc.logic.components.places import PlaceInBehaviour, iter_places
 from sysmlc.logic.components.signals import derive_events
@@ -50,8 +51,9 @@ class ComponentBehaviour(Struct, frozen=True):
     actions end. A variable in ``gaps`` is restricted by the model, but not here; the value is the
     reason in words. Variables in ``ends`` are gaps too: they tell when an action ends that may take
     as long as the environment wants. ``writers`` are the writers of the features with several.
-    ``places`` are its states and actions. ``constituents`` are ids: of the types of its parts, and
-    of the activities it performs. ``is_of_parts``: no contract describes a behaviour of its own.
+    ``places`` are its states and actions, ``atoms`` what authors write about its steps.
+    ``constituents`` are ids: of the types of its parts, and of the activities it performs.
+    ``is_of_parts``: no contract describes a behaviour of its own.
     """
 
     contract: Contract
@@ -59,6 +61,7 @@ class ComponentBehaviour(Struct, frozen=True):
     ends: frozenset[str] = frozenset()
     writers: Mapping[str, tuple[Writer, ...]] = {}
     places: tuple[PlaceInBehaviour, ...] = ()
+    atoms: tuple[Atom, ...] = ()
     constituents: frozenset[str] = frozenset()
     is_of_parts: bool = False
 
@@ -125,9 +128,8 @@ class _Description:
                 for conjunct in self._conjuncts
             ),
         )
-        variables = {slot: self.tree.read_slot(slot).variable for slot in writers}
         shared = {
-            variables[slot].name: tuple(
+            self.tree.read_slot(slot).variable.name: tuple(
                 replace(writer, condition=substitute(writer.condition, ends)) for writer in group
             )
             for slot, group in writers.items()
@@ -138,9 +140,14 @@ class _Description:
             for place in iter_places(self.component, formulas.graph, assigned)
         )
         long_ends = self.performances.long_ends
+        atoms = tuple(
+            replace(atom, meaning=substitute(atom.meaning, ends))
+            for atom in iter_atoms(self.component, formulas, contract.variables, wiring.accepted)
+        )
         inner = self.component.list_constituents()
-        gaps |= long_ends
-        return ComponentBehaviour(contract, gaps, frozenset(long_ends), shared, places, inner)
+        return ComponentBehaviour(
+            contract, gaps | long_ends, frozenset(long_ends), shared, places, atoms, inner
+        )
 
     def _make_formulas(self, name: str) -> PerformanceFormulas:
         """Return the formulas about the steps of all performances."""
@@ -193,7 +200,7 @@ class _Description:
             when = writer.condition
             if machine is not None:
                 write = slot, when, writer.value
-                writes_in_states.setdefault(_identify(machine), []).append(write)
+                writes_in_states.setdefault(machine.key, []).append(write)
                 overriding = [
                     other.condition
                     for owner, other in self._machine_writes
@@ -202,7 +209,7 @@ class _Description:
                 when = f.both(when, f.negate(f.either(*overriding)))
             writers.setdefault(slot, []).append(replace(writer, condition=when))
         for machine, machine_write in self._machine_writes:
-            earlier = writes_in_states.get(_identify(machine), [])
+            earlier = writes_in_states.get(machine.key, [])
             for condition, value in self._follow_writes(machine_write.value, earlier):
                 writers.setdefault(machine_write.slot, []).append(
                     Writer(f.both(machine_write.condition, condition), value, machine.element.id)
@@ -355,14 +362,6 @@ class _Description:
         for variable in variables:
             by_name.setdefault(variable.name, variable)
         return by_name
-
-
-def _identify(machine: PlacedMachine) -> tuple[str, str]:
-    """Return the id of a machine's element and the path of its object.
-
-    Parts of the same type have the same element.
-    """
-    return machine.element.id, machine.owner.path
 
 
 def add_stated_conjuncts(behaviour: ComponentBehaviour, stated: Contract) -> ComponentBehaviour:

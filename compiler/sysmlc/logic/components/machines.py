@@ -63,6 +63,11 @@ class PlacedMachine(Struct, frozen=True):
         """The machine, in its own variables."""
         return self.exploration.machine
 
+    @property
+    def key(self) -> tuple[str, str]:
+        """The id of the element and the path of the object; equal parts have the same element."""
+        return self.element.id, self.owner.path
+
     def rename(self, formula: Formula) -> Formula:
         """Return a formula about the machine in the variables of the component."""
         return rename_variables(formula, self.variables)

@@ -5,16 +5,19 @@ a state, ``m1.state`` and ``m1.event`` about a part, ``m1.using`` about a featur
 """
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from msgspec import Struct
+from msgspec.structs import replace
 
 from sysmlc.logic import formula as f
+from sysmlc.logic.activities.step_formulas import PerformanceFormulas
 from sysmlc.logic.components.machines import EVENT, PlacedMachine
 from sysmlc.logic.components.objects import ComponentError
 from sysmlc.logic.components.signals import derive_events
-from sysmlc.logic.contract import BooleanDomain, Domain
+from sysmlc.logic.composition.structure import join_path
+from sysmlc.logic.contract import BooleanDomain, Domain, Owner, Variable
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines.machine import element_id
 
@@ -31,6 +34,19 @@ class Meaning(Struct, frozen=True):
     domain: Domain
     name: str = ""
     """The name in the formula of the author."""
+
+
+class Atom(Struct, frozen=True):
+    """What an author may write about a step: a variable with the author's name, and its meaning.
+
+    ``replaced`` is the variable of the behaviour that runs show as this atom. A Boolean that is no
+    feature ``is_quiet``: the first step of a run lists it only if it is true.
+    """
+
+    variable: Variable
+    meaning: Formula
+    replaced: str
+    is_quiet: bool = False
 
 
 class ComponentNames:
@@ -155,3 +171,84 @@ def _iter_regions(component: "Component", machine: PlacedMachine) -> Iterator[tu
             for path in dict.fromkeys((name, ".".join((*outer, name)))):
                 yield f"{prefix}{path}.state", variable
                 yield f"{named}{path}.state", variable
+
+
+# -- atoms of runs ---------------------------------------------------------------------------------
+
+
+def iter_atoms(
+    component: "Component",
+    formulas: PerformanceFormulas,
+    variables: Iterable[Variable],
+    accepted: Collection[str],
+) -> Iterator[Atom]:
+    """Yield the atoms for the variables of a behaviour, except auxiliary ones.
+
+    *accepted* are the variables of acceptances. An atom is auxiliary if it repeats others: an
+    acceptance its event, a do behaviour the activity that it performs, and the end of an action
+    that takes one step the action.
+    """
+    names = _name_variables(component)
+    features = {feature.variable.name for feature in component.tree.used_slots.values()}
+    nodes = {node.run: node for node in formulas.graph.workers()}
+    paths = _shorten_paths(component)
+    done_inputs = {node.done.name: node for node in nodes.values() if isinstance(node.done, f.Var)}
+    repeated = {*accepted, *_list_performed_states(component)}
+    for variable in variables:
+        name = variable.name
+        node = nodes.get(name)
+        if node is not None and node.id in paths:
+            path, runs, done = paths[node.id], f.var(name), formulas.done_formula(node)
+            yield Atom(replace(variable, name=f"running({path})"), runs, name, is_quiet=True)
+            end = done.name if isinstance(done, f.Var) and done.name not in features else ""
+            finished = replace(
+                variable,
+                name=f"finished({path})",
+                owner=Owner.ENVIRONMENT if end in done_inputs else Owner.SYSTEM,
+                is_auxiliary=done == f.TRUE,
+            )
+            yield Atom(finished, f.both(runs, done), end, is_quiet=True)
+        elif not variable.is_auxiliary and (name in features or name not in done_inputs):
+            is_quiet = isinstance(variable.domain, BooleanDomain) and name not in features
+            shown = replace(variable, name=names.get(name, name), is_auxiliary=name in repeated)
+            yield Atom(shown, f.var(name), name, is_quiet)
+
+
+def _name_variables(component: "Component") -> dict[str, str]:
+    """Return the shortest name of each feature, region and event, by its variable."""
+    names: dict[str, list[str]] = {}
+    for slot, feature in component.tree.used_slots.items():
+        names[feature.variable.name] = [
+            join_path(object_.path, name)
+            for object_, name in component.tree.iter_joined_names(slot)
+        ]
+    for name, variables in _collect_states(component).items():
+        if len(variables) == 1:
+            names.setdefault(variables[0][0], []).append(name)
+    for path, variable in component.events.items():
+        names[variable] = [join_path(path, EVENT)]
+    return {
+        variable: min(spellings, key=lambda name: (name.count("."), len(name)))
+        for variable, spellings in names.items()
+    }
+
+
+def _shorten_paths(component: "Component") -> dict[str, str]:
+    """Return the shortest path that names an action without ambiguity, by its node."""
+    nodes: dict[tuple[str, ...], set[str]] = {}
+    for action in component.performances.paths:
+        for start in range(len(action.names)):
+            nodes.setdefault(action.names[start:], set()).add(action.node)
+    paths: dict[str, str] = {}
+    for action in component.performances.paths:
+        suffixes = (action.names[start:] for start in reversed(range(len(action.names))))
+        unique = next((path for path in suffixes if len(nodes[path]) == 1), action.names)
+        paths.setdefault(action.node, ".".join(unique))
+    return paths
+
+
+def _list_performed_states(component: "Component") -> Iterator[str]:
+    """Yield the variables of the do behaviours that are performances."""
+    for root in component.roots:
+        if root.machine is not None and root.state is not None:
+            yield root.machine.variables[root.state.do]

@@ -236,14 +236,18 @@ class ObjectTree:
 
     def find_features(self, slot: Slot) -> list[tuple[ComponentObject, Feature]]:
         """Return the features that share a slot, each with the object that has it."""
-        joined: list[tuple[ComponentObject, Feature]] = []
+        return [
+            (object_, self.context(object_).features[name])
+            for object_, name in self.iter_joined_names(slot)
+        ]
+
+    def iter_joined_names(self, slot: Slot) -> Iterator[tuple[ComponentObject, str]]:
+        """Yield the names of the features that share a slot, each with the object that has it."""
         for object_ in self.objects:
-            features = self.context(object_).features
-            for name in features:
+            for name in self.context(object_).features:
                 own = object_.path, name
                 if self._follow_parts(*own) == own and self.joined.find(own) == slot:
-                    joined.append((object_, features[name]))
-        return joined
+                    yield object_, name
 
     def read_slot(self, slot: Slot) -> FeatureSlot:
         """Return the variable of a slot. Raises ComponentError for values that are not finite."""

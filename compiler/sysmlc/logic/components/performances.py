@@ -307,7 +307,7 @@ class Performances:
         new = replace(node, id=ids[node.id], region=regions[node.region], run=run, done=done)
         is_work = node.kind is NodeKind.ACTION and bool(node.run)
         names = (*copy.caller.names, element.name)
-        if is_work and element.name:
+        if run and element.name:
             self.paths.append(ActionPath(names, new.id))
         if is_work and self._graph.targets(element, Edge.CALLS) and _is_call(element):
             new = self._add_call(new, element, copy, names, around)

@@ -273,12 +273,13 @@ class Trace(Struct, frozen=True):
 
     A run may also end because one side has no allowed values. Then ``loop`` is the number of steps,
     and the variables of this side have no value in the last step. ``auxiliary`` are the names of
-    auxiliary variables (``Variable``).
+    auxiliary variables (``Variable``), ``quiet`` those that texts omit while they have been false.
     """
 
     steps: tuple[Mapping[str, Literal], ...]
     loop: int
     auxiliary: frozenset[str] = frozenset()
+    quiet: frozenset[str] = frozenset()
 
 
 def shortest_path(runs: Runs, target: Node) -> list[Node]:
