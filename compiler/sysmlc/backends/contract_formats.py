@@ -19,7 +19,7 @@ from sysmlc.logic import formats
 from sysmlc.logic.components.derivation import ComponentBehaviour
 from sysmlc.logic.contract import Class, Contract
 from sysmlc.logic.formats import NotExpressibleError
-from sysmlc.logic.formula import variables
+from sysmlc.logic.formula import variable_names
 from sysmlc.logic.printing import print_formula
 from sysmlc.support.output import Output, assign_file_names
 
@@ -107,7 +107,7 @@ def add_behaviour(requirements: Contract, behaviour: ComponentBehaviour) -> Cont
         for conjunct in requirements.assumptions
         # Something that is not described decides the initial value of such a variable.
         if not conjunct.is_derived
-        or behaviour.gaps.keys().isdisjoint(v.name for v in variables(conjunct.formula))
+        or behaviour.gaps.keys().isdisjoint(variable_names(conjunct.formula))
     )
     steps = (
         conjunct

@@ -255,6 +255,11 @@ def variables(formula: Formula) -> tuple[Var, ...]:
             return ()
 
 
+def variable_names(*formulas: Formula) -> set[str]:
+    """Return the names of all variables of the formulas, primed or not."""
+    return {variable.name for formula in formulas for variable in variables(formula)}
+
+
 def split_conjunction(formula: Formula) -> tuple[Formula, ...]:
     """Return the operands of a conjunction, or a tuple of any other formula alone."""
     return formula.args if isinstance(formula, Apply) and formula.op is _AND else (formula,)

@@ -14,7 +14,7 @@ from msgspec.structs import replace
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Class, Conjunct, Contract, IntegerDomain, Owner, Variable
 from sysmlc.logic.evaluate import compile_evaluation
-from sysmlc.logic.formula import Formula, Literal, Op, has_past, has_primes, variables
+from sysmlc.logic.formula import Formula, Literal, Op, has_past, has_primes, variable_names
 from sysmlc.logic.reduction.contract_reduction import as_ltl, reduce_contract
 from sysmlc.logic.reduction.history import HistoryBit
 
@@ -44,7 +44,7 @@ class Monitor(Struct, frozen=True):
         needed: set[str] = set()
         worklist = [formula]
         while worklist:
-            names = {variable.name for variable in variables(worklist.pop())} - needed
+            names = variable_names(worklist.pop()) - needed
             needed |= names
             worklist += [rules[name] for name in names if name in rules]
         return needed - rules.keys()

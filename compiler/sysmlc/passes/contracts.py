@@ -351,5 +351,5 @@ def _extend(contract: Contract, conjuncts: list[Conjunct]) -> Contract:
 def _reads_only_inputs(contract: Contract, formula: Formula) -> bool:
     owners = {variable.name: variable.owner for variable in contract.variables}
     # A formula without variables assumes nothing of the environment.
-    used = [owners[variable.name] for variable in f.variables(formula)]
+    used = [owners[name] for name in f.variable_names(formula)]
     return bool(used) and all(owner is Owner.ENVIRONMENT for owner in used)

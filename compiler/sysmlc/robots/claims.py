@@ -7,7 +7,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.logic.contract import Conjunct, Contract
-from sysmlc.logic.formula import variables
+from sysmlc.logic.formula import variable_names
 from sysmlc.robots import contract_terms as terms
 from sysmlc.robots.environment_contract import Sharing, environment_contract
 from sysmlc.robots.joint_proof import Counterexample, JointProof, UndecidedError
@@ -225,7 +225,7 @@ def _describe_trace(trace: Trace | None, broken: Conjunct) -> tuple[str, ...]:
 
 
 def _names_of(conjunct: Conjunct) -> set[str]:
-    return {variable.name for variable in variables(conjunct.formula)}
+    return variable_names(conjunct.formula)
 
 
 def _is_about_offers(conjunct: Conjunct) -> bool:

@@ -80,7 +80,7 @@ def variable_names(robot: Robot) -> tuple[str, ...]:
 
 
 def _names_in(conjunct: Conjunct) -> set[str]:
-    return {variable.name for variable in f.variables(conjunct.formula)}
+    return f.variable_names(conjunct.formula)
 
 
 def _goal_variable(study: Study, robot: Robot) -> Variable:

@@ -329,7 +329,7 @@ def report_unreachable(
 
 
 def _names_of(conjuncts: Iterable[Conjunct]) -> set[str]:
-    return {variable.name for conjunct in conjuncts for variable in f.variables(conjunct.formula)}
+    return f.variable_names(*(conjunct.formula for conjunct in conjuncts))
 
 
 def _widen(variable: Variable) -> Variable:

@@ -82,7 +82,7 @@ def _compares_indices(atom: Formula, variable_domains: Domains) -> bool:
     """
     if isinstance(atom, Apply) and is_boolean(atom.args[0], variable_domains):
         return False
-    atom_domains = {variable_domains[variable.name] for variable in f.variables(atom)}
+    atom_domains = {variable_domains[name] for name in f.variable_names(atom)}
     return sum(isinstance(domain, EnumerationDomain) for domain in atom_domains) <= 1
 
 

@@ -292,7 +292,7 @@ def _name_constraint(statement: Statement) -> str:
 
 
 def _report_ranges(graph: Graph, scope: Scope, formula: Formula, sink: Sink) -> None:
-    used = {variable.name for variable in f.variables(formula)}
+    used = f.variable_names(formula)
     for feature in scope.context.features.values():
         if feature.variable in used:
             report_range(graph, feature, sink)

@@ -13,7 +13,7 @@ from sysmlc.logic.contract import Contract, Domain, Owner, Variable
 from sysmlc.logic.expressions.context import Context, context_of, find_literal
 from sysmlc.logic.expressions.elaboration import Symbol
 from sysmlc.logic.expressions.features import Feature
-from sysmlc.logic.formula import Apply, Const, Formula, Literal, Var, prime, var, variables
+from sysmlc.logic.formula import Apply, Const, Formula, Literal, Var, prime, var, variable_names
 from sysmlc.logic.requirements.statements import (
     definition_of,
     find_redefining_operation,
@@ -133,12 +133,12 @@ class Scope(Struct, frozen=True):
 
     def select_variables(self, formulas: Iterable[Formula]) -> tuple[Variable, ...]:
         """Return the variables of the formulas, in the order in which the subject declares them."""
-        names = {variable.name for formula in formulas for variable in variables(formula)}
+        names = variable_names(*formulas)
         return tuple(variable for name, variable in self.variables.items() if name in names)
 
     def is_about_inputs(self, formula: Formula) -> bool:
         """Whether the formula has variables, and the environment decides all of them."""
-        owners = {self.variables[variable.name].owner for variable in variables(formula)}
+        owners = {self.variables[name].owner for name in variable_names(formula)}
         return owners == {Owner.ENVIRONMENT}
 
 

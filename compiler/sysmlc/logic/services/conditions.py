@@ -226,7 +226,7 @@ def _find_symbol(context: Context, name: str) -> Symbol | None:
 
 def _is_precondition(context: Context, formula: Formula) -> bool:
     """Whether the formula reads only inputs of the service."""
-    names = {feature.name for feature in f.variables(formula)}
+    names = f.variable_names(formula)
     return all(
         is_input(feature) for feature in context.features.values() if feature.variable in names
     )

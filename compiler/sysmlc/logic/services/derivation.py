@@ -82,11 +82,7 @@ def _derive_contract(component: str, service: Service) -> Contract:
 
 
 def _make_call(service: Service) -> tuple[_ServiceCall, list[Variable]]:
-    names_used = {
-        feature.name
-        for condition in service.conditions
-        for feature in f.variables(condition.formula)
-    }
+    names_used = f.variable_names(*(condition.formula for condition in service.conditions))
     features = [
         feature for feature in service.context.features.values() if feature.variable in names_used
     ]
@@ -159,7 +155,7 @@ def _derive_guarantees(call: _ServiceCall) -> Iterator[Conjunct]:
 
 def _reads_any(formula: Formula, features: tuple[Feature, ...]) -> bool:
     names = {feature.variable for feature in features}
-    return any(feature.name in names for feature in f.variables(formula))
+    return not f.variable_names(formula).isdisjoint(names)
 
 
 def _equality(left: Formula, right: Formula, feature: Feature) -> Formula:

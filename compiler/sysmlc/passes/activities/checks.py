@@ -18,7 +18,7 @@ from sysmlc.logic.activities.token_graph import (
     TokenGraph,
     TokenNode,
 )
-from sysmlc.logic.formula import Formula, variables
+from sysmlc.logic.formula import Formula, variable_names, variables
 from sysmlc.passes.activities import rules
 from sysmlc.passes.activities import safety as activity_search
 from sysmlc.passes.activities.drawing import CannotPlayError
@@ -104,7 +104,7 @@ class _Checker:
     def _list_open_branches(self, guarded: list[TokenEdge]) -> list[list[TokenEdge]] | None:
         """Return the open branches of each valuation of the variables; None above the limit."""
         conditions = [(edge, _guard_condition(edge)) for edge in guarded]
-        names = {v.name for _, c in conditions for v in variables(c)}
+        names = variable_names(*(condition for _, condition in conditions))
         opens = [(edge, evaluate.compile_evaluation(c)) for edge, c in conditions]
         declared = (*self.tokens.inputs, *(store.variable for store in self.tokens.stores))
         read = {v.name: v.domain for v in declared if v.name in names}

@@ -167,7 +167,7 @@ def _list_inputs(part: Part, conjunct: Conjunct) -> set[str]:
 
 
 def _list_variables(conjunct: Conjunct) -> set[str]:
-    return {variable.name for variable in f.variables(conjunct.formula)}
+    return f.variable_names(conjunct.formula)
 
 
 def _list_defined_names(whole: Contract) -> set[str]:
@@ -217,7 +217,7 @@ def _contract_with_environment(composite: Composite) -> Contract:
 
 
 def _is_about_outside(conjunct: Conjunct, inner_names: set[str], own_names: set[str]) -> bool:
-    names = {variable.name for variable in f.variables(conjunct.formula)}
+    names = f.variable_names(conjunct.formula)
     return not names <= inner_names and not names & (inner_names - own_names)
 
 

@@ -157,8 +157,5 @@ def build_dependency_graph(composite: Composite, universe: Universe) -> Dependen
         for part in composite.parts
         for dependency in find_dependencies(part.contract, universe)
     )
-    wires = tuple(
-        frozenset(variable.name for variable in f.variables(wire.formula))
-        for wire in composite.wiring
-    )
+    wires = tuple(frozenset(f.variable_names(wire.formula)) for wire in composite.wiring)
     return DependencyGraph(dependencies, wires)

@@ -22,7 +22,7 @@ from sysmlc.logic.contract import (
     Variable,
 )
 from sysmlc.logic.domains import size, values
-from sysmlc.logic.formula import Formula, Var, prime, variables
+from sysmlc.logic.formula import Formula, Var, prime, variable_names, variables
 from sysmlc.logic.printing import print_formula, print_literal
 from sysmlc.synthesis import rules
 from sysmlc.synthesis.algebra.fair_systems import FairSystem, Runs
@@ -80,7 +80,7 @@ def state_assumptions_of_next_step(contract: Contract) -> Contract:
 
 
 def _split_assumption(conjunct: Conjunct, inputs: set[str]) -> Iterator[Conjunct]:
-    names = {variable.name for variable in variables(conjunct.formula)}
+    names = variable_names(conjunct.formula)
     if (
         conjunct.class_ is not Class.SAFETY
         or not names <= inputs
@@ -98,18 +98,14 @@ def _sole_owner(conjunct: Conjunct, owners: dict[str, Owner]) -> Owner | None:
     A conjunct about two steps is decided by the owner of the next values. A liveness conjunct has
     no sole owner, because the other side may bring it about through its assumptions and guarantees.
     """
-    names = _primed_names(conjunct.formula) or {
-        variable.name for variable in variables(conjunct.formula)
-    }
+    names = _primed_names(conjunct.formula) or variable_names(conjunct.formula)
     found_owners = {owners[name] for name in names if name in owners}
     is_immediate = conjunct.class_ in (Class.INIT, Class.SAFETY)
     return next(iter(found_owners)) if len(found_owners) == 1 and is_immediate else None
 
 
 def _owners_of(conjunct: Conjunct, owners: dict[str, Owner]) -> set[Owner]:
-    return {
-        owners[variable.name] for variable in variables(conjunct.formula) if variable.name in owners
-    }
+    return {owners[name] for name in variable_names(conjunct.formula) if name in owners}
 
 
 def _primed_names(formula: Formula) -> set[str]:
