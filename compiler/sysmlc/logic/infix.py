@@ -5,7 +5,7 @@ does not run the grammar, because importing Lark and building its tables takes 0
 (decision 22).
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import ClassVar, NamedTuple, NoReturn
 
 from sysmlc.logic import domains
@@ -24,6 +24,7 @@ from sysmlc.logic.syntax import (
     tokenize,
 )
 from sysmlc.support.interpreter import allow_recursion
+from sysmlc.support.suggestions import find_similar
 
 MAX_DEPTH = 200
 """Most levels of nesting; later steps walk through formulas recursively."""
@@ -70,8 +71,19 @@ class FormulaReader:
     def require_boolean(self, term: Term) -> Formula:
         """Return the formula of a term that must be Boolean. Raises FormulaError."""
         if term.kind != BOOLEAN:
-            raise FormulaError(f"{self.describe(term)} is not Boolean", term.offset)
+            reason = f"{self.describe(term)} is not Boolean{self._suggest_comparison(term)}"
+            raise FormulaError(reason, term.offset)
         return term.formula
+
+    def _suggest_comparison(self, term: Term) -> str:
+        """Return the advice to compare a literal that stands where a condition is expected."""
+        if term.kind != WORD or not isinstance(term.formula, Const):
+            return ""
+        literal = str(term.formula.value)
+        for name, domain in self.variables.items():
+            if domains.contains(domain, literal):
+                return f"; did you mean '{name}={literal}'?"
+        return ""
 
     def require_number(self, term: Term) -> Formula:
         """Return the formula of a term that must be a number. Raises FormulaError."""
@@ -235,7 +247,17 @@ class FormulaReader:
             return self.build_variable(token, self.cursor.accept("'"))
         if any(domains.contains(domain, token.text) for domain in self.variables.values()):
             return Term(Const(token.text), WORD, token.offset)
-        raise FormulaError(f"'{token.text}' is neither a variable nor a literal", token.offset)
+        reason = f"'{token.text}' is neither a variable nor a literal"
+        similar = find_similar(token.text, self._iter_words())
+        advice = f"; did you mean '{similar}'?" if similar else ""
+        raise FormulaError(f"{reason}{advice}", token.offset)
+
+    def _iter_words(self) -> Iterator[str]:
+        """Yield the names of variables and the literals of enumerations."""
+        for name, domain in self.variables.items():
+            yield name
+            if isinstance(domain, EnumerationDomain):
+                yield from domain.literals
 
     def build_variable(self, token: Token, is_primed: bool) -> Term:
         """Return a variable as a term; primed, it is the variable's value in the next step."""

@@ -24,7 +24,8 @@ from sysmlc.logic.machines.machine import element_id
 if TYPE_CHECKING:
     from sysmlc.logic.components.component import Component
 
-_ACTION = re.compile(r"(running|finished)\(\s*([\w.]+)\s*\)")
+_ACTION = re.compile(r"(?:([\w.]+)\.)?(running|finished)\(\s*([\w.]+)\s*\)")
+"""``running(load.grip)``, or with the path of a part in front: ``robot.running(grip)``."""
 
 
 class Meaning(Struct, frozen=True):
@@ -60,7 +61,7 @@ class ComponentNames:
         """Return what a name denotes, or None. Raises ComponentError if it is ambiguous."""
         action = _ACTION.fullmatch(name)
         if action is not None:
-            return self._find_action(action[1], action[2])
+            return self._find_action(action[2], ".".join(filter(None, (action[1], action[3]))))
         if name in self._states:
             variables = self._states[name]
             if len(variables) > 1:
@@ -70,6 +71,30 @@ class ComponentNames:
         if last == EVENT and self._component.tree.find_object(path) is not None:
             return self._find_event(path)
         return (None if dot else self._find_own(name)) or self._find_feature(name)
+
+    def list_names(self, kind: str = "running") -> list[str]:
+        """List the shortest names of regions, events and actions; *kind* is asked of actions."""
+        regions: dict[str, str] = {}
+        for name, variables in self._states.items():
+            if len(variables) == 1:
+                variable, _ = variables[0]
+                regions[variable] = min(name, regions.get(variable, name), key=len)
+        events = (f"{path}.{EVENT}" if path else EVENT for path in self._component.events)
+        actions = (f"{kind}({path})" for path in self._list_actions())
+        return [*regions.values(), *events, *actions]
+
+    def _list_actions(self) -> Iterator[str]:
+        """Yield the shortest unambiguous path of each action."""
+        paths = self._component.performances.paths
+        nodes = list(dict.fromkeys(action.node for action in paths))
+        nodes_by_path: dict[str, set[str]] = {}
+        for action in paths:
+            for start in range(len(action.names)):
+                nodes_by_path.setdefault(".".join(action.names[start:]), set()).add(action.node)
+        for node in nodes:
+            unique = [path for path, targets in nodes_by_path.items() if targets == {node}]
+            if unique:
+                yield min(unique, key=len)
 
     def _find_event(self, path: str) -> Meaning | None:
         name = self._component.events.get(path)
@@ -118,24 +143,28 @@ class ComponentNames:
 
     def _find_action(self, kind: str, path: str) -> Meaning | None:
         wanted = tuple(path.split("."))
-        actions = [
-            action
-            for action in self._component.performances.paths
-            if action.names[-len(wanted) :] == wanted
-        ]
+        paths = self._component.performances.paths
+        actions = [action for action in paths if action.names[-len(wanted) :] == wanted]
+        actions = actions or [action for action in paths if _is_within(wanted, action.names)]
         exact = {action.node for action in actions if action.names == wanted}
         candidates = list(exact if len(exact) == 1 else {action.node for action in actions})
         if not candidates:
             return None
         if len(candidates) > 1:
-            paths = " or ".join(sorted({".".join(action.names) for action in actions}))
-            raise ComponentError(f"'{path}' is performed in several places: write {paths}")
+            texts = " or ".join(sorted({".".join(action.names) for action in actions}))
+            raise ComponentError(f"'{path}' is performed in several places: write {texts}")
         formulas = self._component.formulas
         node = formulas.graph.node(candidates[0])
         running: Formula = f.var(node.run)
         if kind == "running":
             return Meaning(running, BooleanDomain())
         return Meaning(f.both(running, formulas.done_formula(node)), BooleanDomain())
+
+
+def _is_within(wanted: tuple[str, ...], names: tuple[str, ...]) -> bool:
+    """Whether a path consists of some names of another path in their order, up to the last one."""
+    remaining = iter(names)
+    return names[-1] == wanted[-1] and all(name in remaining for name in wanted)
 
 
 def _collect_states(component: "Component") -> Mapping[str, list[tuple[str, Domain]]]:

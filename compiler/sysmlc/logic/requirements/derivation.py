@@ -49,7 +49,7 @@ NOT_A_FORMULA = rule(
     Severity.ERROR,
     "the formula of '{constraint}' in requirement '{requirement}' is not understood: {reason}",
     help="write LTL (G F X U or [] <> X U), or in FRET 'when P, the {about} shall eventually "
-    "satisfy Q', over the features of '{about}': {variables}",
+    "satisfy Q', with these names: {names}",
 )
 NOT_FORMAL = rule(
     "SM523",
@@ -261,7 +261,7 @@ def _read_temporal(graph: Graph, scope: Scope, statement: Statement, sink: Sink)
             constraint=_name_constraint(statement),
             requirement=statement.requirement.name,
             about=scope.context.name,
-            variables=", ".join(scope.domains),
+            names=scope.describe_names(),
             reason=describe_error(error, body),
         )
         return None

@@ -21,11 +21,15 @@ from sysmlc.logic.requirements.statements import (
 )
 from sysmlc.logic.simplification import rebuild
 from sysmlc.logic.syntax import FormulaError
+from sysmlc.support.suggestions import find_similar
 
 _NAME = re.compile(
-    r"(?:running|finished)\(\s*[\w.]+\s*\)|[^\W\d]\w*(?:(?:\.|\#\(\d+\)\.)[^\W\d]\w*)*"
+    r"(?:[^\W\d][\w.]*\.)?(?:running|finished)\(\s*[\w.]+\s*\)"
+    r"|[^\W\d]\w*(?:(?:\.|\#\(\d+\)\.)[^\W\d]\w*)*"
 )
 """A name in a formula: of an action, dotted, or plain."""
+_MAX_NAMES = 12
+"""Most names that a message lists."""
 _SELF = ("self", "this")
 """Words for the subject in KerML, OCL and Alf."""
 _COMPONENT = re.compile(r"\s+shall\b", re.IGNORECASE)
@@ -86,9 +90,35 @@ class Scope(Struct, frozen=True):
         return self.names.find(name) or (self.names.find(rest) if rest else None)
 
     def _drop_subject(self, name: str) -> str:
-        """Return the name behind that of the subject; empty if another name is the first one."""
-        first, _, rest = name.partition(".")
-        return rest if first in (*self.component_names, *_SELF) else ""
+        """Return the name without that of the subject; empty if another name is the first one."""
+        opening = name.rfind("(") + 1
+        for start in dict.fromkeys((0, opening)):
+            first, _, rest = name[start:].partition(".")
+            if first in (*self.component_names, *_SELF):
+                return name[:start] + rest
+        return ""
+
+    def list_names(self, kind: str = "running") -> list[str]:
+        """List the names that formulas about the subject may use; *kind* is asked of actions."""
+        features = self.context.features.values()
+        variables = (feature.variable for feature in features if feature.domain is not None)
+        names = self.variables if self.names is None else self.names.list_names(kind)
+        return list(dict.fromkeys((*variables, *names)))
+
+    def describe_names(self) -> str:
+        """Return the list of names for a message, shortened if there are many."""
+        names = self.list_names()
+        further = f" and {len(names) - _MAX_NAMES} more" if len(names) > _MAX_NAMES else ""
+        return ", ".join(names[:_MAX_NAMES]) + further
+
+    def _describe_unknown(self, name: str) -> str:
+        """Return the message about a dotted name, or one of an action, that denotes nothing."""
+        is_action = name.endswith(")")
+        kind = "finished" if "finished(" in name else "running"
+        similar = find_similar(self._drop_subject(name) or name, self.list_names(kind))
+        advice = f"; did you mean '{similar}'?" if similar else ""
+        sort = "action" if is_action else "feature, state or event"
+        return f"'{name}' denotes no {sort} of '{self.context.name}'{advice}"
 
     def replace_names(self, text: str) -> tuple[str, dict[str, Meaning]]:
         """Replace names that are no variables (``tank.filling``, ``running(pick)``) by variables.
@@ -113,8 +143,11 @@ class Scope(Struct, frozen=True):
             feature = self.find_feature(name)
             if feature is not None and feature.has_several_values:
                 raise FormulaError(f"'{name}' has several values", match.start())
-            feature = None if is_plain else feature
-            return name if feature is None else feature.variable.ljust(len(name))
+            if is_plain:
+                return name
+            if feature is None:
+                raise FormulaError(self._describe_unknown(name), match.start())
+            return feature.variable.ljust(len(name))
         if is_plain and (name in self.variables or isinstance(meaning.formula, Const)):
             return name
         variable = f"__{len(meanings)}"

@@ -1,0 +1,75 @@
+"""Names in the formulas of requirements: paths of parts, and advice for unknown names."""
+
+import json
+
+import pytest
+
+LINE = """package Line {{
+  private import ScalarValues::*;
+  attribute def Go;
+  part def Robot {{
+    attribute holding : Boolean := false;
+    exhibit state machine {{
+      entry; then Ask;
+      state Ask;
+      state Busy {{ do action handle {{
+        action grip {{ assign holding := true; }} then action place {{ assign holding := false; }}
+      }} }}
+      transition first Ask accept Go then Busy;
+      transition first Busy then Ask;
+    }}
+  }}
+  part def Cell {{ part robot : Robot; }}
+  requirement a {{ subject {subject};
+    require constraint {{ language "LTL" /* {formula} */ }} }}
+}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("formula", "reason"),
+    [
+        (
+            "G !running(grap)",
+            "'running(grap)' denotes no action of 'Robot'; did you mean 'running(grip)'?",
+        ),
+        (
+            "F finished(plce)",
+            "'finished(plce)' denotes no action of 'Robot'; did you mean 'finished(place)'?",
+        ),
+        ("G state!=Bsy", "'Bsy' is neither a variable nor a literal; did you mean 'Busy'?"),
+        ("G event!=Goo", "'Goo' is neither a variable nor a literal; did you mean 'Go'?"),
+        (
+            "G !r.holdin",
+            "'r.holdin' denotes no feature, state or event of 'Robot'; did you mean 'holding'?",
+        ),
+        ("G (Busy -> F holding)", "'Busy' is not Boolean; did you mean 'state=Busy'?"),
+    ],
+)
+def test_an_unknown_name_in_a_formula_is_compared_with_those_of_the_component(
+    workspace, all_passes, formula, reason
+):
+    workspace.write("line.sysml", LINE.format(subject="r : Robot", formula=formula))
+    result = workspace.sysmlc("contracts", "check", "line.sysml")
+    assert result.exit_code == 1
+    assert f"is not understood: {reason} (column" in result.stderr
+    assert (
+        "with these names: holding, state, event, running(handle), running(grip)" in result.stderr
+    )
+
+
+@pytest.mark.parametrize(
+    ("subject", "formula"),
+    [
+        ("r : Robot", "G (finished(r.grip) -> X r.holding)"),
+        ("r : Robot", "G (r.finished(grip) -> X r.holding)"),
+        ("c : Cell", "G (finished(robot.grip) -> X robot.holding)"),
+        ("c : Cell", "G (robot.finished(grip) -> X robot.holding)"),
+        ("c : Cell", "G (c.robot.finished(handle.grip) -> X c.robot.holding)"),
+    ],
+)
+def test_the_path_of_a_part_may_precede_its_actions(workspace, all_passes, subject, formula):
+    workspace.write("line.sysml", LINE.format(subject=subject, formula=formula))
+    result = workspace.sysmlc("contracts", "check", "line.sysml", "--format", "json")
+    verdicts = [item["verdict"] for item in json.loads(result.stdout)["requirements"]]
+    assert [result.exit_code, verdicts] == [0, ["holds"]]
