@@ -57,7 +57,7 @@ def compare(model, file, workspace):
     assert behaviour["unreachable"] == model.unreachable
     assert behaviour["write_conflicts"] == model.write_conflicts
     expected = NEVER.get(model.path.stem, {})
-    for member in ("never_taken", "never_true", "never_changed"):
+    for member in ("never_taken", "never_accepted", "never_true", "never_changed"):
         assert behaviour[member] == expected.get(member, []), member
     codes = {diagnostic["code"] for diagnostic in document["diagnostics"]}
     assert not codes & {"SM561", "SM562", "SM595", "SM596", "SM597"}

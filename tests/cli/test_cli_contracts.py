@@ -170,6 +170,7 @@ def check_rule_example(rule, text, workspace):
 
 
 BEHAVIOUR_RULES = {
+    "SM516": rules.NEVER_ACCEPTED,
     "SM517": rules.NEVER_TAKEN,
     "SM518": rules.GUARD_NEVER_HOLDS,
     "SM519": rules.NEVER_CHANGED,

@@ -4,6 +4,8 @@ import re
 
 import pytest
 
+from sysmlc.synthesis import rules
+
 pytestmark = pytest.mark.usefixtures("all_passes")
 
 
@@ -187,6 +189,54 @@ PUMP = """\
 )
 def test_a_branch_counts_as_taken_at_the_start(second, findings, find_unreached):
     assert find_unreached(PUMP.replace("SECOND", second), "plant.uml") == findings
+
+
+# -- events ----------------------------------------------------------------------------------------
+
+TIME_EVENT = """<packagedElement xmi:type="uml:TimeEvent" xmi:id="{id}" isRelative="true">
+ <when xmi:type="uml:TimeExpression" xmi:id="{id}.w">
+  <expr xmi:type="uml:LiteralInteger" xmi:id="{id}.e" value="{count}"/>
+ </when>
+</packagedElement>
+"""
+COLD_AGAIN = """<transition xmi:id="t4" source="cold" target="cold">
+ <trigger xmi:id="t4.t" event="reset"/>
+</transition>
+"""
+
+
+@pytest.mark.parametrize(
+    ("steps_until_reset", "findings"),
+    [
+        (
+            2,
+            [
+                "34: SM516 no run of 'Plant::Pump' accepts time event 'after 4 steps' of "
+                "transition 'Cold to check', although runs wait for it"
+            ],
+        ),
+        # Either may be taken, as both occur in the same step.
+        (4, []),
+    ],
+)
+def test_one_of_several_triggers_that_no_run_accepts(steps_until_reset, findings, find_unreached):
+    late = TIME_EVENT.format(id="late", count=4)
+    reset = TIME_EVENT.format(id="reset", count=steps_until_reset)
+    text = PUMP.replace("SECOND", "c").replace("</uml:Model>", f"{late}{reset}</uml:Model>")
+    trigger = '<trigger xmi:id="t3.t" event="eg"/>\n'
+    text = text.replace(trigger, f'{trigger}<trigger xmi:id="t3.u" event="late"/>\n')
+    text = text.replace("  </region>", f"{COLD_AGAIN}  </region>")
+    assert find_unreached(text, "plant.uml") == findings
+
+
+def test_an_action_that_waits_for_a_signal_that_is_never_sent(find_unreached):
+    text = rules.NEVER_ACCEPTED.read_page().wrong
+    assert find_unreached(text)[1:] == [
+        "11: SM517 no run of 'P::Cell' takes transition 'Watch to Watch [enabled]' of 'sensor', "
+        "although runs reach its source",
+        "18: SM516 no run of 'P::Cell' accepts the event of action 'gripper.work.wait', although "
+        "runs wait for it",
+    ]
 
 
 # -- submachines -----------------------------------------------------------------------------------

@@ -59,6 +59,7 @@ NEVER_WRITTEN = {
             "component",
             "unreachable",
             "never_taken",
+            "never_accepted",
             "never_true",
             "never_changed",
             "write_conflicts",

@@ -43,7 +43,7 @@ NOT_COMPILED = {
         ("SM506", "SM508", "SM524", "SM525", "SM526", "SM548"), "'sysmlc contracts check' composes"
     ),
     **dict.fromkeys(
-        ("SM517", "SM518", "SM519", "SM557", "SM558", "SM559"),
+        ("SM516", "SM517", "SM518", "SM519", "SM557", "SM558", "SM559"),
         "'sysmlc contracts check' finds them",
     ),
     **dict.fromkeys(("SM560", "SM561", "SM562"), "'sysmlc contracts check' compares"),

@@ -285,6 +285,7 @@ def list_behaviours(results: "Iterable[CheckedContract]") -> list[dict[str, obje
             "component": result.verdict.component,
             "unreachable": result.findings.list_unreachable(PlaceKind.ACTIVITY),
             "never_taken": result.findings.list_unreachable(PlaceKind.TRANSITION),
+            "never_accepted": result.findings.list_unreachable(PlaceKind.EVENT),
             "never_true": result.findings.list_unreachable(PlaceKind.GUARD),
             "never_changed": result.findings.list_unreachable(PlaceKind.FEATURE),
             "write_conflicts": list(result.findings.conflicts),

@@ -89,6 +89,7 @@ class BehaviourFindings(Struct, frozen=True):
 UNREACHABLE_RULES = {
     PlaceKind.ACTIVITY: rules.UNREACHABLE,
     PlaceKind.TRANSITION: rules.NEVER_TAKEN,
+    PlaceKind.EVENT: rules.NEVER_ACCEPTED,
     PlaceKind.GUARD: rules.GUARD_NEVER_HOLDS,
     PlaceKind.FEATURE: rules.NEVER_CHANGED,
 }

@@ -178,6 +178,13 @@ NEVER_TAKEN = rule(
     "no run of '{component}' takes {name}, although runs reach its source",
     help="correct its guard or trigger, or what comes first; or remove the transition",
 )
+NEVER_ACCEPTED = rule(
+    "SM516",
+    "event-never-accepted",
+    Severity.INFO,
+    "no run of '{component}' accepts {name}, although runs wait for it",
+    help="let a part send it, or correct the guard or what is taken before; or remove the trigger",
+)
 GUARD_NEVER_HOLDS = rule(
     "SM518",
     "guard-never-holds",

@@ -7,18 +7,23 @@ from typing import TYPE_CHECKING
 from msgspec import Struct
 from msgspec.structs import replace
 
+from sysmlc.ir import Edge
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.components.machines import PlacedMachine
 from sysmlc.logic.composition.structure import join_path
 from sysmlc.logic.contract import BooleanDomain, Variable
 from sysmlc.logic.formula import Formula
-from sysmlc.logic.machines.descriptions import name_transition
+from sysmlc.logic.machines.descriptions import name_occurrence, name_transition
 from sysmlc.logic.machines.machine import Transition, element_id
+from sysmlc.logic.machines.moves import Move, trigger_condition
 from sysmlc.logic.simplification import substitute
 
 if TYPE_CHECKING:
     from sysmlc.logic.components.component import Component
+
+
+_ACCEPTING = ("accept", "accept-call")
 
 
 class PlaceKind(StrEnum):
@@ -27,6 +32,8 @@ class PlaceKind(StrEnum):
     ACTIVITY = "activity"
     """A state or an action."""
     TRANSITION = "transition"
+    EVENT = "event"
+    """One of several triggers of a transition, or what an action waits for."""
     GUARD = "guard"
     FEATURE = "feature"
 
@@ -34,9 +41,10 @@ class PlaceKind(StrEnum):
 class PlaceInBehaviour(Struct, frozen=True):
     """A place that runs should reach, its name in the component, and when it is reached.
 
-    It is a state or an action that is active, a transition that is taken, a guard that lets a token
-    pass, or a feature that changes. The question makes sense only in runs that reach ``within``:
-    the source of a transition, a state or pseudostate, or the decision with the guard.
+    It is a state or an action that is active, a transition that is taken, an event that is
+    accepted, a guard that lets a token pass, or a feature that changes. The question makes sense
+    only in runs that reach ``within``: the source of a transition, a state or pseudostate, the
+    transition or action that accepts the event, or the decision with the guard.
     """
 
     name: str
@@ -56,10 +64,10 @@ class PlaceInBehaviour(Struct, frozen=True):
 def iter_places(
     component: "Component", tokens: TokenGraph, assigned: Iterable[tuple[str, Variable]]
 ) -> Iterator[PlaceInBehaviour]:
-    """Yield states, actions, transitions, guards of decisions, and the features that are assigned.
+    """Yield states, actions, transitions, events, guards of decisions, and features.
 
-    *assigned* are names and variables of features. Conditions may have placeholders for the ends of
-    performances.
+    *assigned* are names and variables of the features that are assigned. Conditions may have
+    placeholders for the ends of performances.
     """
     for machine in component.machines:
         yield from _merge_copies(_iter_machine_places(component, machine))
@@ -68,7 +76,13 @@ def iter_places(
         names.setdefault(action.node, action.names)
     for id, path in names.items():
         node = tokens.node(id)
-        yield PlaceInBehaviour(".".join(path), node.origin, f.var(node.run))
+        running = f.var(node.run)
+        yield PlaceInBehaviour(".".join(path), node.origin, running)
+        element = component.graph.get(node.origin)
+        if node.done is not None and element is not None and element.subkind in _ACCEPTING:
+            text = f"the event of action '{'.'.join(path)}'"
+            accepts = f.both(running, node.done)
+            yield PlaceInBehaviour(text, node.origin, accepts, PlaceKind.EVENT, running)
     for edge in tokens.edges:
         if edge.guard is not None and edge.guard.condition is not None:
             arrives = (
@@ -97,9 +111,11 @@ def _iter_machine_places(
         yield PlaceInBehaviour(name, element.id, machine.active_formula(state))
     for move in machine.exploration.moves:
         source = machine.machine.vertices[move.transition.source]
-        yield _describe_transition(
-            machine, move.transition, machine.rename(move.fires), machine.active_formula(source)
-        )
+        fires = machine.rename(move.fires)
+        yield _describe_transition(machine, move.transition, fires, machine.active_formula(source))
+        # A single event that is never accepted is a transition that is never taken.
+        if len(move.transition.occurrences) > 1:
+            yield from _iter_events(component, machine, move)
     for source in machine.machine.vertices.values():
         branches = machine.machine.outgoing.get(source.id, ())
         # A single branch is taken whenever its pseudostate is reached, as all those of a fork.
@@ -109,14 +125,34 @@ def _iter_machine_places(
                 yield _describe_transition(machine, branch, is_taken, f.either(*taken))
 
 
+def _iter_events(
+    component: "Component", machine: PlacedMachine, move: Move
+) -> Iterator[PlaceInBehaviour]:
+    """Yield the events of a transition with several triggers."""
+    transition = move.transition
+    source = machine.machine.vertices[transition.source]
+    drawn = component.graph[element_id(transition.id)]
+    triggers = component.graph.targets(drawn, Edge.TRIGGER)
+    for trigger, occurrence in zip(triggers, transition.occurrences, strict=True):
+        occurs = trigger_condition(machine.machine, source, occurrence)
+        text = f"{name_occurrence(occurrence)} of {name_transition(transition)}"
+        yield PlaceInBehaviour(
+            _add_owner(machine, text),
+            trigger.id,
+            machine.rename(f.both(move.fires, occurs)),
+            PlaceKind.EVENT,
+            machine.rename(move.fires),
+        )
+
+
 def _merge_copies(places: Iterable[PlaceInBehaviour]) -> Iterator[PlaceInBehaviour]:
     """Yield one place for each element: states that use one submachine have copies of its content.
 
     It is reached if a copy is.
     """
-    copies: dict[str, list[PlaceInBehaviour]] = {}
+    copies: dict[tuple[PlaceKind, str], list[PlaceInBehaviour]] = {}
     for place in places:
-        copies.setdefault(place.origin, []).append(place)
+        copies.setdefault((place.kind, place.origin), []).append(place)
     for first, *others in copies.values():
         group = [first, *others]
         yield replace(
@@ -132,10 +168,15 @@ def _describe_transition(
 ) -> PlaceInBehaviour:
     target = machine.machine.vertices[transition.target]
     return PlaceInBehaviour(
-        join_path(machine.owner.path, name_transition(transition)),
+        _add_owner(machine, name_transition(transition)),
         element_id(transition.id),
         is_taken,
         PlaceKind.TRANSITION,
         within,
         machine.active_formula(target) if target.kind == "state" else f.FALSE,
     )
+
+
+def _add_owner(machine: PlacedMachine, text: str) -> str:
+    """Return a text about a machine, with the part that has the machine."""
+    return f"{text} of '{machine.owner.path}'" if machine.owner.path else text

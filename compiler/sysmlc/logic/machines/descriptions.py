@@ -80,6 +80,21 @@ def describe_transition(
     )
 
 
+def name_occurrence(occurrence: Occurrence) -> str:
+    """Return the name of what a transition waits for in diagnostics."""
+    match occurrence:
+        case OnEvent(None):
+            return "any event"
+        case OnEvent(literal):
+            return f"event '{literal}'"
+        case AfterTicks(count):
+            return f"time event 'after {count} step{'s' * (count != 1)}'"
+        case OnRise(_, condition):
+            return f"change event '{_print_expression(condition)}'"
+        case OnInput(variable):
+            return f"event '{variable}'"
+
+
 def _describe_occurrence(occurrence: Occurrence) -> str:
     match occurrence:
         case OnEvent(None):

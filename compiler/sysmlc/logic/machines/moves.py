@@ -225,7 +225,7 @@ def _occurrence_condition(machine: Machine, transition: Transition) -> Formula:
         return f.both(
             *(_completion_condition(machine, machine.vertices[item]) for item in transition.sources)
         )
-    return f.either(*(_trigger_condition(machine, state, item) for item in transition.occurrences))
+    return f.either(*(trigger_condition(machine, state, item) for item in transition.occurrences))
 
 
 def _completion_condition(machine: Machine, state: Vertex) -> Formula:
@@ -241,7 +241,8 @@ def _completion_condition(machine: Machine, state: Vertex) -> Formula:
     return f.both(end, *inner)
 
 
-def _trigger_condition(machine: Machine, state: Vertex, occurrence: Occurrence) -> Formula:
+def trigger_condition(machine: Machine, state: Vertex, occurrence: Occurrence) -> Formula:
+    """Return the condition that an occurrence happens while *state* is active."""
     match occurrence:
         case OnEvent(None):
             return f.compare(Op.NE, f.var("event"), Const(NO_EVENT))
