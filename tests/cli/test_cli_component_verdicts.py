@@ -82,6 +82,61 @@ def test_each_part_has_its_own_feature(decide):
     assert decide(block, "G !(c.full)", "G !(d.full)", others=CELL) == ["broken", "holds"]
 
 
+FILL = "perform action fill {{ first start; then action wait; then action set {}; then done; }}"
+
+
+def test_an_action_assigns_a_feature_of_a_part(decide):
+    block = "part c : Cell; part d : Cell;" + FILL.format("assign c.full := not d.full")
+    formulas = ("G !(c.full)", "F c.full", "G (finished(set) -> X c.full)", "G !(d.full)")
+    verdicts = ["broken", "holds-if-actions-end", "holds", "holds"]
+    assert decide(block, *formulas, others=CELL) == verdicts
+
+
+def test_what_an_action_assigns_may_belong_to_a_part_of_a_part(decide):
+    others = CELL + "part def Rack { part c : Cell; }"
+    block = "part r : Rack;" + FILL.format("assign r.c.full := true")
+    assert decide(block, "G !(r.c.full)", "F r.c.full", others=others) == [
+        "broken",
+        "holds-if-actions-end",
+    ]
+
+
+def test_an_action_and_a_part_may_assign_different_values_in_one_step(decide, workspace):
+    emptied = "exhibit state M { entry; then S; state S; transition first S accept Go "
+    emptied += "do assign full := false then S; }"
+    others = CELL.replace("}", f"{emptied} }}")
+    block = "part c : Cell;" + FILL.format("assign c.full := true")
+    formulas = ("G (finished(set) -> X c.full)", "G (finished(set) & c.event=none -> X c.full)")
+    assert decide(block, *formulas, others=others) == ["broken", "holds"]
+    result = workspace.sysmlc("contracts", "check", "model.sysml")
+    assert "SM558" in result.stderr
+
+
+def test_a_feature_of_a_part_is_an_argument_and_an_output(decide):
+    invert = """action invert { in attribute p : Boolean; out attribute r : Boolean := false;
+        first start; then action set assign r := not p; then done; }"""
+    arguments = "in attribute :>> p := c.full; out attribute :>> r = c.full;"
+    call = f"perform action call references invert {{ {arguments} }}"
+    block = f"part c : Cell; {invert} perform action work {{ first start; then {call} then done; }}"
+    assert decide(block, "F c.full", "G !(c.full)", others=CELL) == ["holds", "broken"]
+
+
+def test_a_part_without_definition_reads_the_features_of_the_block_around_it(decide):
+    look = """attribute seen : Boolean := false;
+        action look { in attribute p : Boolean;
+            first start; then action set assign seen := p; then done; }
+        perform action work { first start; then action wait;
+            then perform action call references look { in attribute :>> p := x; } then done; }"""
+    block = f"{FLAGS} perform action fill {{ assign x := true; }} part c {{ {look} }}"
+    assert decide(block, "G !(c.seen)", "F c.seen") == ["broken", "holds-if-actions-end"]
+
+
+@pytest.mark.parametrize("part", ["part c : Cell[2];", "ref part c : Cell;"])
+def test_an_assignment_to_an_unknown_object_is_not_decided(decide, part):
+    block = f"part d : Cell; {part} {FILL.format('assign c.full := true')}"
+    assert decide(block, "G !(d.full)", others=CELL) == ["not-decided"]
+
+
 def test_a_guard_reads_a_feature_of_a_part(decide):
     block = "part c : Cell; attribute y : Boolean := false;"
     block += MOVE.format("if c.full do assign y := true")
@@ -415,6 +470,11 @@ def add_satisfactions(text):
             "part c : Cell;" + MOVE.format("do assign c.full := true"),
             CELL,
             ("G !(c.full)", "G (event=Go -> X c.full)"),
+        ),
+        (
+            "part c : Cell;" + FILL.format("assign c.full := true"),
+            CELL,
+            ("G !(c.full)", "F c.full", "G (finished(set) -> X c.full)"),
         ),
         ("part r : Robot; perform r.pick;", ROBOT, ("F r.gripped", "G !(r.gripped)")),
     ],

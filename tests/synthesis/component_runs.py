@@ -6,6 +6,7 @@ activity, or a fork of two such steps and their join. An activity that only othe
 input ``p`` and an output ``r``.
 """
 
+import re
 from collections.abc import Iterator
 from itertools import chain, combinations, product
 from random import Random
@@ -128,8 +129,23 @@ def _make_move(random: Random, states: tuple[str, ...]) -> Move:
 # -- text --------------------------------------------------------------------------------------
 
 
-def write_block(block: Block) -> str:
-    """Return the block as SysML v2, with a requirement that names all its features."""
+def move_to_part(text: str) -> str:
+    """Return a text about a block in which feature b1 belongs to its part ``cell``."""
+    return re.sub(r"\bb1\b", "cell.b1", text)
+
+
+def write_block(block: Block, *, has_part: bool = False) -> str:
+    """Return the block as SysML v2; *has_part* states that b1 belongs to its part ``cell``."""
+    text = "\n".join(_write_lines(block))
+    if not has_part:
+        return text
+    declared = "attribute b1 : Boolean := false;"
+    head, tail = text.split(declared)
+    part = f"part cell {{ {declared} }}"
+    return f"{move_to_part(head)}{part}{move_to_part(tail)}"
+
+
+def _write_lines(block: Block) -> list[str]:
     lines = ["package P {", "private import ScalarValues::*;", "item def E0; item def E1;"]
     lines += ["part def B {", *(f"attribute {name} : Boolean := false;" for name in FEATURES)]
     for name, steps in block.activities.items():
@@ -146,7 +162,7 @@ def write_block(block: Block) -> str:
         guard = f" if {move.guard}" if move.guard else ""
         effect = f" do assign {move.effect[0]} := {move.effect[1]}" if move.effect else ""
         lines.append(f"transition first {move.source}{accept}{guard}{effect} then {move.target};")
-    return "\n".join([*lines, "}", "}", "}", ""])
+    return [*lines, "}", "}", "}", ""]
 
 
 def _write_steps(steps: tuple[Step, ...]) -> Iterator[str]:

@@ -54,6 +54,13 @@ def list_atoms(component, facts):
     return atoms
 
 
+def list_features(variables):
+    """Return the features of a random block as formulas; b1 may belong to part ``cell``."""
+    declared = {variable.name for variable in variables}
+    places = ((name, place) for name in FEATURES for place in (name, f"cell_{name}"))
+    return {name: f.var(place) for name, place in places if place in declared}
+
+
 def list_facts(block):
     facts = [f"state={state}" for state in block.states]
     return facts + [f"event={event}" for event in ("none", *EVENTS)]
@@ -63,8 +70,7 @@ def read_observed_steps(component, facts):
     """Return the pairs of observations of successive steps of the component's relation."""
     atoms = list_atoms(component, facts)
     contract = describe_component(component, "P::B").contract
-    declared = {variable.name for variable in contract.variables}
-    atoms |= {name: f.var(name) for name in FEATURES if name in declared}
+    atoms |= list_features(contract.variables)
     facts = {f"seen_{index}": fact for index, fact in enumerate(atoms)}
     observers = tuple(Variable(name, Owner.SYSTEM, BooleanDomain()) for name in facts)
     definitions = [
@@ -108,8 +114,7 @@ def describe(runs, observation, facts):
 def play_observed_steps(player, facts):
     """Return the pairs of observations of successive steps of the player."""
     atoms = list_atoms(player.parts, facts)
-    declared = {variable.name for variable in player.variables}
-    atoms |= {name: f.var(name) for name in FEATURES if name in declared}
+    atoms |= list_features(player.variables)
     inputs = [variable for variable in player.variables if variable.owner is Owner.ENVIRONMENT]
     runs = {
         variable.name: node.run
@@ -144,14 +149,17 @@ def play_observed_steps(player, facts):
     return frozenset(atoms), pairs
 
 
-def compare(seed, tmp_path):
-    """Compare both readings of a random block; return whether it is small enough."""
+def compare(seed, tmp_path, *, has_part=False):
+    """Compare both readings of a random block; return whether it is small enough.
+
+    *has_part* states that one of its features belongs to a part, which it assigns by a path.
+    """
     block = make_block(Random(seed))
     expected = list_observed_steps(block, LIMIT)
     if expected is None:
         return False
     path = tmp_path / f"block{seed}.sysml"
-    path.write_text(write_block(block), "utf-8")
+    path.write_text(write_block(block, has_part=has_part), "utf-8")
     component = open_component(path)
     observed, actual = read_observed_steps(component, list_facts(block))
     # Facts that the component has no name for, because it never reads them.
@@ -229,7 +237,19 @@ def test_random_blocks_have_the_steps_of_both_interpreters(seed, tmp_path):
     compare(seed, tmp_path)
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_random_blocks_with_a_part_have_the_steps_of_both_interpreters(seed, tmp_path):
+    compare(seed, tmp_path, has_part=True)
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("first", range(100, 200, 20))
 def test_many_random_blocks_have_the_steps_of_both_interpreters(first, tmp_path):
     assert sum(compare(seed, tmp_path) for seed in range(first, first + 20)) >= 15
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("first", range(200, 300, 20))
+def test_many_blocks_with_a_part_have_the_steps_of_both_interpreters(first, tmp_path):
+    seeds = range(first, first + 20)
+    assert sum(compare(seed, tmp_path, has_part=True) for seed in seeds) >= 15

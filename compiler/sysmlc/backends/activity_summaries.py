@@ -259,7 +259,7 @@ class ActivitySummary:
                 yield f"At the end {_quote(store.variable.name)} is {value}, set by {node}."
         if self._game.shared:
             names = _join([_quote(store.variable.name) for store in self._game.shared])
-            yield f"Other behaviours assign {names}, too."
+            yield f"Other behaviours may assign {names}, too."
         for conjunct in self._contract.guarantees:
             if not conjunct.is_derived:
                 formula = _quote(print_formula(as_ltl(conjunct)))

@@ -221,10 +221,10 @@ class TokenGraph(Struct, frozen=True, dict=True):
     false if no run can end. ``rests`` are the regions that can be complete without a token at a
     final node (None: any of them). ``quiets`` are pairs of a region and the variable that is true
     when it is complete: formulas that would repeat a long condition refer to the variable.
-    ``stores`` are the variables that nodes write. ``shared`` are variables that nodes write as
-    other behaviours do, so that the activity alone does not decide them; ``shared_inputs`` are
-    further variables that these writes read. An activity without ``handshake`` starts in the first
-    step, and again after each end.
+    ``stores`` are the variables that nodes write. ``shared`` are variables that nodes write but
+    that the activity alone does not decide: other behaviours write them, too, or they are features
+    of parts; ``shared_inputs`` are further variables that these writes read. An activity without
+    ``handshake`` starts in the first step, and again after each end.
     """
 
     activity: str

@@ -194,14 +194,26 @@ class Arguments:
         variable = self._find_own(parent, name)
         if variable is not None:
             return self._make_local(parent, name, variable)
-        object_: ComponentObject | None = parent.caller.owner
         type_name, _, own_name = name.rpartition("::")
-        while object_ is not None:
-            is_of_object = not type_name or object_.type_.name == type_name.rpartition("::")[2]
-            if is_of_object and own_name in self._tree.context(object_).features:
+        for object_ in self._iter_holders(parent, own_name):
+            if not type_name or object_.type_.name == type_name.rpartition("::")[2]:
                 return self._tree.slot_of(object_.path, own_name)
-            object_ = object_.owner
         return None
+
+    def _iter_holders(self, copy: Copy, name: str) -> Iterator[ComponentObject]:
+        """Yield the objects that have a feature, themselves or in a part (``cell.full``).
+
+        They are the object that performs *copy* and those around it, nearest first.
+        """
+        head, dot, _ = name.partition(".")
+        object_: ComponentObject | None = copy.caller.owner
+        if dot and head in self._tree.context_in(copy.caller.owner, copy.activity).variables:
+            # A parameter or an attribute of the activity hides the part of its name.
+            return
+        while object_ is not None:
+            if self._tree.has_feature(object_, name):
+                yield object_
+            object_ = object_.owner
 
     def _read_target(self, target: Slot | str) -> Variable:
         if isinstance(target, tuple):
@@ -276,15 +288,12 @@ class Arguments:
             attribute = self._find_own(parent, name)
             if attribute is not None:
                 return Symbol(f.var(attribute.name), attribute.domain)
-            object_: ComponentObject | None = parent.caller.owner
-            while object_ is not None:
+            for object_ in self._iter_holders(parent, name):
                 feature = tree.context(object_).features.get(name)
                 if feature is not None and feature.is_constant and feature.default is not None:
                     return Symbol(f.const(feature.default), feature.domain)
-                if feature is not None:
-                    shared = tree.read_slot(tree.slot_of(object_.path, name)).variable
-                    return Symbol(f.var(shared.name), shared.domain)
-                object_ = object_.owner
+                shared = tree.read_slot(tree.slot_of(object_.path, name)).variable
+                return Symbol(f.var(shared.name), shared.domain)
             return find_literal(tree.context(tree.root), name)
 
         try:

@@ -226,8 +226,26 @@ class ObjectTree:
         first, dot, rest = name.partition(".")
         part = join_path(path, first)
         if not dot or self.find_object(part) is None:
-            return path, name
+            return self._find_outer_path(path, name), name
         return self._follow_parts(part, rest)
+
+    def _find_outer_path(self, path: str, name: str) -> str:
+        """Return the path of the object that has a feature which an object names.
+
+        In a part without definition of its own, the features of the block around it are visible.
+        """
+        object_ = self.find_object(path)
+        if object_ is None or not object_.type_.attrs.get("property_specific"):
+            return path
+        feature = self.context(object_).features.get(name)
+        holder = None if feature is None else self.find_holder(object_, feature.element)
+        return path if holder is None else holder.path
+
+    def has_feature(self, object_: ComponentObject, name: str) -> bool:
+        """Whether a name denotes a feature of an object, or along a path one of its parts."""
+        path, feature = self._follow_parts(object_.path, name)
+        holder = self.find_object(path)
+        return holder is not None and feature in self.context(holder).features
 
     def _find_name(self, feature: Element) -> str:
         """Return the name of the feature that a feature redefines in the end, else its own."""

@@ -85,6 +85,19 @@ class Scope:
             "." in name for name, candidate in self._variables.items() if candidate == variable
         )
 
+    def belongs_to_a_part(self, variable: str) -> bool:
+        """Whether the variable stands for a feature of a part of the object around the activity."""
+        heads = (
+            name.partition(".")[0]
+            for name, candidate in self._variables.items()
+            if candidate == variable and "." in name
+        )
+        # A parameter or an attribute of the activity hides a part of the same name.
+        parts = (self._outer.features.get(h) for h in heads if h not in self._inner.variables)
+        return self.belongs_to_another_object(variable) and any(
+            part is not None and part.element.role == "part" for part in parts
+        )
+
     def domain_of(self, variable: str) -> Domain:
         """Return the domain of a variable; Boolean if the variable stands for no property."""
         features = (

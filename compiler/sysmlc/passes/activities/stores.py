@@ -190,7 +190,7 @@ class _StoreTracker:
         )
 
     def _is_only_shared(self, name: str) -> bool:
-        """Whether the variable is not tracked for no other reason than its other writers."""
+        """Whether the variable is not tracked only because it belongs to a part or is shared."""
         return self._find_own_refusal(name) is None and self._find_refusal(name) is not None
 
     def _select_tracked(self) -> set[str]:
@@ -237,6 +237,8 @@ class _StoreTracker:
         refusal = self._find_own_refusal(name)
         if refusal is None and name in self.set_by_calls:
             return UNKNOWN_VALUE
+        if refusal is None and self.scope.belongs_to_a_part(name):
+            return OTHER_OBJECT
         if refusal is not None or self._is_local(self.features[name]):
             return refusal
         writer = self._find_other_writer(self.features[name])
@@ -256,7 +258,8 @@ class _StoreTracker:
             return NO_RANGE
         if feature.direction in ("in", "inout") or feature.is_constant:
             return GIVEN_OR_CONSTANT
-        if self.scope.belongs_to_another_object(name):
+        # The component that has the part follows what is assigned to it.
+        if self.scope.belongs_to_another_object(name) and not self.scope.belongs_to_a_part(name):
             return OTHER_OBJECT
         return self.refusals.get(name)
 
