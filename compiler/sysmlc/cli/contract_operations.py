@@ -329,8 +329,8 @@ def _choose_format(output: Path | None) -> str:
     name = output.name.lower() if output else ""
     matches = [form for form, endings in written.items() if endings and name.endswith(endings)]
     if not matches and not is_json:
-        known = ", ".join(ending for endings in written.values() for ending in endings)
-        fail(f"'{output}' has no ending of a contract format; these are {known}")
+        known_endings = ", ".join(ending for endings in written.values() for ending in endings)
+        fail(f"'{output}' has no ending of a contract format; these are {known_endings}")
     return next(iter(matches), "contract")
 
 

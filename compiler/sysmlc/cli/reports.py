@@ -67,10 +67,10 @@ def localize(root: Path, findings: "Iterable[Finding]") -> "list[Finding]":
 
 def localize_name(root: Path, name: str) -> str:
     """Return the name of an input relative to the working folder if it is inside that folder."""
-    path, here = root / name, Path.cwd()
-    if not path.is_relative_to(here):
+    path, folder = root / name, Path.cwd()
+    if not path.is_relative_to(folder):
         return name
-    return escape_undecodable(path.relative_to(here).as_posix())
+    return escape_undecodable(path.relative_to(folder).as_posix())
 
 
 _NO_DETAILS: Mapping[str, object] = {}

@@ -184,13 +184,13 @@ def find_unlisted(folder: Path, listed: Iterable[str]) -> list[str]:
 
     Our folders are those of the back ends, and those that hold a listed file.
     """
-    known = frozenset(listed)
+    listed_paths = frozenset(listed)
     unlisted = []
-    for name in sorted({path.partition("/")[0] for path in known if "/" in path} | _FOLDERS):
+    for name in sorted({path.partition("/")[0] for path in listed_paths if "/" in path} | _FOLDERS):
         if (folder / name).is_symlink():
             unlisted.append(name)
             continue
         for place, _, files in os.walk(folder / name):
             paths = (Path(place, file).relative_to(folder).as_posix() for file in files)
-            unlisted += [path for path in paths if path not in known]
+            unlisted += [path for path in paths if path not in listed_paths]
     return sorted(unlisted)

@@ -34,14 +34,14 @@ def judge_project_findings(
         members = [index for index, (config, _) in enumerate(units) if config.file == file]
         diagnostics = [[f.diagnostic for f in outcomes[index].findings] for index in members]
         opened = [units[index][1] for index in members]
-        kept = select_project_findings(units[members[0]][0], opened, diagnostics)
+        messages = select_project_findings(units[members[0]][0], opened, diagnostics)
         for index in members:
             findings = outcomes[index].findings
             judged[index] = replace(
                 outcomes[index],
-                findings=tuple(f for f in findings if _is_kept(f.diagnostic, kept)),
+                findings=tuple(f for f in findings if _is_kept(f.diagnostic, messages)),
             )
-            kept = frozenset()
+            messages = frozenset()
     return judged
 
 
@@ -50,22 +50,22 @@ def select_project_findings(
 ) -> frozenset[str]:
     """Return the messages of the findings about the configuration that hold in all *units*."""
     messages = [
-        frozenset(d.message for d in found if d.rule.code in _PROJECT_RULES)
-        for found in diagnostics
+        frozenset(d.message for d in unit_diagnostics if d.rule.code in _PROJECT_RULES)
+        for unit_diagnostics in diagnostics
     ]
     common = frozenset.intersection(*messages)
     return common if common and _is_whole_project(config, units) else frozenset()
 
 
 def without_project_findings(
-    diagnostics: Iterable[Diagnostic], kept: frozenset[str]
+    diagnostics: Iterable[Diagnostic], messages: frozenset[str]
 ) -> Iterator[Diagnostic]:
-    """Yield *diagnostics*; of those about the configuration, only messages in *kept*."""
-    return (diagnostic for diagnostic in diagnostics if _is_kept(diagnostic, kept))
+    """Yield *diagnostics*; of those about the configuration, only those with *messages*."""
+    return (diagnostic for diagnostic in diagnostics if _is_kept(diagnostic, messages))
 
 
-def _is_kept(diagnostic: Diagnostic, kept: frozenset[str]) -> bool:
-    return diagnostic.rule.code not in _PROJECT_RULES or diagnostic.message in kept
+def _is_kept(diagnostic: Diagnostic, messages: frozenset[str]) -> bool:
+    return diagnostic.rule.code not in _PROJECT_RULES or diagnostic.message in messages
 
 
 def _is_whole_project(config: Config, units: Sequence[OpenedUnit]) -> bool:

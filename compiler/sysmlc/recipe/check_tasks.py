@@ -179,9 +179,9 @@ def check_opc_ua_calls(model: Model, tables: Tables) -> Iterator[Finding]:
 
 def _iter_calls(model: Model) -> Iterator[OpcUa]:
     owners: tuple[Service | Function, ...] = (*model.services, *model.functions)
-    own = [owner.opcua for owner in owners]
-    of_providers = [p.opcua for service in model.services for p in service.providers]
-    yield from dict.fromkeys(call for call in (*own, *of_providers) if call is not None)
+    own_calls = [owner.opcua for owner in owners]
+    provider_calls = [p.opcua for service in model.services for p in service.providers]
+    yield from dict.fromkeys(call for call in (*own_calls, *provider_calls) if call is not None)
 
 
 def _name_owner(model: Model, call: OpcUa) -> str:

@@ -54,9 +54,9 @@ def _find_service_duration(
     """
     providers = [provider for provider in service.providers if provider.machine in machines]
     providers = providers or list(service.providers)
-    known = [provider.duration for provider in providers if provider.duration is not None]
-    if known and len(known) == len(providers):
-        return Range(min(known), max(known))
+    durations = [provider.duration for provider in providers if provider.duration is not None]
+    if durations and len(durations) == len(providers):
+        return Range(min(durations), max(durations))
     if service.duration is not None:
         return Range(service.duration, service.duration)
     return find_refined_duration(service, tables)

@@ -176,13 +176,13 @@ class Exploration:
         if edge.role == "body" and limit is not None:
             count = min(_count_iterations(values, node) + 1, limit)
             values = set_value(values, _ITERATION + node.id, count)
-        kept = tuple(
+        live_values = tuple(
             (name, value)
             for name, value in values
             if not name.startswith(_ITERATION)
             or edge.target in self._cycles[name.removeprefix(_ITERATION)].nodes
         )
-        return Situation(edge.target, kept)
+        return Situation(edge.target, live_values)
 
     # -- choices and loops ---------------------------------------------------------------------
 
@@ -209,9 +209,9 @@ class Exploration:
 
     def _select_open(self, outgoing: list[FlowEdge], values: Valuation) -> list[FlowEdge]:
         """Return the edges whose guards may be true; else edges if no guard certainly is."""
-        known = dict(values)
+        valuation = dict(values)
         guards = self._variables.guards
-        truths = {edge: evaluate(guards[edge], known) for edge in outgoing if edge in guards}
+        truths = {edge: evaluate(guards[edge], valuation) for edge in outgoing if edge in guards}
         is_decided = any(truths.values())
         return [
             edge

@@ -39,14 +39,14 @@ def derive_recipe(recipe: Recipe) -> Derived | None:
     Tasks that may run at the same time and need one machine follow one another.
     """
     durations = {task.id: _find_task_duration(task) for task in recipe.tasks}
-    known = {id: duration for id, duration in durations.items() if duration is not None}
+    stated = {id: duration for id, duration in durations.items() if duration is not None}
     is_cyclic = bool(find_cycles(durations, recipe.precedence))
-    if not known or len(known) < len(durations) or is_cyclic:
+    if not stated or len(stated) < len(durations) or is_cyclic:
         return None
-    shortest = _find_longest_path(recipe, {id: span.min for id, span in known.items()})
-    longest = {task.id: _find_longest_time(task, known[task.id]) for task in recipe.tasks}
+    shortest = _find_longest_path(recipe, {id: span.min for id, span in stated.items()})
+    longest = {task.id: _find_longest_time(task, stated[task.id]) for task in recipe.tasks}
     maxima = {id: time for id, time in longest.items() if time is not None}
-    if len(maxima) < len(known):
+    if len(maxima) < len(stated):
         endless = next(id for id, time in longest.items() if time is None)
         reason = f"'{endless}' has no longest duration"
         return Derived(duration=Range(shortest, None), because=reason)

@@ -150,13 +150,15 @@ class Variables(Struct, frozen=True):
 
         Unknown Booleans and enumerations of undecided guards take each of their values.
         """
-        known = dict(values)
-        undecided = [guard for guard in guards if evaluate(guard, known) is None]
+        valuation = dict(values)
+        undecided = [guard for guard in guards if evaluate(guard, valuation) is None]
         names = sorted({name for guard in undecided for name in iter_variables(guard)})
         domains = {
             name: domain
             for name in names
-            if name not in known and name not in volatile and (domain := self._list_domain(name))
+            if name not in valuation
+            and name not in volatile
+            and (domain := self._list_domain(name))
         }
         size = 1
         for domain in domains.values():

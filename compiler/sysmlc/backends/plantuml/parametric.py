@@ -110,8 +110,8 @@ def _is_stray(graph: Graph, connector: Element) -> bool:
     owner, ends = graph.owner(connector), graph.targets(connector, Edge.END)
     if owner is None or any(graph.targets(end, Edge.PATH) for end in ends):
         return False
-    own = features(graph, owner)
-    return any(role not in own for role in _list_roles(graph, connector))
+    own_features = features(graph, owner)
+    return any(role not in own_features for role in _list_roles(graph, connector))
 
 
 def _find_path(graph: Graph, block: Element, end: Element) -> Path | None:

@@ -271,6 +271,12 @@ class _ColumnReader:
         document.element_ids = [""] * len(document.tags)
 
     def _set_handlers(self) -> None:
+        """Install handlers that add a row for each start tag, and texts to the open row.
+
+        A child with text only becomes no row (folding): its text is stored in the column of its
+        tag, at the row of its parent. The handlers are closures over the parsing state, because
+        expat calls them for each tag and text of the file.
+        """
         document, expat = self.document, self._parser
         tags, ends, texts = document.tags, document.ends, document.texts
         own_texts, text_columns = texts[""], _TextColumns(texts)

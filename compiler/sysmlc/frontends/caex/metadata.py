@@ -150,8 +150,8 @@ def _print_xml(top: Node) -> str:
         folded = (
             f"<{tag}>{escape(text, quote=False)}</{tag}>" for tag, text in texts.items() if tag
         )
-        own = escape(texts.get("", ""), quote=False).strip()
-        parts.append(f"<{node.tag}{''.join(attributes)}>{own}{''.join(folded)}")
+        content = escape(texts.get("", ""), quote=False).strip()
+        parts.append(f"<{node.tag}{''.join(attributes)}>{content}{''.join(folded)}")
         stack += [f"</{node.tag}>", *reversed(node.children)]
     return "".join(parts)
 

@@ -128,11 +128,11 @@ def _iter_judged(lowering: "Lowering", root: Node) -> Iterator[_Judged]:
         is_represented = verdict is Verdict.APPROXIMATED and not is_dropped
         shared = Verdict.MAPPED if is_represented else verdict
         for member in reversed(node.members):
-            own = lowering.verdicts.get(id(member))
-            if own is None and is_dropped:
+            own_verdict = lowering.verdicts.get(id(member))
+            if own_verdict is None and is_dropped:
                 dropped.add(id(member))
             if shared is not Verdict.MAPPED or id(member) in lowering.paths_to_verdicts:
-                stack.append(_Judged(member, own or shared, own is None))
+                stack.append(_Judged(member, own_verdict or shared, own_verdict is None))
 
 
 def _iter_losses(lowering: "Lowering", document: Document, judged: list[_Judged]) -> Iterator[Loss]:

@@ -223,8 +223,8 @@ def _find_end_nodes(
     lowering: "Lowering", node: Node, flow: Element
 ) -> tuple[Element | None, Element | None]:
     """Return the object nodes at the two ends of a flow or a binding."""
-    found = [_find_object_node(lowering, flow, end) for end in nodes.ends_of(node)[:2]]
-    first, second = [*found, None, None][:2]
+    object_nodes = [_find_object_node(lowering, flow, end) for end in nodes.ends_of(node)[:2]]
+    first, second = [*object_nodes, None, None][:2]
     return first, second
 
 

@@ -80,9 +80,9 @@ def features(graph: Graph, classifier: Element) -> list[Element]:
 
 def type_of(graph: Graph, element: Element) -> Element | None:
     """Return the type of *element*, else the type of the nearest feature that it redefines."""
-    own = graph.target(element, Edge.TYPED_BY)
-    if own is not None:
-        return own
+    own_type = graph.target(element, Edge.TYPED_BY)
+    if own_type is not None:
+        return own_type
     redefined = redefined_features(graph, element)
     types = (graph.target(feature, Edge.TYPED_BY) for feature in redefined)
     return next((type_ for type_ in types if type_ is not None), None)
@@ -173,10 +173,10 @@ def name_value_unit(graph: Graph, element: Element, key: str) -> str:
 
 def quantity_kind_of(graph: Graph, feature: Element) -> Element | None:
     """Return the quantity kind of a feature or a value type, else that of its unit."""
-    own = next(filter(is_quantity_kind, _iter_references(graph, feature)), None)
-    unit = None if own else unit_of(graph, feature)
+    own_kind = next(filter(is_quantity_kind, _iter_references(graph, feature)), None)
+    unit = None if own_kind else unit_of(graph, feature)
     references = [] if unit is None else graph.targets(unit, Edge.REFERENCES)
-    return own or next(filter(is_quantity_kind, references), None)
+    return own_kind or next(filter(is_quantity_kind, references), None)
 
 
 def _iter_references(graph: Graph, feature: Element) -> Iterator[Element]:

@@ -162,10 +162,10 @@ class MemberLookup(GeneralLookup):
         generals = self.all_generals(scope)
         if generals not in self._inheritable_by_generals:
             names_of_generals = [self._collect_names(general, {}) for general in generals]
-            known = [names for names in names_of_generals if names is not None]
-            is_complete = len(known) == len(generals)
+            complete = [names for names in names_of_generals if names is not None]
+            is_complete = len(complete) == len(generals)
             self._inheritable_by_generals[generals] = (
-                frozenset().union(*known) if is_complete else None
+                frozenset().union(*complete) if is_complete else None
             )
         return self._inheritable_by_generals[generals]
 

@@ -96,9 +96,9 @@ def iter_places(
                 f.either(*arrives),
             )
     for name, variable in assigned:
-        now = f.var(variable.name)
+        value = f.var(variable.name)
         is_boolean = isinstance(variable.domain, BooleanDomain)
-        stays = f.iff(f.prime(now), now) if is_boolean else f.eq(f.prime(now), now)
+        stays = f.iff(f.prime(value), value) if is_boolean else f.eq(f.prime(value), value)
         yield PlaceInBehaviour(name, variable.origin, f.negate(stays), PlaceKind.FEATURE)
 
 

@@ -157,8 +157,8 @@ def _find_undecided(composite: Composite, whole: Contract) -> set[str]:
     """Return the variables of the whole that no part decides: nothing restricts them here."""
     variables = () if composite.whole is None else composite.whole.variables
     decided = {name for part in composite.parts for name in outputs_of(part)}
-    own = {variable.name for variable in variables if variable.owner is Owner.SYSTEM}
-    return own - decided - _list_defined_names(whole)
+    outputs = {variable.name for variable in variables if variable.owner is Owner.SYSTEM}
+    return outputs - decided - _list_defined_names(whole)
 
 
 def _list_inputs(part: Part, conjunct: Conjunct) -> set[str]:

@@ -79,8 +79,8 @@ def align_domains(first: Contract, second: Contract) -> tuple[Contract, Contract
     """
     domains = {variable.name: variable.domain for variable in first.variables}
     for variable in second.variables:
-        own = domains.get(variable.name, variable.domain)
-        domains[variable.name] = _unite_domains(variable.name, own, variable.domain)
+        domain = domains.get(variable.name, variable.domain)
+        domains[variable.name] = _unite_domains(variable.name, domain, variable.domain)
     return _widen(first, domains), _widen(second, domains)
 
 
