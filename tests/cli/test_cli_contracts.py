@@ -1,6 +1,7 @@
 """``sysmlc contracts check``: one line for each contract, diagnostics, exit codes."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -160,6 +161,58 @@ def test_errors_of_the_model_are_reported_when_it_has_no_contracts(workspace, al
 
 
 # -- behaviours of whole components ----------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("fault", "verdict"),
+    [
+        (("$", ""), "satisfies"),
+        # A part without behaviour may send anything.
+        ((r"exhibit state S .*?Ready;\n +}", ""), "violates"),
+        # A specialisation of the signal would be accepted, too.
+        (("item def Stop;", "item def Stop; item def HardStop :> Stop;"), "violates"),
+        # The environment sends to the port of the whole.
+        (("port lid;", "port lid : ~Chute; connect lid to receiver.inlet;"), "violates"),
+        (("connect sender.*?;", ""), "violates"),
+    ],
+)
+def test_a_connected_port_receives_only_what_its_connections_send(
+    workspace, all_passes, fault, verdict
+):
+    text = """package Shop {
+        item def Go; item def Piece; item def Stop;
+        port def Chute { out item piece : Piece; out item stop : Stop; }
+        part def Line {
+            port lid;
+            part sender {
+                port outlet : Chute;
+                exhibit state S {
+                    entry; then Ready;
+                    state Ready;
+                    transition first Ready accept Go do send new Piece() via outlet then Ready;
+                }
+            }
+            part receiver {
+                port inlet : ~Chute;
+                exhibit state R {
+                    entry; then Empty;
+                    state Empty;
+                    transition first Empty accept Piece via inlet then Full;
+                    transition first Empty accept Stop via inlet then Stopped;
+                    state Full;
+                    state Stopped;
+                }
+            }
+            connect sender.outlet to receiver.inlet;
+        }
+        requirement def R {
+            subject line : Line;
+            require constraint { language "ltl" /* G !receiver.state=Stopped */ }
+        }
+    }"""
+    workspace.write("line.sysml", re.sub(*fault, text, count=1, flags=re.DOTALL))
+    result = workspace.sysmlc("contracts", "check", "line.sysml")
+    assert f"Shop::Line: realizable, {verdict} its requirements\n" in result.stdout
 
 
 def check_rule_example(rule, text, workspace):

@@ -30,21 +30,13 @@ class Line(Struct, frozen=True):
     moves: dict[str, tuple[Move, ...]]
     connectors: tuple[tuple[str, str], ...]
 
-    def list_senders(self, receiver: str, signal: str) -> list[str]:
-        """Return the parts from which a part may get a signal."""
-        return [
-            sender
-            for sender, other in self.connectors
-            if other == receiver and any(move.sent == signal for move in self.moves[sender])
-        ]
-
     def list_events(self, part: str) -> list[str]:
         """Return the events that a part accepts."""
         return sorted({move.event for move in self.moves[part]})
 
 
 def make_line(random: Random) -> Line:
-    """Return random parts; a part accepts only what somebody may send to it, and Go."""
+    """Return random parts; a part accepts Go and, if it is connected, all signals."""
     pairs = [(left, right) for left in PARTS for right in PARTS if left != right]
     connectors = tuple(pair for pair in pairs if random.random() < 0.5)
     line = Line(dict.fromkeys(PARTS, ()), connectors)
@@ -56,7 +48,8 @@ def make_line(random: Random) -> Line:
         )
         line.moves[part] = sent or (Move("S0", "S1", "Go", ""),)
     for part in PARTS:
-        accepted = [signal for signal in SIGNALS if line.list_senders(part, signal)]
+        is_connected = any(receiver == part for _, receiver in connectors)
+        accepted = list(SIGNALS) if is_connected else []
         sent = sorted({move.sent for move in line.moves[part]} - {""})
         for signal in accepted:
             answer = random.choice(("", "", *sent))

@@ -16,11 +16,14 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.components.objects import ComponentError, ComponentObject
 from sysmlc.logic.composition.members import Block, Member
 from sysmlc.logic.composition.messages import (
+    Receipt,
     derive_wiring,
     is_reachable_from_outside,
     iter_listeners,
+    iter_unsent,
 )
 from sysmlc.logic.composition.naming import Wire
+from sysmlc.logic.composition.structure import ITSELF
 from sysmlc.logic.contract import (
     BooleanDomain,
     Class,
@@ -110,7 +113,39 @@ def derive_events(component: "Component") -> Wiring:
     ]
     gaps = _find_unwired(block, wires, wiring)
     deliveries = list(_iter_deliveries(block, members, wires))
+    for receipt, port in iter_unsent(block, members, tuple(wires)):
+        if _is_port_closed(component, block, receipt, port):
+            text = f"No part that is connected with '{port}' sends '{receipt.message}'."
+            never = f.negate(receipt.occurs)
+            wiring.append(
+                Conjunct(never, Class.SAFETY, receipt.origin, text, source=Source.DERIVED)
+            )
+            (occurring,) = f.variables(receipt.occurs)
+            deliveries.append(Delivery(occurring.name, receipt.message, (), False))
     return Wiring(variables, [*conjuncts, *wiring], gaps, acceptances, deliveries)
+
+
+def _is_port_closed(component: "Component", block: Block, receipt: Receipt, port: str) -> bool:
+    """Whether a message that no part sends cannot arrive at a port of a part.
+
+    The port is connected, and only with parts whose behaviour is in the model. A part without
+    behaviour may send anything, and a specialisation of the message would be accepted, too.
+    """
+    path = receipt.member.path
+    reached = {end for end, _ in component.tree.channels.list_reached((path, port))}
+    senders = {machine.owner.path for machine in component.machines}
+    senders |= {copy.caller.owner.path for copy in component.performances.copies.values()}
+    relays = {
+        end for end in reached if any(inner.startswith(f"{end}.") for inner in (path, *reached))
+    }
+    signals = (
+        signal
+        for signal in component.graph.of_kind(Kind.SIGNAL)
+        if identifier(signal.name) == receipt.message
+    )
+    has_special = any(component.graph.sources(signal, Edge.SPECIALIZES) for signal in signals)
+    is_complete = ITSELF not in reached and reached - relays and reached - relays <= senders
+    return bool(path and is_complete and not has_special and not component.performances.gaps)
 
 
 def _iter_deliveries(block: Block, members: list[Member], wires: list[Wire]) -> Iterator[Delivery]:

@@ -101,6 +101,17 @@ def iter_listeners(
             yield member, receipts
 
 
+def iter_unsent(
+    block: Block, members: Sequence[Member], wires: tuple[Wire, ...]
+) -> Iterator[tuple[Receipt, str]]:
+    """Yield each message that a member names a port for and no member sends there, and the port."""
+    for member in members:
+        for receipt in _iter_receipts(block.graph, member, wires):
+            port = member.ports.get(receipt.message)
+            if port and not any(_iter_sendings(block, members, receipt, wires)):
+                yield receipt, port
+
+
 def is_reachable_from_outside(block: Block, member: Member) -> bool:
     """Whether a port of the block leads to the member, so that others can send to it."""
     ports = query.ports(block.graph, block.element)
