@@ -138,8 +138,8 @@ def refine_command(
 ) -> None:
     """Decide whether the contract CONCRETE refines the contract ABSTRACT.
 
-    It does if it assumes no more and guarantees no less, so that it may be used in its place. A run
-    shows each assumption and each guarantee for which that is not so.
+    It does if it assumes no more and guarantees no less, so that it may be used in its place. Each
+    assumption and each guarantee that prevents this is shown with a run.
     """
     from sysmlc.cli import reports, session
     from sysmlc.synthesis.witnesses import Party, Witness, witness_files

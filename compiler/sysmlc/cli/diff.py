@@ -150,7 +150,7 @@ def _text(changes: "list[Change]", form: str, sides: "list[dict[str, Compilation
 def _locate(
     changes: "Iterable[Change]", sides: "list[dict[str, Compilation]]", side: int
 ) -> "Mapping[Place, Place]":
-    """Return the lines and columns of the changes in the model at index *side*."""
+    """Return the places of the changes with lines and columns; *side* is 0 for the old model."""
     from sysmlc.diagnostics import Place
     from sysmlc.diagnostics.locations import complete_places
 

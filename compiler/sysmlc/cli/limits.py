@@ -21,9 +21,9 @@ DEFAULT_SECONDS = 300.0
 DEFAULT_GIBIBYTES = 8.0
 _GIBIBYTE = 1 << 30
 _OWN_MEMORY = 64 << 20
-"""Bytes that the interpreter and libraries need in any command; the limit excludes them..."""
+"""Bytes that interpreter and libraries need in any command: what a limit may be exceeded by."""
 _MAX_EXCESS = 5
-"""... up to this part of the limit, a fifth."""
+"""The largest excess is the limit divided by this number, if that is less."""
 _MAX_AMOUNT = 1_000_000_000
 _MIN_SECONDS = 0.001
 """The shortest timer in seconds: setitimer with 0 would switch the timer off."""

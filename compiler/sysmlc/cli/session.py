@@ -99,8 +99,10 @@ def load_config(models: Sequence[Path], settings: Settings) -> "Config":
 
 
 def _check_rule_names(names: Sequence[str], where: str) -> None:
-    """Exit with code 2 if a name is neither that of a rule nor its code, or, without *where*, the
-    start of a code.
+    """Exit with code 2 unless each name is the name or the code of a rule.
+
+    *where* is the place of the names in a configuration. Names from the command line, for which it
+    is empty, may also be the start of a code (``SM4``).
     """
     from sysmlc.support.suggestions import did_you_mean
 

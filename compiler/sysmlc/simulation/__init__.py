@@ -135,8 +135,8 @@ def _follow_runs(
     """Follow all runs of the diagram that show the expected values, step by step.
 
     If no run remains after a step, the result has that step as its difference, and as its trace the
-    run that shows most of the values expected in it. If some runs were not followed, that no run
-    remains is reported as undecided.
+    run that shows most of the values expected in it. The difference is certain only if all runs
+    were followed; otherwise the result is invalid and SM578 is reported.
     """
     is_complete = True
     inputs = dict(resting_values)

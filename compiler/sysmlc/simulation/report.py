@@ -29,6 +29,7 @@ class Result(Struct, frozen=True):
     """Result of one scenario.
 
     ``trace`` is a run of the diagram that shows the expected values, or the run that comes closest.
+    ``is_valid`` is false for a scenario that was not played or not decided; a diagnostic says why.
     """
 
     name: str

@@ -33,7 +33,7 @@ OWN, TABLE, GR1C = FORMS = ("own", "table", "gr1c")
 
 
 class ControllerFiles(Struct, frozen=True):
-    """The results of syntheses and their files."""
+    """The files of controllers, and the results of synthesis that they contain."""
 
     results: tuple[Synthesis, ...]
     """The results, without controllers that the format cannot express."""
@@ -291,7 +291,10 @@ def _gr1c_declaration(variable: Variable) -> dict[str, object]:
 
 
 class _Unrolling:
-    """The steps of a controller in all environments that satisfy the assumptions."""
+    """The reachable steps of a controller, as nodes: its state, and the values in the step.
+
+    Each input that the assumptions allow has a successor. Raises LimitError above *max_steps*.
+    """
 
     def __init__(self, controller: Controller, contract: Contract, max_steps: int) -> None:
         self._controller, self._max_steps, self._steps_left = controller, max_steps, max_steps

@@ -241,7 +241,7 @@ class _Solver:
         return self._reach_goal(goal, drop_irrelevant_ranges(self.arena, goal, winning)) & winning
 
     def _goals_without_symmetry(self) -> dict[int, tuple[Swap, ...]]:
-        """Return all goals as representatives, each without swaps."""
+        """Return all goals, each with the empty list of swaps: none represents others."""
         return dict.fromkeys(range(len(self._goals)), ())
 
     def _is_lost(self, winning: Node) -> bool:

@@ -159,7 +159,10 @@ def _compose_part(game: Game, part: Constraint, substitution: Mapping[str, Node]
 
 
 def _replace_lists(game: Game, lists: Mapping[str, Iterable[Constraint]]) -> Game:
-    """Return the game with some lists replaced; drop constraints that are true, except liveness."""
+    """Return the game with the fields *lists* replaced.
+
+    Constraints that are true are dropped, except recurring ones.
+    """
     true = game.manager.true
 
     def list_parts(kind: str) -> tuple[Constraint, ...]:
