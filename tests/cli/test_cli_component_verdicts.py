@@ -178,6 +178,57 @@ def test_what_an_entry_performs_may_change_the_initial_value(decide):
     assert decide(block, "!y", "G (x -> X x)") == ["not-decided", "holds"]
 
 
+WAIT_SET = "action set { first start; then action w; then action s assign y := true; then done; }"
+LEAVE = (
+    "exhibit state M {{ entry; then S; state S {{ {} }} transition first S {} then T; state T; }}"
+)
+
+
+def test_a_state_is_active_while_its_entry_runs_and_no_transition_leaves_it(decide):
+    formulas = {
+        "running(set)": "holds",
+        "G (running(set) -> state=S & X state=S)": "holds",
+        "F (state=T)": "holds-if-actions-end",
+        "G (state=T -> y)": "holds",
+        "G (state=S -> X state=T)": "broken",
+    }
+    block = FLAGS + WAIT_SET + LEAVE.format("entry set;", "")
+    assert decide(block, *formulas) == list(formulas.values())
+
+
+def test_an_event_that_comes_while_an_entry_runs_is_lost(decide):
+    block = FLAGS + WAIT_SET + LEAVE.format("entry set;", "accept Go")
+    lost = "G (event=Go & running(set) -> X state=S)"
+    taken = "G (event=Go & state=S & !running(set) -> X state=T)"
+    assert decide(block, lost, taken, "F (state=T)") == ["holds", "holds", "broken"]
+
+
+def test_a_do_behaviour_starts_when_the_entry_has_ended(decide):
+    work = "action work { first start; then action c; then done; }"
+    block = FLAGS + WAIT_SET + work + LEAVE.format("entry set; do work;", "")
+    formulas = ("G (finished(set) -> X running(work))", "G !(running(set) & running(work))")
+    assert decide(block, *formulas, "G (running(work) -> y)") == ["holds"] * 3
+
+
+def test_an_entry_that_takes_time_disables_the_transitions_of_the_state_around(decide):
+    inner = "entry; then I; state I { entry set; } transition first I then J; state J;"
+    block = FLAGS + WAIT_SET + LEAVE.format(inner, "accept Go")
+    assert decide(block, "G (running(set) -> X state=S)", "G (state=S)") == ["holds", "broken"]
+
+
+@pytest.mark.parametrize(
+    ("behaviours", "effect"),
+    [
+        ("exit set;", ""),
+        ("", "do set"),
+        ("entry set; entry; then I; state I;", ""),
+    ],
+)
+def test_exits_and_effects_that_take_time_are_not_decided(decide, behaviours, effect):
+    block = FLAGS + WAIT_SET + LEAVE.format(behaviours, effect)
+    assert decide(block, "F (state=T)", "G !x") == ["not-decided", "not-decided"]
+
+
 DO = "exhibit state M { entry; then S; state S { do set; } transition first S then T; state T; }"
 
 
@@ -475,6 +526,11 @@ def add_satisfactions(text):
             "part c : Cell;" + FILL.format("assign c.full := true"),
             CELL,
             ("G !(c.full)", "F c.full", "G (finished(set) -> X c.full)"),
+        ),
+        (
+            FLAGS + WAIT_SET + LEAVE.format("entry set;", ""),
+            "",
+            ("F (state=T)", "G (state=T -> y)", "G (state=S)"),
         ),
         ("part r : Robot; perform r.pick;", ROBOT, ("F r.gripped", "G !(r.gripped)")),
     ],

@@ -51,6 +51,8 @@ class Block(Struct, frozen=True):
     states: tuple[str, ...]
     signatures: frozenset[str] = frozenset()
     """The activities that have parameters."""
+    entry: dict[str, str] = {}
+    """The activities that states perform when they are entered; they take time."""
 
 
 def make_block(random: Random) -> Block:
@@ -77,9 +79,16 @@ def make_block(random: Random) -> Block:
         for name in FEATURES
     )
     own = roots.pop() if roots and random.random() < 0.4 else ""
-    used = _list_performed(activities, [*do.values(), own])
+    long = [name for name in roots if _takes_time(activities[name])]
+    entry = {random.choice(states): long.pop()} if long and random.random() < 0.6 else {}
+    used = _list_performed(activities, [*do.values(), *entry.values(), own])
     performed = {name: activities[name] for name in names if name in used}
-    return Block(performed, do, moves, own, states, signatures)
+    return Block(performed, do, moves, own, states, signatures, entry)
+
+
+def _takes_time(steps: tuple[Step, ...]) -> bool:
+    kinds = {step.kind for outer in steps for step in (outer, *outer.branches)}
+    return not kinds.isdisjoint(("elementary", "call"))
 
 
 def _list_performed(activities: dict[str, tuple[Step, ...]], roots: list[str]) -> set[str]:
@@ -155,8 +164,9 @@ def _write_lines(block: Block) -> list[str]:
         lines += [*_write_steps(steps), "}"]
     lines += ["exhibit state M {", "entry; then S0;"]
     for state in block.states:
+        entry = f" entry {block.entry[state]};" if state in block.entry else ""
         do = f" do {block.do[state]};" if state in block.do else ""
-        lines.append(f"state {state} {{{do} }}")
+        lines.append(f"state {state} {{{entry}{do} }}")
     for move in block.moves:
         accept = f" accept {move.event}" if move.event else ""
         guard = f" if {move.guard}" if move.guard else ""
@@ -200,7 +210,7 @@ def _write_action(step: Step) -> str:
 
 def list_actions(block: Block, *, is_elementary: bool = False) -> list[str]:
     """Return the paths of all actions, or of those that the environment ends."""
-    roots = [*block.do.values(), *filter(None, [block.own])]
+    roots = [*block.do.values(), *block.entry.values(), *filter(None, [block.own])]
     paths = [] if is_elementary else list(roots)
     worklist = [(name, step) for name in roots for step in block.activities[name]]
     while worklist:
@@ -330,13 +340,20 @@ class State(Struct, frozen=True):
     do: Performance | None
     is_over: bool
     own: Performance | None
+    entry: Performance | None = None
 
 
 def first_state(block: Block) -> State:
     """Return the state in the first step."""
-    do = start() if "S0" in block.do else None
     own = start() if block.own else None
-    return State("S0", (False, False), do, False, own)
+    return _enter(block, "S0", (False, False), own)
+
+
+def _enter(block: Block, name: str, values: tuple[bool, bool], own: Performance | None) -> State:
+    """Return the step in which a state is entered; its do behaviour waits for a long entry."""
+    entry = start() if name in block.entry else None
+    do = start() if name in block.do and entry is None else None
+    return State(name, values, do, False, own, entry)
 
 
 def list_inputs(block: Block, state: State) -> Iterator[tuple[str, frozenset]]:
@@ -355,6 +372,8 @@ def list_inputs(block: Block, state: State) -> Iterator[tuple[str, frozenset]]:
 
 def _list_performances(block: Block, state: State) -> list[tuple[str, Performance]]:
     performances = []
+    if state.entry is not None:
+        performances.append((block.entry[state.state], state.entry))
     if state.do is not None:
         performances.append((block.do[state.state], state.do))
     if state.own is not None:
@@ -389,10 +408,14 @@ def list_reactions(
     values = dict(zip(FEATURES, state.values, strict=True))
     do, do_ends, do_writes = state.do, False, []
     own, own_writes = state.own, []
+    entry = state.entry
     for root, performance in _list_performances(block, state):
         after, is_finished, writes, _ = advance(block, root, performance, (root,), ended, values)
         if root == block.own:
             own, own_writes = (None if is_finished else after), writes
+        elif performance is state.entry:
+            entry, do_writes = (None if is_finished else after), writes
+            do = start() if is_finished and state.state in block.do else None
         else:
             do, do_ends, do_writes = (None if is_finished else after), is_finished, writes
     reactions = set()
@@ -400,17 +423,17 @@ def list_reactions(
         for written in _list_values(values, do_writes, own_writes, move):
             if move is None:
                 is_over = state.is_over or do_ends
-                reactions.add((None, State(state.state, written, do, is_over, own)))
+                reactions.add((None, State(state.state, written, do, is_over, own, entry)))
             else:
-                target = move.target
-                new = start() if target in block.do else None
-                reactions.add((move, State(target, written, new, False, own)))
+                reactions.add((move, _enter(block, move.target, written, own)))
     return reactions
 
 
 def _list_moves(
     block: Block, state: State, values: dict, event: str, do_ends: bool
 ) -> list[Move | None]:
+    if state.entry is not None:
+        return []
     leaving = [
         move
         for move in block.moves

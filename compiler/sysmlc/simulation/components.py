@@ -145,7 +145,9 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
         by_machine = {id(reaction.machine): reaction for reaction in reactions}
         choices: list[list[bool]] = []
         for root in self.parts.roots:
-            if root.machine is not None and root.state is not None:
+            if root.after:
+                choices.append([False])
+            elif root.machine is not None and root.state is not None:
                 reaction = by_machine[id(root.machine)]
                 machine = root.machine.machine
                 choices.append([is_active(machine, reaction.reaction.store, root.state.id)])
@@ -229,7 +231,7 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
             if root.machine is machine:
                 done_options.setdefault(name, []).append(value)
         for root in self.parts.roots:
-            if root.machine is machine and root.state is not None and root.state.done:
+            if root.machine is machine and root.state is not None and root.over:
                 is_over = bool(now[root.over]) or root.id in finished
                 own_values[root.state.done] = is_over
         names = {variable: own for own, variable in machine.variables.items()}
@@ -264,7 +266,8 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
         for root in self.parts.roots:
             if root.machine is not None and root.state is not None:
                 reaction = by_machine[id(root.machine)]
-                starts |= {root.id} if reaction.enters(root.state) else set()
+                is_started = root.after in finished if root.after else reaction.enters(root.state)
+                starts |= {root.id} if is_started else set()
                 stops |= {root.id} if reaction.leaves(root.state) else set()
             elif root.service and now[root.service]:
                 is_free = root.id not in state.running or root.id in finished

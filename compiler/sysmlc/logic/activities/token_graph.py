@@ -328,6 +328,17 @@ class TokenGraph(Struct, frozen=True, dict=True):
         """Whether an edge from outside its region leads to the node."""
         return any(map(self.enters, self._incoming[node.id]))
 
+    @property
+    def takes_time(self) -> bool:
+        """Whether an action lasts until something else ends it: the environment, or what it calls.
+
+        The others assign, send and compute.
+        """
+        return any(
+            node.kind is NodeKind.ACTION and node.duration is Duration.TIMED
+            for node in self.workers()
+        )
+
     def triggers(self, node: TokenNode) -> list[TokenEdge]:
         """Return the edges that prevent the completion of the region while all hold a token.
 

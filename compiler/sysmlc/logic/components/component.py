@@ -7,7 +7,7 @@ start an activity that nothing in the component performs.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic import formula as f
@@ -25,7 +25,7 @@ from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.feature_writes import WriterIndex
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.identifiers import Names, identifier
-from sysmlc.logic.machines.machine import Vertex
+from sysmlc.logic.machines.machine import Machine, Vertex, element_id
 from sysmlc.logic.machines.reader import MachineOptions, find_context_classifier
 
 
@@ -39,9 +39,13 @@ class Root:
     first: Formula
     machine: PlacedMachine | None = None
     state: Vertex | None = None
-    """The state whose do behaviour it is."""
+    """The state whose entry or do behaviour it is."""
+    after: str = ""
+    """The entry behaviour after which it starts, if that takes time."""
     service: str = ""
     """The input with which the environment starts it."""
+    is_entry: bool = False
+    """Whether it is the entry behaviour of its state, not the do behaviour."""
     over: str = ""
     """The variable that its state uses to remember its end."""
 
@@ -83,6 +87,8 @@ class Component:
         """The condition under which a do behaviour ends, by the machine's variable for its end."""
         self.released: set[str] = set()
         """Ids of writers whose writes are not described everywhere."""
+        self.obstacle = ""
+        """Why the steps of the component are not described, although its objects are; or empty."""
         self.end_aliases: dict[str, str] = {}
         """Nodes of do behaviours by the input that would end them in the machine alone."""
         if is_activity:
@@ -119,17 +125,69 @@ class Component:
             event = self.events.setdefault(
                 object_.path, self.names.new(f"{object_.path}_event") if object_.path else "event"
             )
-            machine = place_machine(self.tree, object_, element, prefix, event, self._options)
+            machine = place_machine(
+                self.tree,
+                object_,
+                element,
+                prefix,
+                event,
+                self._options,
+                partial(self._list_long_entries, object_),
+            )
             if machine is None:
                 raise ComponentError(f"no steps can be derived from state machine '{element.name}'")
             self.machines.append(machine)
+            entries = {
+                state.id: self._add_entry(machine, state, prefix)
+                for state in machine.machine.list_states()
+                if state.opening
+            }
             for state, behaviours in machine.list_do_states(self.tree):
-                self._add_do(machine, state, behaviours, prefix)
+                self._add_do(machine, state, behaviours, prefix, entries.get(state.id, ""))
             self._release_instant_behaviours(machine)
 
+    def _list_long_entries(self, object_: ComponentObject, machine: Machine) -> Iterator[str]:
+        """Yield the ids of the states whose entries take time and are described."""
+        for state in machine.list_states():
+            behaviours = self.graph.targets(self.graph[element_id(state.id)], Edge.ENTRY)
+            performed = [self._find_performed(object_, behaviour) for behaviour in behaviours]
+            takes_time = any(pair and self._takes_time(pair[1]) for pair in performed)
+            if takes_time and len(behaviours) == 1 and not state.regions and not state.timer:
+                yield state.id
+
+    def _takes_time(self, activity: Element) -> bool:
+        tokens = self.performances.find_tokens(activity)
+        return self.performances.has_steps(activity) if tokens is None else tokens.takes_time
+
+    def _add_entry(self, machine: PlacedMachine, state: Vertex, prefix: str) -> str:
+        """Add the entry behaviour of a state, which takes time; return its node.
+
+        The state is active meanwhile, and none of its transitions is enabled (the Library: the
+        entry is inside of the performance of the state).
+        """
+        (behaviour,) = self.graph.targets(self.graph[element_id(state.id)], Edge.ENTRY)
+        performed = self._find_performed(machine.owner, behaviour)
+        assert performed is not None
+        object_, activity = performed
+        name = activity.name or "entry"
+        names = machine.owner.extend_path(name)
+        caller = Caller(object_, names, _join_names(prefix, state.literal, name))
+        id = self.performances.add(activity, caller, machine.variables[state.opening])
+        self.performances.paths.append(ActionPath((*names[:-1], state.literal, name), id))
+        starts, stops = machine.entered_formula(state), machine.left_formula(state)
+        is_first = machine.active_formula(state)
+        self.roots.append(Root(id, starts, stops, is_first, machine, state, is_entry=True))
+        return id
+
     def _add_do(
-        self, machine: PlacedMachine, state: Vertex, behaviours: list[Element], prefix: str
+        self,
+        machine: PlacedMachine,
+        state: Vertex,
+        behaviours: list[Element],
+        prefix: str,
+        entry: str,
     ) -> None:
+        """Add the do behaviour of a state; *entry* is the node of its entry if that takes time."""
         if len(behaviours) != 1:
             raise ComponentError(f"state '{state.literal}' has several do behaviours")
         behaviour = behaviours[0]
@@ -144,9 +202,10 @@ class Component:
         id = self.performances.add(activity, caller, run)
         place = (*names[:-1], state.literal, name)
         self.performances.paths.append(ActionPath(place, id))
-        is_first = machine.active_formula(state)
+        is_first = f.FALSE if entry else machine.active_formula(state)
         entered, left = machine.entered_formula(state), machine.left_formula(state)
-        root = Root(id, entered, left, is_first, machine, state)
+        starts = finish_variable(entry) if entry else entered
+        root = Root(id, starts, left, is_first, machine, state, after=entry)
         self.roots.append(root)
         if state.done:
             self.end_aliases[_join_names(prefix, state.done)] = id
@@ -155,20 +214,33 @@ class Component:
     def _release_instant_behaviours(self, machine: PlacedMachine) -> None:
         """Record the writers in activities that entries, exits and effects perform.
 
-        The machine performs them within its step, which is not described.
+        The machine performs them within its step, which is not described. What takes time is an
+        obstacle, apart from the entries that are performances of their own.
         """
-        for element in self.graph.subtree(machine.element):
+        openings = {element_id(s.id) for s in machine.machine.list_states() if s.opening}
+        for element in self._iter_machine_elements(machine):
             for edge in (Edge.ENTRY, Edge.EXIT, Edge.EFFECT):
+                if edge is Edge.ENTRY and element.id in openings:
+                    continue
                 for behaviour in self.graph.targets(element, edge):
                     performed = self._find_performed(machine.owner, behaviour)
                     if performed is None:
                         continue
-                    if any(
-                        self.graph.targets(action, Edge.CALLS)
-                        for action in self.graph.subtree(performed[1])
-                    ):
-                        raise ComponentError(f"'{performed[1].name}' is performed within a step")
-                    self.released.update(action.id for action in self.graph.subtree(performed[1]))
+                    activity = performed[1]
+                    if self._takes_time(activity):
+                        name = element.name or "a transition"
+                        beside = " beside substates or a time-out" * (edge is Edge.ENTRY)
+                        self.obstacle = f"the {edge} '{activity.name}' of {name} takes time{beside}"
+                    self.released.update(action.id for action in self.graph.subtree(activity))
+
+    def _iter_machine_elements(self, machine: PlacedMachine) -> Iterator[Element]:
+        """Yield the states and transitions of a machine, those of its submachines included."""
+        yield from self.graph.subtree(machine.element)
+        for id in machine.machine.vertices:
+            yield self.graph[element_id(id)]
+        for transition in machine.machine.list_transitions():
+            for segment in (transition, *transition.join_partners):
+                yield self.graph[element_id(segment.id)]
 
     def _remember_end(
         self, machine: PlacedMachine, state: Vertex, id: str, entered: Formula, left: Formula

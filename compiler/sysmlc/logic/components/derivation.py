@@ -17,7 +17,7 @@ from sysmlc.logic.activities.step_formulas import PerformanceFormulas
 from sysmlc.logic.components.component import Component, finish_name
 from sysmlc.logic.components.machines import find_unread_features
 from sysmlc.logic.components.names import Atom, iter_atoms
-from sysmlc.logic.components.objects import Slot
+from sysmlc.logic.components.objects import ComponentError, Slot
 from sysmlc.logic.components.places import PlaceInBehaviour, iter_places
 from sysmlc.logic.components.signals import derive_events
 from sysmlc.logic.composition.structure import join_path
@@ -67,10 +67,9 @@ class ComponentBehaviour(Struct, frozen=True):
 
 
 def describe_component(component: Component, name: str) -> ComponentBehaviour:
-    """Return the behaviour of a component with all features that were named so far.
-
-    *name* is the qualified name of the component. Raises ComponentError.
-    """
+    """Return the behaviour with all features named so far; *name* is qualified. ComponentError."""
+    if component.obstacle:
+        raise ComponentError(component.obstacle)
     return _Description(component).describe(name)
 
 

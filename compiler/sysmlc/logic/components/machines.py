@@ -1,6 +1,6 @@
 """State machines of the objects of a component: moves, writes of features, and do behaviours."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from msgspec import Struct
 from msgspec.structs import replace
@@ -16,9 +16,10 @@ from sysmlc.logic.components.objects import (
     is_value,
 )
 from sysmlc.logic.composition.naming import rename_variables
-from sysmlc.logic.contract import Class, Conjunct, EnumerationDomain, Owner, Variable
+from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, EnumerationDomain, Owner, Variable
 from sysmlc.logic.feature_writes import WriterIndex
 from sysmlc.logic.formula import Const, Formula, Literal
+from sysmlc.logic.identifiers import identifier
 from sysmlc.logic.machines.derivation import (
     describe_exploration,
     iter_change_conditions,
@@ -81,9 +82,10 @@ class PlacedMachine(Struct, frozen=True):
         return ()
 
     def list_variables(self) -> Iterator[Variable]:
-        """Yield the variables of the machine other than features and the event."""
+        """Yield the variables of the machine other than features, the event and running entries."""
+        openings = {state.opening for state in self.machine.list_states()}
         for variable in self.machine.variables:
-            if variable.name not in self.slots and variable.name != EVENT:
+            if variable.name not in (*self.slots, EVENT, *openings):
                 yield replace(variable, name=self.variables[variable.name])
 
     def iter_steps(self) -> Iterator[Conjunct]:
@@ -234,19 +236,28 @@ def place_machine(
     prefix: str,
     event: str,
     options: MachineOptions,
+    list_long_entries: Callable[[Machine], Iterable[str]],
 ) -> PlacedMachine | None:
     """Read a machine of an object; return None if no steps can be derived from it.
 
-    *prefix* stands before its own variables; *event* is the variable of the object's event. Raises
+    *prefix* stands before its own variables; *event* is the variable of the object's event.
+    *list_long_entries* returns the ids of the states whose entries take time. Raises
     ComponentError.
     """
     machine = read_machine(tree.graph, element, Sink(), options, classifier=object_.type_)
+    machine = machine and _add_openings(machine, list_long_entries(machine))
     exploration = None if machine is None else explore_machine(tree.graph, machine, Sink())
     if machine is None or exploration is None:
         return None
     variables: dict[str, str] = {EVENT: event}
+    for state in machine.list_states():
+        if state.opening:
+            name = identifier(f"run_{tree.graph[element_id(state.id)].name}_entry")
+            variables[state.opening] = tree.names.new(f"{prefix}_{name}" if prefix else name)
     slots: dict[str, Slot] = {}
     for variable in machine.variables:
+        if variable.name in variables:
+            continue
         slot = _find_slot(tree, object_, element, variable)
         if slot is not None:
             slots[variable.name] = slot
@@ -261,6 +272,19 @@ def place_machine(
     return PlacedMachine(
         object_, element, exploration, variables, slots, frozenset(_list_written_ids(machine))
     )
+
+
+def _add_openings(machine: Machine, states: Iterable[str]) -> Machine:
+    """Return the machine with variables that are true while the entries of *states* run."""
+    openings = {id: f"opening of {id}" for id in states}
+    vertices = {
+        id: replace(vertex, opening=openings.get(id, "")) for id, vertex in machine.vertices.items()
+    }
+    new = (
+        Variable(name, Owner.ENVIRONMENT, BooleanDomain(), element_id(id))
+        for id, name in openings.items()
+    )
+    return replace(machine, vertices=vertices, variables=(*machine.variables, *new))
 
 
 def find_unread_features(

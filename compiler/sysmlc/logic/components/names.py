@@ -279,5 +279,5 @@ def _shorten_paths(component: "Component") -> dict[str, str]:
 def _list_performed_states(component: "Component") -> Iterator[str]:
     """Yield the variables of the do behaviours that are performances."""
     for root in component.roots:
-        if root.machine is not None and root.state is not None:
+        if root.machine is not None and root.state is not None and not root.is_entry:
             yield root.machine.variables[root.state.do]

@@ -43,6 +43,7 @@ from sysmlc.logic.machines.machine import (
     OnEvent,
     OnInput,
     OnRise,
+    Transition,
     Vertex,
 )
 from sysmlc.logic.machines.reaction import (
@@ -220,7 +221,7 @@ def _apply_joins(
         is_ready = all(
             is_active(machine, now, state.id) and _is_complete(machine, now, state)
             for state in states
-        )
+        ) and not _is_blocked(machine, now, join)
         inner_sources = [
             inner for inner in enabled for state in states if machine.contains(state.id, inner)
         ]
@@ -259,7 +260,7 @@ def _list_options(
     outgoing = [
         transition
         for transition in machine.outgoing.get(state.id, ())
-        if not transition.join_partners
+        if not transition.join_partners and not _is_blocked(machine, now, transition)
     ]
     completing = [transition for transition in outgoing if not transition.occurrences]
     if _is_complete(machine, now, state):
@@ -280,6 +281,11 @@ def _list_options(
         for transition in triggered
         for run in take_transition(machine, now, transition, written)
     ]
+
+
+def _is_blocked(machine: Machine, now: Mapping[str, Literal], transition: Transition) -> bool:
+    """Whether an entry behaviour that takes time runs in a state that the transition leaves."""
+    return any(now[name] for name in machine.list_blockers(transition))
 
 
 def _is_complete(machine: Machine, now: Mapping[str, Literal], state: Vertex) -> bool:

@@ -113,8 +113,9 @@ class Vertex(Struct, frozen=True):
 
     ``do`` is the output that holds while the state is active, ``done`` the input that reports the
     end of the do behaviour, ``timer`` counts the steps that the state has been active, and ``pick``
-    names the enabled outgoing transition that was taken. An empty name means that there is no such
-    variable. ``border`` is the state that owns an entry or exit point.
+    names the enabled outgoing transition that was taken. ``opening`` holds while an entry behaviour
+    that takes time runs; the machine of a component alone has it. An empty name means that there is
+    no such variable. ``border`` is the state that owns an entry or exit point.
     """
 
     id: str
@@ -129,6 +130,7 @@ class Vertex(Struct, frozen=True):
     timer: str = ""
     pick: str = ""
     border: str = ""
+    opening: str = ""
 
     @property
     def is_stable(self) -> bool:
@@ -182,6 +184,22 @@ class Machine(Struct, frozen=True):
     def list_transitions(self) -> list[Transition]:
         """List all transitions, grouped by source."""
         return [transition for group in self.outgoing.values() for transition in group]
+
+    def list_blockers(self, transition: Transition) -> list[str]:
+        """List the variables that are true while entry behaviours disable *transition*.
+
+        These are the entries of its sources, and of the states inside them if it leaves them.
+        """
+        return [
+            state.opening
+            for state in self.vertices.values()
+            if state.opening
+            and any(
+                source == state.id
+                or (transition.kind != "internal" and self.contains(source, state.id))
+                for source in transition.sources
+            )
+        ]
 
     def list_enclosing_states(self, vertex: str) -> list[str]:
         """List the states that contain *vertex*, innermost first.

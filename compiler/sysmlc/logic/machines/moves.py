@@ -193,7 +193,8 @@ def _enabling_condition(
     occurs = _occurrence_condition(machine, transition)
     path_condition = _path_condition(machine, domains, transition, paths)
     active_sources = (is_active_formula(machine, source) for source in transition.sources)
-    return remove_redundant(f.both(*active_sources, occurs, path_condition), domains)
+    opened = (f.negate(f.var(name)) for name in machine.list_blockers(transition))
+    return remove_redundant(f.both(*active_sources, *opened, occurs, path_condition), domains)
 
 
 def _path_condition(
