@@ -126,6 +126,10 @@ class Contract(Struct, frozen=True):
     assumptions: tuple[Conjunct, ...]
     guarantees: tuple[Conjunct, ...]
 
+    def list_assumptions(self, viewpoint: str) -> tuple[Conjunct, ...]:
+        """Return the assumptions of a viewpoint: its own and those that are common to all."""
+        return tuple(item for item in self.assumptions if item.viewpoint in ("", viewpoint))
+
 
 def mark_derived(contract: Contract) -> Contract:
     """Return the contract with all conjuncts marked as derived."""

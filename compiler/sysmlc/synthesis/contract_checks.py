@@ -304,16 +304,17 @@ def _find_behaviour_findings(
 def _find_undischarged(
     behaviour: Contract, requirements: Contract, options: Options
 ) -> list[Failure]:
-    """Return the author's assumptions on a behaviour that its requirements do not entail."""
+    """Return the author's assumptions on a behaviour that some requirement does not entail."""
     stated = tuple(conjunct for conjunct in behaviour.assumptions if not conjunct.is_derived)
+    concrete, new_manager = replace(behaviour, assumptions=stated), manager_factory(options)
+    viewpoints = dict.fromkeys(item.viewpoint for item in requirements.guarantees)
+    failures: dict[Conjunct, Failure] = {}
     try:
-        return list(
-            find_refinement_failures(
-                replace(behaviour, assumptions=stated),
-                replace(requirements, guarantees=()),
-                manager_factory(options),
-            )
-        )
+        for assumed in dict.fromkeys(map(requirements.list_assumptions, viewpoints)):
+            abstract = replace(requirements, assumptions=assumed, guarantees=())
+            for failure in find_refinement_failures(concrete, abstract, new_manager):
+                failures.setdefault(failure.conjunct, failure)
+        return list(failures.values())
     except (OutsideGr1Error, DomainError, LimitError):
         # Each requirement meets the same obstacle and reports it.
         return []

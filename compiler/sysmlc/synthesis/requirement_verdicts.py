@@ -1,8 +1,8 @@
 """Verdicts about requirements: each conjunct of a requirement is one question to a behaviour.
 
-The runs of the behaviour that satisfy the author's assumptions either all satisfy the conjunct, or
-they do if each action ends, or a run violates it. The assumptions that actions end and loops are
-left are derived by the compiler: they may prove a requirement, and never refute one.
+The runs of the behaviour that satisfy the assumptions of the requirement either all satisfy the
+conjunct, or they do if each action ends, or a run violates it. The assumptions that actions end and
+loops are left are derived by the compiler: they may prove a requirement, and never refute one.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -97,7 +97,7 @@ _UNDECIDED_PROBLEMS = (OutsideGr1Error, DomainError, LimitError, NotReducibleErr
 
 
 class BehaviourCheck:
-    """Questions about the runs of a behaviour that satisfy the author's assumptions.
+    """Questions about the runs of a behaviour that satisfy the assumptions of a requirement.
 
     *undischarged* are the assumptions that the author wrote on the behaviour and that the
     requirements do not entail: the author's guarantees of the behaviour then prove nothing.
@@ -114,14 +114,14 @@ class BehaviourCheck:
         self._requirements = requirements
         self._options = options
         contract = behaviour.contract
-        assumed = tuple(
+        self._assumed = tuple(
             conjunct
             for conjunct in requirements.assumptions
             if not (conjunct.is_derived and _names_of((conjunct,)) & behaviour.gaps.keys())
         )
         definitions = tuple(conjunct for conjunct in requirements.guarantees if conjunct.is_derived)
         stated = tuple(conjunct for conjunct in contract.guarantees if not conjunct.is_derived)
-        self._facts = (*assumed, *definitions, *(() if undischarged else stated))
+        self._facts = (*definitions, *(() if undischarged else stated))
         self._unproven = (*undischarged, *stated) if undischarged else ()
         self._endings = tuple(conjunct for conjunct in contract.assumptions if conjunct.is_derived)
         self._search = RunSearch((contract, requirements), manager_factory(options))
@@ -169,7 +169,7 @@ class BehaviourCheck:
     def decide(self, conjunct: Conjunct) -> RequirementVerdict:
         """Return the verdict about a conjunct, within the time limit of one question."""
         self._search.restart_clocks()
-        if not self._has_runs():
+        if not self._search.has_runs(self._list_facts((), conjunct)):
             reason = "no run of the behaviour satisfies the assumptions of the requirement"
             return RequirementVerdict(conjunct, Answer.NOT_DECIDED, reason)
         if self._entails((), conjunct):
@@ -275,25 +275,26 @@ class BehaviourCheck:
 
     # -- runs ------------------------------------------------------------------------------------
 
-    def _has_runs(self) -> bool:
-        return self._search.has_runs(self._list_facts(()))
-
     def _entails(self, endings: tuple[Conjunct, ...], conjunct: Conjunct) -> bool:
-        return self._search.entails(self._list_facts(endings), conjunct)
+        return self._search.entails(self._list_facts(endings, conjunct), conjunct)
 
     def _find_violation(self, facts: tuple[Conjunct, ...], conjunct: Conjunct) -> Trace | None:
         """Return a run of the behaviour with additional facts that violates the conjunct."""
-        return self._search.find_violation(self._list_facts(facts), conjunct)
+        return self._search.find_violation(self._list_facts(facts, conjunct), conjunct)
 
-    def _list_facts(self, facts: tuple[Conjunct, ...]) -> tuple[Conjunct, ...]:
-        """Return what all runs of the behaviour satisfy, with further *facts*."""
+    def _list_facts(self, facts: tuple[Conjunct, ...], about: Conjunct) -> tuple[Conjunct, ...]:
+        """Return what all runs satisfy that a question is *about*, with further *facts*.
+
+        These runs satisfy the assumptions of the requirement that is asked, not those of others.
+        """
+        assumed = (item for item in self._assumed if item.viewpoint in ("", about.viewpoint))
         steps = (
             conjunct
             for conjunct in self._behaviour.contract.guarantees
             # That an activity goes on for ever follows from the assumption that actions end.
             if conjunct.is_derived and conjunct.class_ is not Class.LIVENESS
         )
-        return (*self._facts, *steps, *facts)
+        return (*assumed, *self._facts, *steps, *facts)
 
 
 def report_unreachable(

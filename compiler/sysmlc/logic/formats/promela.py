@@ -78,8 +78,7 @@ _MAX_NUMBER = 2**31 - 1
 def lower(contract: Contract, format_name: str) -> Contract:
     """Return the contract with names and operators of Promela. Raises NotExpressibleError."""
     # Macros of the verifier are in capitals.
-    names = [variable.name for variable in contract.variables]
-    capitals = {name for name in names if name == name.upper()}
+    capitals = {item.name for item in contract.variables if item.name == item.name.upper()}
     renamed = rename_reserved(contract, {*_RESERVED, *capitals})
     variable_domains = index_domains(renamed)
 
@@ -117,8 +116,11 @@ def _check_numbers(contract: Contract, format_name: str) -> None:
 
 def write(contract: Contract, format_name: str) -> str:
     """Return the model. Raises NotExpressibleError if no behaviour is described."""
-    if not any(map(is_step, contract.guarantees)):
+    claims = list(itertools.filterfalse(is_step, contract.guarantees))
+    if len(claims) == len(contract.guarantees):
         raise NotExpressibleError(format_name, "no behaviour of the component is described")
+    if any(contract.list_assumptions(item.viewpoint) != contract.assumptions for item in claims):
+        raise NotExpressibleError(format_name, "its requirements have different assumptions")
     lowered = _eliminate_next(lower(contract, format_name))
     return "\n".join([*_PromelaWriter(lowered).iter_lines(), ""])
 
@@ -319,10 +321,9 @@ class _PromelaWriter:
             text = sample_start(formula, self._print_condition)
             assumed = " && ".join([*recurrence, *general])
             text = f"(({assumed}) -> {text})" if assumed else text
-            name = names.new(claim.viewpoint or "claim", "claim")
             yield ""
             yield f"/* {_make_comment(print_formula(formula))} */"
-            yield f"ltl {name} {{ (<>blocked) || {text} }}"
+            yield f"ltl {names.new(claim.viewpoint or 'claim', 'claim')} {{ (<>blocked) || {text} }}"
 
 
 def _order(

@@ -273,7 +273,9 @@ def write(contract: Contract, format_name: str) -> str:
     if not groups:
         lines += (f"-- assumed: {print_ltl_conjunct(format_name, _NOTATION, a)}" for a in assumed)
     for title, group in groups:
-        formula = replace(lowered, assumptions=assumed, guarantees=group)
+        viewpoints = {"", *(item.viewpoint for item in group)}
+        needed = tuple(item for item in assumed if item.viewpoint in viewpoints)
+        formula = replace(lowered, assumptions=needed, guarantees=group)
         specification = print_implication(formula, _NOTATION, format_name)
         lines.append(f"LTLSPEC NAME {title} := {specification};")
     return "\n".join([*lines, ""])

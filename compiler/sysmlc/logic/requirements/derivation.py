@@ -8,7 +8,6 @@ from msgspec.structs import replace
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.logic import formula as f
-from sysmlc.logic.classification import classify, word_conjuncts
 from sysmlc.logic.components.component import Component
 from sysmlc.logic.components.derivation import (
     ComponentBehaviour,
@@ -17,17 +16,16 @@ from sysmlc.logic.components.derivation import (
 )
 from sysmlc.logic.components.names import ComponentNames
 from sysmlc.logic.components.objects import ComponentError
-from sysmlc.logic.contract import Class, Conjunct, Contract, Source
+from sysmlc.logic.contract import Contract
 from sysmlc.logic.expressions.context import report_range
 from sysmlc.logic.expressions.elaboration import ElaborationError, Fault, elaborate_condition
 from sysmlc.logic.expressions.expression import ExpressionError
 from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.feature_writes import WriterIndex
 from sysmlc.logic.formal_texts import describe_error, read_formal
-from sysmlc.logic.formula import Formula, Literal
+from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines.reader import MachineOptions, find_context_classifier
-from sysmlc.logic.printing import print_literal
-from sysmlc.logic.reduction.contract_reduction import add_history_bits
+from sysmlc.logic.requirements.conjuncts import Reading, make_contract, state_initial_values
 from sysmlc.logic.requirements.scope import (
     Scope,
     make_scope,
@@ -102,7 +100,7 @@ def derive(
         if whole is not None:
             variables = scope_of(scope.context, whole.contract.variables).variables
             scope = replace(scope, variables=variables)
-        contract = _make_contract(graph, subject, scope, formulas, behaviour)
+        contract = make_contract(graph, subject, scope, formulas, behaviour)
         if contract is not None:
             yield RequiredContract(contract, whole)
     informal.report(graph, sink)
@@ -163,7 +161,7 @@ def add_features(contract: Contract, scope: Scope, formula: Formula) -> Contract
     added = tuple(
         variable for variable in scope.select_variables((formula,)) if variable.name not in names
     )
-    inputs, outputs = _state_initial_values(scope, {variable.name for variable in added})
+    inputs, outputs = state_initial_values(scope, {variable.name for variable in added})
     return replace(
         contract,
         variables=(*contract.variables, *added),
@@ -206,13 +204,6 @@ class _InformalStatements:
             )
 
 
-class _Reading(Struct, frozen=True):
-    """The formula of a statement, and the same formula with the names that the author wrote."""
-
-    formula: Formula
-    wording: Formula | None = None
-
-
 def _read_statement(
     graph: Graph,
     scope: Scope,
@@ -220,7 +211,7 @@ def _read_statement(
     informal: _InformalStatements,
     sink: Sink,
     obstacle: str = "",
-) -> _Reading | None:
+) -> Reading | None:
     """Return the formula of a statement, or record why it has none.
 
     *obstacle* is the reason if the names of states, actions and parts are not available.
@@ -230,7 +221,7 @@ def _read_statement(
     scope = replace(scope, component_names=(*scope.component_names, *subject_names))
     # Tools append a version: "OCL2.0", "KerML 1.0".
     language = statement.language.rstrip("0123456789. ")
-    reading: _Reading | None = None
+    reading: Reading | None = None
     if statement.is_temporal:
         # Without the names of the component, an unknown name may be one of them.
         reading = _read_temporal(graph, scope, statement, Sink() if obstacle else sink)
@@ -238,7 +229,7 @@ def _read_statement(
             informal.add(statement, obstacle)
     elif language in _EXPRESSION_LANGUAGES:
         formula = _read_condition(scope, statement, informal)
-        reading = None if formula is None else _Reading(formula)
+        reading = None if formula is None else Reading(formula)
     else:
         informal.add(statement, f"it is written in {constraint.attrs['language']}")
     if reading is not None:
@@ -246,7 +237,7 @@ def _read_statement(
     return reading
 
 
-def _read_temporal(graph: Graph, scope: Scope, statement: Statement, sink: Sink) -> _Reading | None:
+def _read_temporal(graph: Graph, scope: Scope, statement: Statement, sink: Sink) -> Reading | None:
     constraint = statement.constraint
     body = str(constraint.attrs.get("body", ""))
     try:
@@ -266,7 +257,7 @@ def _read_temporal(graph: Graph, scope: Scope, statement: Statement, sink: Sink)
         )
         return None
     wording = restore_names(formula, meanings) if meanings else None
-    return _Reading(replace_meanings(scope.substitute_constants(formula), meanings), wording)
+    return Reading(replace_meanings(scope.substitute_constants(formula), meanings), wording)
 
 
 def _read_condition(
@@ -296,104 +287,3 @@ def _report_ranges(graph: Graph, scope: Scope, formula: Formula, sink: Sink) -> 
     for feature in scope.context.features.values():
         if feature.variable in used:
             report_range(graph, feature, sink)
-
-
-# -- conjuncts -----------------------------------------------------------------------------------
-
-
-def _is_assumed(scope: Scope, statement: Statement, formula: Formula) -> bool:
-    return statement.is_assumed or (statement.is_open and scope.is_about_inputs(formula))
-
-
-def _classify(
-    scope: Scope, statement: Statement, reading: _Reading, is_assumed: bool
-) -> Iterator[Conjunct]:
-    """Yield the conjuncts of a statement; their texts name its requirement."""
-    id, name = statement.constraint.id, statement.requirement.name
-    text = _describe(statement, is_assumed)
-    conjuncts = [
-        Conjunct(part, class_, id, text, name)
-        for class_, part in _split_by_class(scope, statement, reading.formula, is_assumed)
-    ]
-    yield from word_conjuncts(conjuncts, reading.wording)
-
-
-def _split_by_class(
-    scope: Scope, statement: Statement, formula: Formula, is_assumed: bool
-) -> Iterator[tuple[Class, Formula]]:
-    """Yield the conjuncts of a formula with their classes.
-
-    A condition, which has no temporal operators, must hold in every step. If it is an assumption
-    about inputs alone, it is stated for the first step and for each next step: the environment can
-    then never reach a step in which it has to violate the assumption.
-    """
-    if statement.is_temporal:
-        yield from classify(formula)
-    elif is_assumed and scope.is_about_inputs(formula):
-        yield Class.INIT, formula
-        yield Class.SAFETY, f.prime(formula)
-    else:
-        yield Class.SAFETY, formula
-
-
-def _describe(statement: Statement, is_assumed: bool) -> str:
-    name, constraint = statement.requirement.name, statement.constraint.name
-    subject = f"'{constraint}' of '{name}'" if constraint else f"'{name}'"
-    return f"{subject} {'assumes' if is_assumed else 'demands'} it."
-
-
-def _list_used_names(scope: Scope, conjuncts: Iterable[Conjunct]) -> set[str]:
-    formulas = (conjunct.formula for conjunct in conjuncts)
-    return {variable.name for variable in scope.select_variables(formulas)}
-
-
-def _make_contract(
-    graph: Graph,
-    subject: Element,
-    scope: Scope,
-    formulas: list[tuple[Statement, _Reading]],
-    behaviour: Contract | None,
-) -> Contract | None:
-    """Return the contract of a subject's formulas; None if they demand nothing."""
-    assumptions: list[Conjunct] = []
-    demands: list[Conjunct] = []
-    for statement, reading in formulas:
-        is_assumed = _is_assumed(scope, statement, reading.formula)
-        conjuncts = assumptions if is_assumed else demands
-        conjuncts += _classify(scope, statement, reading, is_assumed)
-    if not demands:
-        return None
-    inputs, outputs = _state_initial_values(
-        scope, _list_used_names(scope, (*assumptions, *demands))
-    )
-    component = component_of(graph, subject)
-    if behaviour is not None:
-        # Initial values of outputs belong to the behaviour, whose first entries may assign others.
-        component, outputs = f"{component}.requirements", []
-    stated = (*inputs, *assumptions, *outputs, *demands)
-    variables = scope.select_variables(conjunct.formula for conjunct in stated)
-    contract = Contract(
-        component, subject.id, variables, (*inputs, *assumptions), (*outputs, *demands)
-    )
-    return add_history_bits(contract)
-
-
-def _state_initial_values(scope: Scope, names: set[str]) -> tuple[list[Conjunct], list[Conjunct]]:
-    """Return conjuncts for the initial values of the named variables: of inputs, then of others."""
-    inputs: list[Conjunct] = []
-    outputs: list[Conjunct] = []
-    for feature in scope.context.features.values():
-        if feature.variable in names and feature.default is not None and not feature.is_constant:
-            text = f"'{feature.element.name}' starts with {print_literal(feature.default)}."
-            formula = _equals(feature.variable, feature.default)
-            conjunct = Conjunct(
-                formula, Class.INIT, feature.element.id, text, source=Source.DERIVED
-            )
-            (inputs if scope.is_about_inputs(formula) else outputs).append(conjunct)
-    return inputs, outputs
-
-
-def _equals(variable: str, value: Literal) -> Formula:
-    if isinstance(value, bool):
-        return f.var(variable) if value else f.negate(f.var(variable))
-    return f.eq(f.var(variable), f.const(value))

@@ -21,6 +21,8 @@ class Statement(Struct, frozen=True):
     """The requirement does not separate assumptions from demands (SysML v1): a formula over inputs
     alone is then assumed.
     """
+    has_demands: bool = False
+    """The requirement states a demand; always false if it does not separate assumptions."""
 
     @property
     def language(self) -> str:
@@ -44,24 +46,39 @@ def collect_statements(graph: Graph) -> list[tuple[Element, list[Statement]]]:
         new_statements = list(iter_statements(graph, requirement))
         if new_statements:
             for subject in _iter_subjects(graph, requirement):
-                # A constraint that several requirements inherit counts once.
-                by_constraint = statements.setdefault(subject.id, {})
-                by_constraint.update(
-                    (statement.constraint.id, statement) for statement in new_statements
-                )
+                _merge_statements(statements.setdefault(subject.id, {}), new_statements)
     return [(graph[id], list(by_constraint.values())) for id, by_constraint in statements.items()]
+
+
+def _merge_statements(by_constraint: dict[str, Statement], added: list[Statement]) -> None:
+    """Add the statements of a requirement. A constraint that several requirements inherit is once.
+
+    It belongs to the last requirement, except if that assumes more than those before: the
+    constraint is demanded without the additional assumption, too.
+    """
+    new_assumptions = any(
+        item.is_assumed and item.constraint.id not in by_constraint for item in added
+    )
+    for statement in added:
+        if not (new_assumptions and statement.constraint.id in by_constraint):
+            by_constraint[statement.constraint.id] = statement
 
 
 def iter_statements(graph: Graph, requirement: Element) -> Iterator[Statement]:
     """Yield the constraints of a requirement and of those that it specialises."""
     family = (requirement, *query.generals(graph, requirement))
     is_open = not any(_separates_assumptions(graph, member) for member in family)
+    constraints: list[tuple[Element, bool]] = []
     for member in family:
         assumed_ids = {constraint.id for constraint in graph.targets(member, Edge.ASSUMES)}
-        for element in graph.owned(member):
-            if element.kind is Kind.CONSTRAINT and _has_text(element):
-                is_assumed = element.id in assumed_ids or _is_marked_assumption(element)
-                yield Statement(element, requirement, is_assumed, is_open)
+        constraints += (
+            (element, element.id in assumed_ids or _is_marked_assumption(element))
+            for element in graph.owned(member)
+            if element.kind is Kind.CONSTRAINT and _has_text(element)
+        )
+    has_demands = not is_open and not all(is_assumed for _, is_assumed in constraints)
+    for element, is_assumed in constraints:
+        yield Statement(element, requirement, is_assumed, is_open, has_demands)
 
 
 def _has_text(constraint: Element) -> bool:
