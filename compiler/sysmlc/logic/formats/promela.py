@@ -116,9 +116,9 @@ def _check_numbers(contract: Contract, format_name: str) -> None:
 
 def write(contract: Contract, format_name: str) -> str:
     """Return the model. Raises NotExpressibleError if no behaviour is described."""
-    claims = list(itertools.filterfalse(is_step, contract.guarantees))
-    if len(claims) == len(contract.guarantees):
+    if not any(map(is_step, contract.guarantees)):
         raise NotExpressibleError(format_name, "no behaviour of the component is described")
+    claims = itertools.filterfalse(is_step, contract.guarantees)
     if any(contract.list_assumptions(item.viewpoint) != contract.assumptions for item in claims):
         raise NotExpressibleError(format_name, "its requirements have different assumptions")
     lowered = _eliminate_next(lower(contract, format_name))
@@ -311,19 +311,19 @@ class _PromelaWriter:
         general = [
             sample_start(as_ltl(item), self._print_condition)
             for item in self._contract.assumptions
-            if item.class_ is Class.OTHER
-            or (item.class_ is Class.LIVENESS and item not in self._recurring)
+            if item.class_ in (Class.OTHER, Class.LIVENESS) and item not in self._recurring
         ]
         names = Names(*self._domains, *_RESERVED, *list_literals(self._contract))
         for claim in itertools.filterfalse(is_step, self._contract.guarantees):
             formula = as_ltl(claim)
             recurrence = ["([]<>fair)"] if self._recurring and claim.class_ != Class.SAFETY else []
-            text = sample_start(formula, self._print_condition)
             assumed = " && ".join([*recurrence, *general])
+            text = sample_start(formula, self._print_condition)
             text = f"(({assumed}) -> {text})" if assumed else text
             yield ""
             yield f"/* {_make_comment(print_formula(formula))} */"
-            yield f"ltl {names.new(claim.viewpoint or 'claim', 'claim')} {{ (<>blocked) || {text} }}"
+            title = names.new(claim.viewpoint or "claim", "claim")
+            yield f"ltl {title} {{ (<>blocked) || {text} }}"
 
 
 def _order(
