@@ -189,7 +189,21 @@ def test_a_referential_action_without_order_is_not_performed():
     assert list_running(f"perform action work {{ {steps} }}") == ["run_a", "run_b"]
 
 
-@pytest.mark.parametrize("member", ["ref action seen;", "attribute force;"])
+@pytest.mark.parametrize(
+    "member",
+    [
+        "ref action seen;",
+        "attribute force;",
+        "item seam;",
+        "part tool;",
+        "port plug;",
+        "assert constraint { true }",
+        "requirement quality;",
+        "connection cable;",
+        "action def Tack;",
+        "alias other for weld;",
+    ],
+)
 def test_an_action_without_steps_ends_when_the_environment_ends_it(member):
     graph = compile_robot(f"perform action work {{ action weld {{ {member} }} }}")
     (contract,) = graph.derived(Contract)

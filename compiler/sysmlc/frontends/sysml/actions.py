@@ -9,6 +9,7 @@ from sysmlc.frontends.sysml.kinds import ACTIVITIES
 from sysmlc.frontends.sysml.successions import defer_implied_start, lower_steps
 from sysmlc.frontends.sysml.triggers import lower_trigger
 from sysmlc.ir import AttrValue, Edge, Element, Kind, as_items
+from sysmlc.language.metaclasses import is_a
 from sysmlc.language.tree import Node
 from sysmlc.logic.expressions.expression import print_statement
 
@@ -19,7 +20,6 @@ _STRUCTURED_SUBKINDS = frozenset(
     {"conditional", "loop", "sequence", "expansion", "interruptible", "structured"}
 )
 _PARTITION_KINDS = (Kind.PARTITION, Kind.STRUCTURED)
-_FEATURES = frozenset({"AttributeUsage", "EnumerationUsage"})
 _CONTROL_SUBKINDS = {
     "DecisionNode": "decision",
     "MergeNode": "merge",
@@ -47,10 +47,17 @@ def lower_action(lowering: "Lowering", node: Node, owner: Element) -> Element:
 
 
 def _is_step(node: Node) -> bool:
-    """Whether a member makes an action a group: an action with features only is elementary."""
-    is_passed = "direction" in node.attributes or node.attributes.get("isReference")
-    is_feature = node.kind in _FEATURES or _is_nameless_reference(node)
-    return not (nodes.is_annotation(node) or is_passed or is_feature)
+    """Whether a member makes an action a group: a step, or an order or flow between steps.
+
+    An action with features, connections, constraints, definitions or imports only is elementary.
+    """
+    if "direction" in node.attributes or node.attributes.get("isReference"):
+        return False
+    if node.kind == "Membership":
+        return not node.name and not node.short_name  # `first x;`, no alias
+    if is_a(node.kind, "Step"):
+        return not is_a(node.kind, "BooleanExpression")  # constraints are steps in KerML
+    return is_a(node.kind, "Succession") or is_a(node.kind, "BindingConnector")
 
 
 def _is_nameless_reference(node: Node) -> bool:
