@@ -20,14 +20,14 @@ FLAGS = "attribute x : Boolean := false; attribute y : Boolean := false;"
 def decide(workspace, all_passes):
     """Return a function from a block and formulas to the verdicts about the formulas."""
 
-    def check(block, *formulas, others="", kind="part def"):
+    def check(block, *formulas, others="", kind="part def", generals=""):
         requirements = (
             f"requirement def R{number} {{ subject b : B; "
             f'require constraint {{ language "ltl" /* {formula} */ }} }}'
             for number, formula in enumerate(formulas)
         )
         head = ("package P {", "private import ScalarValues::*;", "item def Go;", others)
-        lines = (*head, f"{kind} B {{ {block} }}", *requirements, "}")
+        lines = (*head, f"{kind} B {generals} {{ {block} }}", *requirements, "}")
         workspace.write("model.sysml", "\n".join(lines))
         result = workspace.sysmlc("contracts", "check", "--format", "json", "model.sysml")
         entries = json.loads(result.stdout)["requirements"]
@@ -135,6 +135,17 @@ def test_a_part_without_definition_reads_the_features_of_the_block_around_it(dec
 def test_an_assignment_to_an_unknown_object_is_not_decided(decide, part):
     block = f"part d : Cell; {part} {FILL.format('assign c.full := true')}"
     assert decide(block, "G !(d.full)", others=CELL) == ["not-decided"]
+
+
+@pytest.mark.parametrize("part", ["part c : Cell[2];", "ref part c : Cell;"])
+def test_an_assignment_to_an_unknown_object_does_not_set_the_inherited_feature(
+    decide, workspace, part
+):
+    block = f"{part} {FILL.format('assign c.full := true')}"
+    formulas = ("F full", "G !full")
+    assert decide(block, *formulas, others=CELL, generals=":> Cell") == ["not-decided"] * 2
+    result = workspace.sysmlc("contracts", "check", "model.sysml")
+    assert "SM562" in result.stderr
 
 
 def test_a_guard_reads_a_feature_of_a_part(decide):

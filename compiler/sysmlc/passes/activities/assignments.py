@@ -54,10 +54,14 @@ def read_assignments(
 def _resolve_target(assignment: FeatureWrite, scope: Scope, writers: WriterIndex) -> Feature | None:
     """Return the feature that an assignment sets, or None if the activity does not know it.
 
-    The activity may know the feature under another name, such as ``busy`` for ``robot.busy``.
+    The activity may know the feature under another name, such as ``busy`` for ``robot.busy``. But
+    a path through a feature leads to another object: ``busy`` of this object is not meant, even if
+    both inherit it.
     """
     feature = scope.find_feature(assignment.name)
-    if feature is None:
+    head, dot, _ = assignment.name.partition(".")
+    leads_away = bool(dot) and scope.find_feature(head) is not None
+    if feature is None and not leads_away:
         target = writers.resolve_target(assignment.action, assignment.name)
         same_feature = None if target is None else scope.find_feature(target.name)
         feature = (
