@@ -79,7 +79,9 @@ DRILL = """package Plant {
     private import ScalarValues::*;
     part def Drill {
         attribute sharp : Boolean := true;
-        action bore { first start then turn; action turn assign sharp := RESULT; then done; }
+        action bore {
+            first start then turn; action turn assign sharp := RESULT; then action lift; then done;
+        }
         exhibit state Control {
             entry; then Boring;
             state Boring { do bore; }
@@ -104,13 +106,19 @@ DRILL = """package Plant {
         (
             "true",
             [
-                "9: SM559 no run of 'Plant::Drill' reaches 'Grinding'",
-                "13: SM517 no run of 'Plant::Drill' takes transition 'check to Grinding [not "
+                "11: SM559 no run of 'Plant::Drill' reaches 'Grinding'",
+                "15: SM517 no run of 'Plant::Drill' takes transition 'check to Grinding [not "
                 "sharp]', although runs reach its source",
                 "4: SM519 'sharp' of 'Plant::Drill' is assigned, but no run changes its value",
             ],
         ),
-        ("false", []),
+        (
+            "false",
+            [
+                "14: SM517 no run of 'Plant::Drill' takes transition 'check to Boring [sharp]', "
+                "although runs reach its source"
+            ],
+        ),
     ],
 )
 def test_branches_behind_the_completion_of_a_state(result, findings, find_unreached):

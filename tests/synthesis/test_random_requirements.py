@@ -46,7 +46,8 @@ ORDER = ("broken", "not-decided", "holds-if-actions-end", "holds")
 def check(path):
     """Return the verdicts of ``contracts check``, and the names of what no run reaches.
 
-    A requirement has the verdict of its worst conjunct.
+    The second result is None if the behaviour is not described. A requirement has the verdict of
+    its worst conjunct.
     """
     arguments = ["contracts", "check", "--format", "json", str(path)]
     result = CliRunner().invoke(group.sysmlc, arguments, catch_exceptions=False)
@@ -54,18 +55,18 @@ def check(path):
     document = json.loads(result.stdout)
     for entry in document["requirements"]:
         verdicts.setdefault(entry["requirement"], []).append(entry["verdict"])
-    (behaviour,) = document["behaviours"]
-    unreached = {
-        member: sorted(behaviour[member])
-        for member in ("unreachable", "never_taken", "never_changed")
-    }
+    members = "unreachable", "never_taken", "never_changed"
+    unreached = None
+    for behaviour in document["behaviours"]:
+        unreached = {member: sorted(behaviour[member]) for member in members}
     return [min(verdicts[name], key=ORDER.index) for name in sorted(verdicts)], unreached
 
 
 def compare(seed, tmp_path):
     """Compare both answers about a random block, and what both find that no run reaches.
 
-    Every second block has a part.
+    Every second block has a part. Return whether the behaviour is described: it is not if a guard
+    reads what a do behaviour assigns in the same step.
     """
     random = Random(seed)
     block, explored = explore_random_block(random)
@@ -77,10 +78,14 @@ def compare(seed, tmp_path):
     path.write_text(require(text, map(rename, formulas)), "utf-8")
     expected = dict(zip(formulas, map(explored.decide, formulas), strict=True))
     verdicts, unreached = check(path)
+    if unreached is None:
+        assert set(verdicts) == {"not-decided"}
+        return False
     assert dict(zip(formulas, verdicts, strict=True)) == expected, path.read_text("utf-8")
     explored_names = explored.list_unreached().items()
     expected_names = {member: sorted(map(rename, names)) for member, names in explored_names}
     assert unreached == expected_names, path.read_text("utf-8")
+    return True
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -91,5 +96,4 @@ def test_requirements_have_the_verdicts_of_an_exploration(seed, tmp_path):
 @pytest.mark.long
 @pytest.mark.parametrize("start", range(1000, 1500, 25))
 def test_requirements_of_many_blocks_have_the_verdicts_of_an_exploration(start, tmp_path):
-    for seed in range(start, start + 25):
-        compare(seed, tmp_path)
+    assert sum(compare(seed, tmp_path) for seed in range(start, start + 25)) >= 15
