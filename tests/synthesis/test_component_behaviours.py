@@ -19,7 +19,6 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.components.component import Component
 from sysmlc.logic.components.derivation import describe_component
 from sysmlc.logic.components.names import ComponentNames
-from sysmlc.logic.components.objects import ComponentError
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Owner, Variable
 from sysmlc.logic.domains import values
 from sysmlc.logic.machines.reader import MachineOptions
@@ -151,10 +150,9 @@ def play_observed_steps(player, facts):
 
 
 def compare(seed, tmp_path, *, has_part=False):
-    """Compare both readings of a random block; return whether it is small enough and described.
+    """Compare both readings of a random block; return whether it is small enough.
 
-    It is not described if a guard reads what a do behaviour assigns in the same step. *has_part*
-    states that one of its features belongs to a part, which it assigns by a path.
+    *has_part* states that one of its features belongs to a part, which it assigns by a path.
     """
     block = make_block(Random(seed))
     expected = list_observed_steps(block, LIMIT)
@@ -163,12 +161,7 @@ def compare(seed, tmp_path, *, has_part=False):
     path = tmp_path / f"block{seed}.sysml"
     path.write_text(write_block(block, has_part=has_part), "utf-8")
     component = open_component(path)
-    try:
-        observed, actual = read_observed_steps(component, list_facts(block))
-    except ComponentError as error:
-        if "in the step in which the do behaviour" in str(error):
-            return False
-        raise
+    observed, actual = read_observed_steps(component, list_facts(block))
     # Facts that the component has no name for, because it never reads them.
     visible = {(before & observed, after & observed) for before, after in expected}
     missing, surplus = visible - actual, actual - visible
@@ -252,11 +245,11 @@ def test_random_blocks_with_a_part_have_the_steps_of_both_interpreters(seed, tmp
 @pytest.mark.long
 @pytest.mark.parametrize("first", range(100, 200, 20))
 def test_many_random_blocks_have_the_steps_of_both_interpreters(first, tmp_path):
-    assert sum(compare(seed, tmp_path) for seed in range(first, first + 20)) >= 10
+    assert sum(compare(seed, tmp_path) for seed in range(first, first + 20)) >= 15
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("first", range(200, 300, 20))
 def test_many_blocks_with_a_part_have_the_steps_of_both_interpreters(first, tmp_path):
     seeds = range(first, first + 20)
-    assert sum(compare(seed, tmp_path, has_part=True) for seed in seeds) >= 10
+    assert sum(compare(seed, tmp_path, has_part=True) for seed in seeds) >= 15

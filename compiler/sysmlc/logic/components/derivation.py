@@ -15,7 +15,6 @@ from sysmlc.logic.activities.assumptions import derive_assumptions
 from sysmlc.logic.activities.derivation import derive_run_update, derive_token_updates
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
 from sysmlc.logic.components.component import Component, finish_name
-from sysmlc.logic.components.late_reads import reject_late_reads
 from sysmlc.logic.components.machines import find_unread_features
 from sysmlc.logic.components.names import Atom, iter_atoms
 from sysmlc.logic.components.objects import ComponentError, Slot
@@ -102,7 +101,6 @@ class _Description:
     def describe(self, name: str) -> ComponentBehaviour:
         """Return the behaviour with all features that were named so far. Raises ComponentError."""
         formulas = self._make_formulas(name)
-        reject_late_reads(self.component, formulas)
         self._derive_performances(formulas)
         for machine in self.machines:
             self._conjuncts += machine.iter_steps()

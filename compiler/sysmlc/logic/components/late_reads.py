@@ -8,8 +8,13 @@ machine reads the values before. No requirement of such a component is decided.
 from collections.abc import Iterator
 
 from sysmlc.logic import formula as f
-from sysmlc.logic.activities.step_formulas import PerformanceFormulas
-from sysmlc.logic.activities.token_graph import ACTIVITY_REGION, Firing, NodeKind, TokenNode
+from sysmlc.logic.activities.token_graph import (
+    ACTIVITY_REGION,
+    Firing,
+    NodeKind,
+    TokenGraph,
+    TokenNode,
+)
 from sysmlc.logic.components.component import Component
 from sysmlc.logic.components.machines import PlacedMachine
 from sysmlc.logic.components.objects import ComponentError, Slot
@@ -19,9 +24,9 @@ from sysmlc.logic.machines.machine import Machine, Transition, Vertex
 from sysmlc.logic.machines.moves import Move
 
 
-def reject_late_reads(component: Component, formulas: PerformanceFormulas) -> None:
+def reject_late_reads(component: Component) -> None:
     """Raise ComponentError if a guard has to read what a do behaviour assigns in the same step."""
-    outputs = component.arguments.outputs
+    outputs, tokens = component.arguments.outputs, component.formulas.graph
     assigned = [
         *((write.slot, write.node, write.root) for write in component.performances.writes),
         *(
@@ -33,13 +38,21 @@ def reject_late_reads(component: Component, formulas: PerformanceFormulas) -> No
     for root in component.roots:
         if root.machine is None or root.state is None or root.is_entry:
             continue
-        for slot, node, root_id in assigned:
-            is_last = _can_be_last(formulas, formulas.graph.node(node))
-            if root_id == root.id and slot in _list_late_reads(root.machine, root.state, is_last):
-                feature, state = join_path(*slot), root.state.literal
+        slots = [
+            (slot, _can_be_last(tokens, tokens.node(node)))
+            for slot, node, root_id in assigned
+            if root_id == root.id
+        ]
+        late = {
+            is_last: _list_late_reads(root.machine, root.state, is_last)
+            for is_last in {is_last for _, is_last in slots}
+        }
+        for slot, is_last in slots:
+            if slot in late[is_last]:
                 raise ComponentError(
-                    f"a guard reads '{feature}' in the step in which the do behaviour of state "
-                    f"'{state}' may assign it; end the behaviour with a further action"
+                    f"a guard reads '{join_path(*slot)}' in the step in which the do behaviour of "
+                    f"state '{root.state.literal}' may assign it; end the behaviour with a further "
+                    "action"
                 )
 
 
@@ -90,9 +103,8 @@ def _can_be_active_together(machine: Machine, state: str, other: str) -> bool:
     )
 
 
-def _can_be_last(formulas: PerformanceFormulas, node: TokenNode) -> bool:
+def _can_be_last(graph: TokenGraph, node: TokenNode) -> bool:
     """Whether the performance around a node may end in the step in which the node is done."""
-    graph = formulas.graph
     if node.region == ACTIVITY_REGION:
         return True
     members = graph.members(node.region)
@@ -103,4 +115,4 @@ def _can_be_last(formulas: PerformanceFormulas, node: TokenNode) -> bool:
         member.kind is NodeKind.FORK for member in members
     )
     around = graph.node(node.region)
-    return (is_followed_by_end or has_parallel_end) and _can_be_last(formulas, around)
+    return (is_followed_by_end or has_parallel_end) and _can_be_last(graph, around)
