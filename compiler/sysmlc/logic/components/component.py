@@ -28,6 +28,8 @@ from sysmlc.logic.identifiers import Names, identifier
 from sysmlc.logic.machines.machine import Machine, Vertex, element_id
 from sysmlc.logic.machines.reader import MachineOptions, find_context_classifier
 
+_SENDING = ("send", "broadcast", "call-operation")
+
 
 @dataclass(slots=True)
 class Root:
@@ -215,7 +217,8 @@ class Component:
         """Record the writers in activities that entries, exits and effects perform.
 
         The machine performs them within its step, which is not described. What takes time is an
-        obstacle, apart from the entries that are performances of their own.
+        obstacle, apart from the entries that are performances of their own, and so is what they
+        send to other objects.
         """
         openings = {element_id(s.id) for s in machine.machine.list_states() if s.opening}
         for element in self._iter_machine_elements(machine):
@@ -227,11 +230,15 @@ class Component:
                     if performed is None:
                         continue
                     activity = performed[1]
+                    inner = list(self.graph.subtree(activity))
+                    sends = any(action.subkind in _SENDING for action in inner)
+                    if sends and len(self.tree.objects) > 1:
+                        self.obstacle = f"no step describes what {edge} '{activity.name}' sends"
                     if self._takes_time(activity):
                         name = element.name or "a transition"
                         beside = " beside substates or a time-out" * (edge is Edge.ENTRY)
                         self.obstacle = f"the {edge} '{activity.name}' of {name} takes time{beside}"
-                    self.released.update(action.id for action in self.graph.subtree(activity))
+                    self.released.update(action.id for action in inner)
 
     def _iter_machine_elements(self, machine: PlacedMachine) -> Iterator[Element]:
         """Yield the states and transitions of a machine, those of its submachines included."""

@@ -182,10 +182,11 @@ def _iter_sendings(
     block: Block, members: Iterable[Member], receipt: Receipt, wires: tuple[Wire, ...]
 ) -> Iterator[Sending]:
     for sender in members:
-        names = dict(_iter_outputs(block.graph, sender))
-        for output in _addressed_names(block, sender, receipt):
-            if output in names:
-                yield Sending(sender, f.var(name_in_composite(sender, names[output], wires)))
+        addressed = set(_addressed_names(block, sender, receipt))
+        # Several behaviours and actions of a member may send one message.
+        for message, variable in _iter_outputs(block.graph, sender):
+            if message in addressed:
+                yield Sending(sender, f.var(name_in_composite(sender, variable, wires)))
 
 
 def _addressed_names(block: Block, sender: Member, receipt: Receipt) -> Iterator[str]:
