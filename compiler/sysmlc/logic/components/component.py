@@ -28,7 +28,7 @@ from sysmlc.logic.identifiers import Names, identifier
 from sysmlc.logic.machines.machine import Machine, Vertex, element_id
 from sysmlc.logic.machines.reader import MachineOptions, find_context_classifier
 
-_SENDING = ("send", "broadcast", "call-operation")
+_SENDING = ("send", "broadcast", "call-operation")  # sub-kinds of actions
 
 
 @dataclass(slots=True)

@@ -67,7 +67,7 @@ class ComponentBehaviour(Struct, frozen=True):
 
 
 def describe_component(component: Component, name: str) -> ComponentBehaviour:
-    """Return the behaviour with all features named so far; *name* is qualified. ComponentError."""
+    """Return the behaviour with all features named so far. Raises ComponentError."""
     if component.obstacle:
         raise ComponentError(component.obstacle)
     return _Description(component).describe(name)
