@@ -5,7 +5,7 @@ end triggers, and to the guards behind a choice (UML 2.5.1, 14.2.3.7 and 14.2.3.
 machine reads the values before. No requirement of such a component is decided.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.token_graph import (
@@ -62,14 +62,18 @@ def _list_late_reads(machine: PlacedMachine, state: Vertex, is_last: bool) -> se
     *is_last* is whether the do behaviour may end in the step in which it assigns.
     """
     names: set[str] = set()
+    transitions = {item.id: item for item in machine.machine.list_transitions()}
+    around = _index_regions(machine.machine, state.id)
     for move in machine.exploration.moves:
         is_completion = state.id in move.transition.sources and not move.transition.occurrences
         if (
             is_last
             if is_completion
-            else _can_be_active_together(machine.machine, state.id, move.transition.source)
+            else _can_be_active_together(machine.machine, around, move.transition.source)
         ):
-            for transition in _iter_late_transitions(machine.machine, move, is_completion):
+            for transition in _iter_late_transitions(
+                machine.machine, transitions, move, is_completion
+            ):
                 if transition.guard is not None:
                     condition = elaborate_condition(transition.guard, machine.machine.scope)
                     names |= f.variable_names(condition)
@@ -77,12 +81,9 @@ def _list_late_reads(machine: PlacedMachine, state: Vertex, is_last: bool) -> se
 
 
 def _iter_late_transitions(
-    machine: Machine, move: Move, is_completion: bool
+    machine: Machine, transitions: Mapping[str, Transition], move: Move, is_completion: bool
 ) -> Iterator[Transition]:
     """Yield the transitions of a move whose guards read the values after actions have ended."""
-    transitions = {
-        transition.id: transition for group in machine.outgoing.values() for transition in group
-    }
     for path in move.paths:
         is_late = is_completion
         for id in path.passed:
@@ -92,14 +93,16 @@ def _iter_late_transitions(
                 yield transition
 
 
-def _can_be_active_together(machine: Machine, state: str, other: str) -> bool:
-    """Whether two states can be active together: no region has different states around them."""
-    around = {
-        machine.vertices[id].region: id for id in (state, *machine.list_enclosing_states(state))
-    }
+def _index_regions(machine: Machine, state: str) -> dict[str, str]:
+    """Return a state and the states around it by their regions."""
+    states = (state, *machine.list_enclosing_states(state))
+    return {machine.vertices[id].region: id for id in states}
+
+
+def _can_be_active_together(machine: Machine, around: Mapping[str, str], state: str) -> bool:
+    """Whether a state can be active when those of *around* are: no region has another state."""
     return all(
-        around.get(machine.vertices[id].region, id) == id
-        for id in (other, *machine.list_enclosing_states(other))
+        around.get(region, id) == id for region, id in _index_regions(machine, state).items()
     )
 
 

@@ -86,15 +86,20 @@ class ComponentNames:
     def _list_actions(self) -> Iterator[str]:
         """Yield the shortest unambiguous path of each action."""
         paths = self._component.performances.paths
-        nodes = list(dict.fromkeys(action.node for action in paths))
         nodes_by_path: dict[str, set[str]] = {}
         for action in paths:
             for start in range(len(action.names)):
                 nodes_by_path.setdefault(".".join(action.names[start:]), set()).add(action.node)
-        for node in nodes:
-            unique = [path for path, targets in nodes_by_path.items() if targets == {node}]
-            if unique:
-                yield min(unique, key=len)
+        shortest: dict[str, str] = {}
+        for path, nodes in nodes_by_path.items():
+            if len(nodes) == 1:
+                (node,) = nodes
+                shortest[node] = min(path, shortest.get(node, path), key=len)
+        yield from (
+            shortest[node]
+            for node in dict.fromkeys(item.node for item in paths)
+            if node in shortest
+        )
 
     def _find_event(self, path: str) -> Meaning | None:
         name = self._component.events.get(path)

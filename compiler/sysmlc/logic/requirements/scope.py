@@ -24,7 +24,7 @@ from sysmlc.logic.syntax import FormulaError
 from sysmlc.support.suggestions import find_similar
 
 _NAME = re.compile(
-    r"(?:[^\W\d][\w.]*\.)?(?:running|finished)\(\s*[\w.]+\s*\)"
+    r"(?:[^\W\d]\w*\.)*(?:running|finished)\(\s*[\w.]+\s*\)"
     r"|[^\W\d]\w*(?:(?:\.|\#\(\d+\)\.)[^\W\d]\w*)*"
 )
 """A name in a formula: of an action, dotted, or plain."""
