@@ -142,10 +142,12 @@ WATCH = """
 import os, signal, sys, time
 from pathlib import Path
 from sysmlc.cli import main, watching
+from sysmlc.cli.limits import LIMITS
 real_compile_all = watching.compile_all
 def compile_or_fail(*args):
     text = Path("plant.sysml").read_text()
     if "Endless" in text:
+        LIMITS.lower(0.5, 0)
         while True: pass
     if "Huge" in text:
         bytes(1 << 40)
@@ -153,9 +155,10 @@ def compile_or_fail(*args):
         os.kill(os.getpid(), signal.SIGSEGV)
     return real_compile_all(*args)
 watching.compile_all = compile_or_fail
-sys.argv = ["sysmlc", "watch", "plant.sysml", "-o", "out", "--time-limit", "4", "--settle", "0"]
+sys.argv = ["sysmlc", "watch", "plant.sysml", "-o", "out", "--settle", "0"]
 main()
 """
+"""Only the endless compilation has a short limit: a machine under load needs seconds for others."""
 
 
 def wait_for(process, condition):
@@ -164,6 +167,13 @@ def wait_for(process, condition):
         assert process.poll() is None
         assert time.monotonic() < deadline
         time.sleep(0.02)
+
+
+def save_at_once(model, text):
+    """Replace the file *model*, so that no build reads a file that is still empty."""
+    complete = model.parent / ".git" / model.name
+    complete.write_text(text)
+    complete.replace(model)
 
 
 @pytest.mark.long
@@ -182,14 +192,15 @@ def test_watch_continues_after_a_limit_or_a_crash(project):
     try:
         wait_for(process, lambda: "out: " in lines.read_text())
         for name, code in (("Endless", "SM904"), ("Huge", "SM905"), ("Crash", "SM906")):
-            model.write_text(MODEL.replace("Gate", name))
+            save_at_once(model, MODEL.replace("Gate", name))
             wait_for(process, lambda code=code: code in errors.read_text())
             lines.write_text("")
-            model.write_text(MODEL.replace("Gate", "Repaired"))
+            save_at_once(model, MODEL.replace("Gate", "Repaired"))
             wait_for(process, lambda: "out: " in lines.read_text())
     finally:
         process.send_signal(signal.SIGINT)
-    assert process.wait(PATIENCE) == 0
+    # 0 between two builds, 130 at the end of one.
+    assert process.wait(PATIENCE) in (0, 130)
     assert errors.read_text().count("error[SM90") == 3
 
 
