@@ -1,6 +1,8 @@
 # Needs Python 3.11 to 3.13, git and make. PYTHON=python3.12 chooses another interpreter.
 PYTHON ?= python3
 MODEL ?= examples/lego-recipe/lego-recipe.uml
+# Without bytecode, every process that a test starts would compile the whole package again.
+unexport PYTHONDONTWRITEBYTECODE
 PIP = -m pip --disable-pip-version-check --quiet install
 
 .PHONY: help demo test types quick-tests test-long check format bench clean

@@ -36,9 +36,10 @@ PREPARATION = {"docs/check-in-ci.md": ["sysmlc build plant.uml -o out/"]}
 """Commands that a page assumes to have been run before its first one."""
 
 BOUND = 300
+ALL_COMMANDS = find_commands()
 COMMANDS_BY_PAGE = {
-    page: [command for command in find_commands() if command.page == page]
-    for page in dict.fromkeys(command.page for command in find_commands())
+    page: [command for command in ALL_COMMANDS if command.page == page]
+    for page in dict.fromkeys(command.page for command in ALL_COMMANDS)
 }
 
 
@@ -50,7 +51,7 @@ PAGES = [page for page, commands in COMMANDS_BY_PAGE.items() if any(map(can_run,
 
 
 def test_commands_of_every_kind_of_page_are_found():
-    commands = {(command.page, command.text) for command in find_commands()}
+    commands = {(command.page, command.text) for command in ALL_COMMANDS}
     assert {
         ("README.md", "sysmlc examples/lego-recipe/lego-recipe.uml -o out/"),
         ("docs/check-in-ci.md", "sysmlc check models/ --format github"),
