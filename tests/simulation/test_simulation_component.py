@@ -311,8 +311,10 @@ def test_an_expectation_is_undecided_if_not_all_runs_are_followed(tmp_path):
     path.write_text(model.replace("if gripped do", f"if {' and '.join(names)} do"), "utf-8")
     sink = Sink()
     scenario = "component: P::Cell\nsteps:\n  - expect: {held: true}\n"
-    run_scenarios(compile_model(path).graph, Source("s.yaml", scenario.encode()), sink)
+    report = run_scenarios(compile_model(path).graph, Source("s.yaml", scenario.encode()), sink)
     assert [diagnostic.rule.code for diagnostic in sink] == ["SM578"]
+    assert report.as_text() == "not decided P::Cell: scenario 1\n0 of 1 scenarios passed\n"
+    assert "the scenario is not decided" in report.as_junit()
 
 
 def test_an_expectation_is_met_if_one_of_the_runs_that_are_followed_meets_it(play):

@@ -44,8 +44,8 @@ def command(
 ) -> None:
     """Run the steps of a scenario and compare the trace with the expected one.
 
-    Exit code 0: they are equal; 1: they differ, or the scenario is invalid; 2: a file cannot be
-    read.
+    Exit code 0: they are equal; 1: they differ, or the scenario is invalid or not decided; 2: a
+    file cannot be read.
     """
     from sysmlc.cli import reports, session
     from sysmlc.cli.reports import write_files

@@ -136,7 +136,7 @@ def _follow_runs(
 
     If no run remains after a step, the result has that step as its difference, and as its trace the
     run that shows most of the values expected in it. The difference is certain only if all runs
-    were followed; otherwise the result is invalid and SM578 is reported.
+    were followed; otherwise the result is not decided, and SM578 is reported.
     """
     is_complete = True
     inputs = dict(resting_values)
@@ -154,7 +154,8 @@ def _follow_runs(
                 location = scenario.subject(entry.location)
                 name, component = entry.name, player.component
                 sink.report(TOO_MANY_RUNS, location, name=name, component=component, limit=MAX_RUNS)
-                return Result(scenario.name, component, scenario.location.line, is_valid=False)
+                line = scenario.location.line
+                return Result(scenario.name, component, line, is_decided=False)
             actual = trace[-1].get(entry.name)
             difference = Difference(number, entry.name, entry.value, actual, entry.location.line)
             return Result(

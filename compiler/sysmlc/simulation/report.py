@@ -29,7 +29,8 @@ class Result(Struct, frozen=True):
     """Result of one scenario.
 
     ``trace`` is a run of the diagram that shows the expected values, or the run that comes closest.
-    ``is_valid`` is false for a scenario that was not played or not decided; a diagnostic says why.
+    ``is_valid`` is false for a scenario that was not played, ``is_decided`` for one with more runs
+    than were followed; a diagnostic says why.
     """
 
     name: str
@@ -39,11 +40,12 @@ class Result(Struct, frozen=True):
     difference: Difference | None = None
     inputs: frozenset[str] = field(default_factory=frozenset)
     is_valid: bool = True
+    is_decided: bool = True
 
     @property
     def passed(self) -> bool:
         """Whether some run of the diagram shows every expected value."""
-        return self.is_valid and self.difference is None
+        return self.is_valid and self.is_decided and self.difference is None
 
 
 class Report(Struct, frozen=True):
@@ -67,6 +69,8 @@ class Report(Struct, frozen=True):
         title = escape_invisible(f"{result.component}: {result.name}")
         if result.passed:
             yield f"passed  {title} ({_count_steps(len(result.trace))})"
+        elif not result.is_decided:
+            yield f"not decided {title}"
         elif result.difference is None:
             yield f"invalid {title}"
         else:
@@ -78,7 +82,7 @@ class Report(Struct, frozen=True):
         """Return the report as JUnit XML."""
         # The report has no times, so that equal runs give equal bytes.
         failures = sum(result.difference is not None for result in self.results)
-        errors = sum(not result.is_valid for result in self.results)
+        errors = sum(not (r.is_valid and r.is_decided) for r in self.results)
         counts = {"tests": len(self.results), "failures": failures, "errors": errors}
         attributes = {name: str(number) for name, number in counts.items()}
         root = ElementTree.Element("testsuites", attributes)
@@ -102,6 +106,8 @@ class Report(Struct, frozen=True):
             failure.text = f"{self.file}:{result.difference.line}: {message}"
         elif not result.is_valid:
             ElementTree.SubElement(case, "error", {"message": "the scenario is not valid"})
+        elif not result.is_decided:
+            ElementTree.SubElement(case, "error", {"message": "the scenario is not decided"})
 
     def sequence_diagram(self) -> str:
         """Return the first failing run, else the first run, as a PlantUML diagram.
