@@ -48,14 +48,14 @@ def test_machines_of_the_ice_laboratory_exchange_no_variables_of_their_contracts
         for result in check_compositions(compositions, make_locator(laboratory), sink, Options())
     ]
     assert results == [
-        "PlantTopology::Cell1_FunctionalTesting: its 2 behaviours share no features",
-        "PlantTopology::Cell2_Milling: its 4 behaviours share no features",
-        "PlantTopology::Cell4_RoboticAssembly: its 10 behaviours share no features",
-        "PlantTopology::Cell5_QualityControl: its 2 behaviours share no features",
-        "PlantTopology::Cell6_Warehouse: its 3 behaviours share no features",
-        "PlantTopology::Cell7_ConveyorSystem: its 18 behaviours share no features",
-        "PlantTopology::ICEProductionLine: its 39 parts and behaviours share no features",
-        "PlantTopology::MobileLogistics: its 2 behaviours share no features",
+        "PlantTopology::Cell1_FunctionalTesting: its 2 behaviours share no variables",
+        "PlantTopology::Cell2_Milling: its 4 behaviours share no variables",
+        "PlantTopology::Cell4_RoboticAssembly: its 10 behaviours share no variables",
+        "PlantTopology::Cell5_QualityControl: its 2 behaviours share no variables",
+        "PlantTopology::Cell6_Warehouse: its 3 behaviours share no variables",
+        "PlantTopology::Cell7_ConveyorSystem: its 18 behaviours share no variables",
+        "PlantTopology::ICEProductionLine: its 39 parts and behaviours share no variables",
+        "PlantTopology::MobileLogistics: its 2 behaviours share no variables",
     ]
     assert {diagnostic.rule.code for diagnostic in sink} == {"SM508"}
     steps = [re.findall("'([^']*)'", diagnostic.message)[1] for diagnostic in sink]

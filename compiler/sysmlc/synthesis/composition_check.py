@@ -111,8 +111,7 @@ class CompositionVerdict(Struct, frozen=True):
         if self.parts == 1:
             return f"{self._describe_parts()} {'fits' if self.is_satisfied else 'does not fit'}"
         if self.is_satisfied and not self.has_shared_variables:
-            verb = "share no features" if self.behaviours else "are not connected"
-            return f"{self._describe_parts()} {verb}"
+            return f"{self._describe_parts()} share no variables"
         verb = "fit" if self.is_satisfied else "do not fit"
         return f"{self._describe_parts()} {verb} together"
 

@@ -104,8 +104,33 @@ def test_parts_that_share_no_variable_are_not_reported_as_fitting():
         "part def Cell", "part def Other { out attribute taken : Boolean; }\n    part def Cell"
     )
     (result,), diagnostics = check_model(silent)
-    assert result.text() == "Line::Cell: its 2 parts are not connected"
+    assert result.text() == "Line::Cell: its 2 parts share no variables"
     assert diagnostics == []
+
+
+def test_connected_parts_without_a_message_in_their_contracts_are_not_called_unconnected():
+    """What a do behaviour sends is in no contract of the sender, although a connector exists."""
+    (result,), _ = check_model(
+        """package P {
+        item def Go;
+        port def Out { out item go : Go; }
+        part def Sender {
+            port p : Out;
+            exhibit state States { entry; then On; state On { do send Go() via p; } }
+        }
+        part def Receiver {
+            port q : ~Out;
+            exhibit state States {
+                entry; then Off;
+                state Off;
+                transition first Off accept Go via q then On;
+                state On;
+            }
+        }
+        part def Cell { part s : Sender; part r : Receiver; connect s.p to r.q; }
+    }"""
+    )
+    assert result.text() == "P::Cell: its 2 parts share no variables"
 
 
 def test_a_part_alone_keeps_what_the_block_promises_and_the_others_do_not_matter():
