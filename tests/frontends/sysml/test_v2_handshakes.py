@@ -200,6 +200,8 @@ def test_a_referential_action_without_order_is_not_performed():
         "assert constraint { true }",
         "requirement quality;",
         "connection cable;",
+        "flow seams;",
+        "attribute y : Boolean; bind y = y;",
         "action def Tack;",
         "alias other for weld;",
     ],

@@ -47,17 +47,19 @@ def lower_action(lowering: "Lowering", node: Node, owner: Element) -> Element:
 
 
 def _is_step(node: Node) -> bool:
-    """Whether a member makes an action a group: a step, or an order or flow between steps.
+    """Whether a member makes an action a group: a step, or an order between steps.
 
-    An action with features, connections, constraints, definitions or imports only is elementary.
+    An action with features, connections, flows, bindings, constraints, definitions or imports only
+    is elementary.
     """
     if "direction" in node.attributes or node.attributes.get("isReference"):
         return False
     if node.kind == "Membership":
         return not node.name and not node.short_name  # `first x;`, no alias
     if is_a(node.kind, "Step"):
-        return not is_a(node.kind, "BooleanExpression")  # constraints are steps in KerML
-    return is_a(node.kind, "Succession") or is_a(node.kind, "BindingConnector")
+        # Constraints and flows are steps in KerML.
+        return not is_a(node.kind, "BooleanExpression") and not is_a(node.kind, "Connector")
+    return is_a(node.kind, "Succession")
 
 
 def _is_nameless_reference(node: Node) -> bool:
