@@ -17,11 +17,6 @@ from examples.compiling import (
     format_diagnostics,
     outputs,
 )
-from sysmlc.diagnostics import Sink
-from sysmlc.logic.components.derivation import ComponentBehaviour
-from sysmlc.logic.contract import Contract
-from sysmlc.synthesis.contract_checks import check_contracts
-from sysmlc.synthesis.decision import Options
 
 MODELS = [*EXAMPLES, PLANT, TEXT]
 
@@ -77,25 +72,3 @@ def test_an_example_has_no_unsupported_and_no_approximated_elements(model):
     total = compile_example(model, "ir").coverage.as_json()["total"]
     assert total["unsupported"] == 0
     assert total["approximated"] == 0
-
-
-@pytest.mark.parametrize("model", MODELS, ids=lambda path: path.parent.name)
-def test_the_contracts_of_an_example_are_realizable_without_diagnostics(model):
-    compilation, sink = compile_example(model), Sink()
-    graph = compilation.graph
-    contracts = graph.derived(Contract)
-    behaviours = {
-        behaviour.contract.component: behaviour for behaviour in graph.derived(ComponentBehaviour)
-    }
-    results = check_contracts(
-        contracts,
-        contracts,
-        lambda origin: graph.subject(graph[origin]),
-        sink,
-        Options(),
-        behaviours,
-    )
-    verdicts = {result.verdict.component: result.verdict.is_realizable for result in results}
-    assert [name for name, is_realizable in verdicts.items() if not is_realizable] == []
-    assert [(diagnostic.rule.code, diagnostic.message) for diagnostic in sink] == []
-    assert verdicts

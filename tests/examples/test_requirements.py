@@ -24,10 +24,10 @@ LEGO = ROOT / "examples" / "lego-recipe" / "lego-recipe.uml"
 
 
 def check(model, *options):
-    """Return the exit code and the entries of the requirements of a model."""
+    """Return the result and the JSON document of ``contracts check``."""
     arguments = ["contracts", "check", str(model), "--format", "json", *options]
     result = CliRunner().invoke(sysmlc, arguments)
-    return result.exit_code, json.loads(result.stdout)["requirements"]
+    return result, json.loads(result.stdout)
 
 
 def list_verdicts(entries):
@@ -78,11 +78,16 @@ TASK_VERDICTS = [
         pytest.param(TEXT, LEGO_VERDICTS, marks=pytest.mark.long),
         (GATE, GATE_VERDICTS),
         (TASKS, TASK_VERDICTS),
+        (PLANT, []),
     ],
 )
-def test_the_requirements_of_the_examples_have_these_verdicts(model, verdicts):
-    exit_code, entries = check(model)
-    assert [exit_code, list_verdicts(entries)] == [0, verdicts]
+def test_contracts_are_realizable_and_requirements_have_these_verdicts(model, verdicts):
+    result, document = check(model)
+    assert [result.exit_code, document["diagnostics"]] == [0, []]
+    assert ": realizable" in result.stderr
+    assert not re.search(": (unrealizable|not decided)", result.stderr)
+    entries = document["requirements"]
+    assert list_verdicts(entries) == verdicts
     assert not any(entry["vacuous"] for entry in entries)
     # Three requirements on times are decided by the recipe; the others that hold are formulas.
     texts = [entry for entry in entries if "only text" in (entry["reason"] or "")]
@@ -117,9 +122,9 @@ def test_a_deliberate_fault_is_refuted_with_a_run_that_is_drawn(
     mutant = tmp_path / model.name
     mutant.write_text(re.sub(*fault, text, count=1, flags=re.DOTALL), "utf-8")
     assert mutant.read_text("utf-8") != text
-    exit_code, entries = check(mutant, "-c", component, "-o", str(tmp_path / "runs"))
-    broken = [entry for entry in entries if entry["verdict"] == "broken"]
-    assert exit_code == 1
+    result, document = check(mutant, "-c", component, "-o", str(tmp_path / "runs"))
+    broken = [entry for entry in document["requirements"] if entry["verdict"] == "broken"]
+    assert result.exit_code == 1
     assert f"G ({formula})" in [entry["formula"] for entry in broken]
     diagrams = {path.name: path.read_text("utf-8") for path in (tmp_path / "runs").iterdir()}
     drawn = "\n".join(diagrams.values())
