@@ -33,15 +33,19 @@ _GARBAGE = 1_000_000
 """Objects that a worker may create before it collects garbage."""
 
 
-def pytest_collection_finish():
-    """Switch the automatic garbage collection off; ``collect_garbage`` collects between modules.
+gc.disable()
+"""The automatic garbage collection is off; ``collect_garbage`` collects between modules.
 
-    A worker holds millions of objects: imported modules, thousands of tests, cached libraries. The
-    interpreter would traverse all of them again and again, which takes a third of the run.
-    """
+What survives a collection, such as libraries, is omitted from later ones.
+A worker holds millions of objects: imported modules, thousands of tests, cached libraries. The
+interpreter would traverse all of them again and again, which takes a third of the run.
+"""
+
+
+def pytest_collection_finish():
+    """Omit modules and tests from later garbage collections."""
     gc.collect()
     gc.freeze()
-    gc.disable()
 
 
 @pytest.fixture(autouse=True, scope="module")
@@ -49,6 +53,7 @@ def collect_garbage():
     yield
     if gc.get_count()[0] > _GARBAGE:
         gc.collect()
+        gc.freeze()
 
 
 def pytest_addoption(parser):

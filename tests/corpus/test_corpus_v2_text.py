@@ -5,8 +5,6 @@ writing reports its losses (SM730 to SM737, docs/write-sysml-v2.md): each differ
 and its text belongs to an element with a loss. The second writing may lose nothing.
 """
 
-import gc
-
 import pytest
 from plants import list_baygate
 from reading_corpus import lower
@@ -79,7 +77,6 @@ def list_units(corpus):
 
 
 def compile_unit(files):
-    gc.unfreeze()
     return compile_model(Request(tuple(files), backends=tuple(select_backends(("ir",)))))
 
 

@@ -46,8 +46,7 @@ def load(files):
     """Load texts by name together with the standard library. Raises for a syntax error."""
     loaded = Loaded()
     _read(loaded, files)
-    # Models of the toolkit are reference cycles; frozen objects would keep them alive.
-    gc.unfreeze()
+    # Models of the toolkit are reference cycles.
     gc.collect()
     return loaded
 
