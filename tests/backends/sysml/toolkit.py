@@ -46,8 +46,9 @@ def load(files):
     """Load texts by name together with the standard library. Raises for a syntax error."""
     loaded = Loaded()
     _read(loaded, files)
-    # Models of the toolkit are reference cycles.
+    # Models of the toolkit are reference cycles; what survives is not traversed again.
     gc.collect()
+    gc.freeze()
     return loaded
 
 
