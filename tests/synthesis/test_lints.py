@@ -100,6 +100,8 @@ def test_a_choice_needs_no_frame_and_a_quantity_does():
     assert find_lints(complete) == []
     command = parse_contract("sys say: stop go\npromise always say=go -> say'=stop")
     assert find_lints(command) == []
+    single_state = parse_contract("sys state: On\npromise always state=On")
+    assert find_lints(single_state) == []
 
 
 def test_missing_fairness_names_a_helpful_assumption():

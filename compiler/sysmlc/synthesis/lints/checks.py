@@ -311,6 +311,8 @@ def _states_allowing_any_value(game: Game, variable: Variable, node: Node) -> No
 
 def _check_frame(game: Game, variable: Variable, states: Node) -> Iterator[LintFinding]:
     """Yield a finding if the output has no frame condition in *states*."""
+    if size(variable.domain) == 1:
+        return  # such as the state of a machine with one state
     product = Product(game.manager, nodes_of(game.assumptions), game.next_inputs)
     unconstrained = _states_without_frame(game, variable)
     if _is_quantity(variable):
