@@ -32,13 +32,17 @@ class Step(Struct, frozen=True):
 
 
 class Move(Struct, frozen=True):
-    """A transition; without event it is a completion transition."""
+    """A transition; without event it is a completion transition.
+
+    ``choice`` is a guard behind it, and the target if that is false.
+    """
 
     source: str
     target: str
     event: str
     guard: str
     effect: tuple[str, str] | None
+    choice: tuple[str, str] | None = None
 
 
 class Block(Struct, frozen=True):
@@ -83,6 +87,7 @@ def make_block(random: Random) -> Block:
     entry = {random.choice(states): long.pop()} if long and random.random() < 0.6 else {}
     used = _list_performed(activities, [*do.values(), *entry.values(), own])
     performed = {name: activities[name] for name in names if name in used}
+    moves = tuple(dict.fromkeys(moves))
     return Block(performed, do, moves, own, states, signatures, entry)
 
 
@@ -132,7 +137,10 @@ def _make_move(random: Random, states: tuple[str, ...]) -> Move:
     values = ("true", "false", "b0", "b1", "not b1")
     effect = (random.choice(FEATURES), random.choice(values)) if random.random() < 0.6 else None
     event = random.choice(("", *EVENTS))
-    return Move(random.choice(states), random.choice(states), event, random.choice(guards), effect)
+    source, target, guard = random.choice(states), random.choice(states), random.choice(guards)
+    others = [state for state in states if state != target]
+    choice = (random.choice(guards[2:]), random.choice(others)) if random.random() < 0.4 else None
+    return Move(source, target, event, guard, effect, choice)
 
 
 # -- text --------------------------------------------------------------------------------------
@@ -171,8 +179,27 @@ def _write_lines(block: Block) -> list[str]:
         accept = f" accept {move.event}" if move.event else ""
         guard = f" if {move.guard}" if move.guard else ""
         effect = f" do assign {move.effect[0]} := {move.effect[1]}" if move.effect else ""
-        lines.append(f"transition first {move.source}{accept}{guard}{effect} then {move.target};")
+        target, branches = move.target, list_branches(block, move)
+        if branches:
+            target = name_choice(block, move)
+            lines.append(f"#SysMLC::Choice state {target};")
+        lines += [f"transition first {target} if {guard} then {end};" for guard, end in branches]
+        lines.append(f"transition first {move.source}{accept}{guard}{effect} then {target};")
     return [*lines, "}", "}", "}", ""]
+
+
+def name_choice(block: Block, move: Move) -> str:
+    """Return the name of the choice behind a transition."""
+    return f"c{block.moves.index(move)}"
+
+
+def list_branches(block: Block, move: Move) -> list[tuple[str, str]]:
+    """Return the guards of the choice behind a transition, if any, and their targets."""
+    if move.choice is None:
+        return []
+    guard, other = move.choice
+    opposite = guard.removeprefix("not ") if guard.startswith("not ") else f"not {guard}"
+    return [(guard, move.target), (opposite, other)]
 
 
 def _write_steps(steps: tuple[Step, ...]) -> Iterator[str]:
@@ -419,29 +446,43 @@ def list_reactions(
         else:
             do, do_ends, do_writes = (None if is_finished else after), is_finished, writes
     reactions = set()
-    for move in _list_moves(block, state, values, event, do_ends) or [None]:
-        for written in _list_values(values, do_writes, own_writes, move):
-            if move is None:
-                is_over = state.is_over or do_ends
-                reactions.add((None, State(state.state, written, do, is_over, own, entry)))
-            else:
-                reactions.add((move, _enter(block, move.target, written, own)))
+    for seen in _list_seen(values, do_writes):
+        for move in _list_moves(block, state, values, seen, event, do_ends) or [None]:
+            for written in _list_values(values, seen, do_writes, own_writes, move):
+                if move is None:
+                    is_over = state.is_over or do_ends
+                    reactions.add((None, State(state.state, written, do, is_over, own, entry)))
+                else:
+                    target = _find_target(move, seen)
+                    reactions.add((move, _enter(block, target, written, own)))
     return reactions
 
 
 def _list_moves(
-    block: Block, state: State, values: dict, event: str, do_ends: bool
+    block: Block, state: State, values: dict, seen: dict, event: str, do_ends: bool
 ) -> list[Move | None]:
+    """Return the enabled transitions; after the end of the do behaviour they read its writes."""
     if state.entry is not None:
         return []
-    leaving = [
-        move
-        for move in block.moves
-        if move.source == state.state and (not move.guard or evaluate(move.guard, values))
-    ]
+    leaving = []
+    for move in block.moves:
+        read = seen if do_ends and not move.event else values
+        if move.source == state.state and (not move.guard or evaluate(move.guard, read)):
+            leaving.append(move)
     is_complete = state.state not in block.do or state.is_over or do_ends
     completing = [move for move in leaving if not move.event and is_complete]
     return completing or [move for move in leaving if move.event == event]
+
+
+def _find_target(move: Move, seen: dict) -> str:
+    """Return the state to which a transition leads; a choice reads the values after its effect."""
+    if move.choice is None:
+        return move.target
+    reached = dict(seen)
+    if move.effect:
+        reached[move.effect[0]] = evaluate(move.effect[1], seen)
+    guard, other = move.choice
+    return move.target if evaluate(guard, reached) else other
 
 
 def evaluate(text: str, values: dict) -> bool:
@@ -451,30 +492,31 @@ def evaluate(text: str, values: dict) -> bool:
     return {"true": True, "false": False}.get(text) if text in ("true", "false") else values[text]
 
 
+def _list_seen(values: dict, do_writes: list) -> list[dict]:
+    """Return what a transition may read: a write of the do behaviour, else the value before."""
+    read = [
+        [value for name, value in do_writes if name == feature] or [values[feature]]
+        for feature in FEATURES
+    ]
+    return [dict(zip(FEATURES, row, strict=True)) for row in product(*read)]
+
+
 def _list_values(
-    values: dict, do_writes: list, own_writes: list, move: Move | None
+    values: dict, seen: dict, do_writes: list, own_writes: list, move: Move | None
 ) -> set[tuple[bool, bool]]:
     """Return the possible values of the features after a step.
 
     A transition overrides what the do behaviour writes, and reads it. The block's own activity is
     concurrent to both, so that any of the values may result.
     """
-    results = set()
-    # What the effect reads: one of the writes of the do behaviour, else the value before.
-    read = [
-        [value for name, value in do_writes if name == feature] or [values[feature]]
-        for feature in FEATURES
-    ]
-    for seen in product(*read):
-        options = []
-        for feature in FEATURES:
-            writes = [value for name, value in do_writes if name == feature]
-            if move is not None and move.effect and move.effect[0] == feature:
-                writes = [evaluate(move.effect[1], dict(zip(FEATURES, seen, strict=True)))]
-            writes += [value for name, value in own_writes if name == feature]
-            options.append(writes or [values[feature]])
-        results |= set(product(*options))
-    return results
+    options = []
+    for feature in FEATURES:
+        writes = [value for name, value in do_writes if name == feature]
+        if move is not None and move.effect and move.effect[0] == feature:
+            writes = [evaluate(move.effect[1], seen)]
+        writes += [value for name, value in own_writes if name == feature]
+        options.append(writes or [values[feature]])
+    return set(product(*options))
 
 
 def list_observed_steps(block: Block, limit: int) -> set[tuple[frozenset, frozenset]] | None:

@@ -14,8 +14,10 @@ from component_runs import (
     Move,
     first_state,
     list_actions,
+    list_branches,
     list_inputs,
     list_reactions,
+    name_choice,
     observe,
 )
 from spot import buddy
@@ -87,6 +89,10 @@ def _make_formula(random: Random, atoms: list[str], depth: int) -> str:
     return f"(({left}) {'->' if operator == '>' else operator} ({right}))"
 
 
+def _name_transition(source: str, target: str, guard: str) -> str:
+    return f"transition '{source} to {target}{f' [{guard}]' if guard else ''}'"
+
+
 # -- answers -----------------------------------------------------------------------------------
 
 
@@ -94,6 +100,7 @@ class ExploredBlock:
     """The runs of a block as an automaton whose edges say what is observed in a step.
 
     ``observed`` are all facts that some step shows, ``taken`` the transitions that some step takes,
+    with the states to which they lead,
     and ``changed`` the features that some step changes.
     """
 
@@ -102,7 +109,7 @@ class ExploredBlock:
         self._variables = {atom: f"p{number}" for number, atom in enumerate(list_atoms(block))}
         self._block = block
         self.observed: set[str] = set()
-        self.taken: set[Move] = set()
+        self.taken: set[tuple[Move, str]] = set()
         self.changed: set[str] = set()
         self._actions = list_actions(block, is_elementary=True)
         self._dictionary = spot.make_bdd_dict()
@@ -129,7 +136,7 @@ class ExploredBlock:
                 facts = observe(block, state, event, ended)
                 self.observed |= facts
                 for move, after in list_reactions(block, state, event, ended):
-                    self.taken |= set() if move is None else {move}
+                    self.taken |= set() if move is None else {(move, after.state)}
                     values = zip(FEATURES, state.values, after.values, strict=True)
                     self.changed |= {name for name, old, new in values if old != new}
                     if after not in numbers:
@@ -155,11 +162,17 @@ class ExploredBlock:
         block, observed = self._block, self.observed
         states = [state for state in block.states if f"state={state}" not in observed]
         actions = [path for path in list_actions(block) if f"running({path})" not in observed]
-        never_taken = [
-            f"transition '{move.source} to {move.target}{f' [{move.guard}]' if move.guard else ''}'"
-            for move in block.moves
-            if f"state={move.source}" in observed and move not in self.taken
-        ]
+        never_taken = []
+        for move in block.moves:
+            branches, taken = list_branches(block, move), {item for item, _ in self.taken}
+            target = name_choice(block, move) if branches else move.target
+            if f"state={move.source}" in observed and move not in taken:
+                never_taken.append(_name_transition(move.source, target, move.guard))
+            never_taken += [
+                _name_transition(target, end, guard)
+                for guard, end in branches
+                if move in taken and (move, end) not in self.taken
+            ]
         return {
             "unreachable": sorted(states + actions),
             "never_taken": sorted(never_taken),

@@ -65,8 +65,7 @@ def check(path):
 def compare(seed, tmp_path):
     """Compare both answers about a random block, and what both find that no run reaches.
 
-    Every second block has a part. Return whether the behaviour is described: it is not if a guard
-    reads what a do behaviour assigns in the same step.
+    Every second block has a part.
     """
     random = Random(seed)
     block, explored = explore_random_block(random)
@@ -78,14 +77,10 @@ def compare(seed, tmp_path):
     path.write_text(require(text, map(rename, formulas)), "utf-8")
     expected = dict(zip(formulas, map(explored.decide, formulas), strict=True))
     verdicts, unreached = check(path)
-    if unreached is None:
-        assert set(verdicts) == {"not-decided"}
-        return False
     assert dict(zip(formulas, verdicts, strict=True)) == expected, path.read_text("utf-8")
     explored_names = explored.list_unreached().items()
     expected_names = {member: sorted(map(rename, names)) for member, names in explored_names}
     assert unreached == expected_names, path.read_text("utf-8")
-    return True
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -96,4 +91,5 @@ def test_requirements_have_the_verdicts_of_an_exploration(seed, tmp_path):
 @pytest.mark.long
 @pytest.mark.parametrize("start", range(1000, 1500, 25))
 def test_requirements_of_many_blocks_have_the_verdicts_of_an_exploration(start, tmp_path):
-    assert sum(compare(seed, tmp_path) for seed in range(start, start + 25)) >= 15
+    for seed in range(start, start + 25):
+        compare(seed, tmp_path)

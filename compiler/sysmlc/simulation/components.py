@@ -2,9 +2,10 @@
 
 All behaviours react to the same step, and the reactions are visible in the next one. Actions that
 end in a step write first; the effects of a machine read what its do behaviours write and override
-it. Of several values that different behaviours write, any may result. A do behaviour starts when
-its state is entered and stops when the state is left; a completion transition waits for its end.
-What a component performs by itself runs once.
+it. Guards behind a choice read it too, and the guards of the completion transitions that the end of
+a do behaviour triggers. Of several values that different behaviours write, any may result. A do
+behaviour starts when its state is entered and stops when the state is left; a completion transition
+waits for its end. What a component performs by itself runs once.
 
 The player executes the diagrams with the reference interpreters of state machines and activities;
 it reads no formula of the contract that ``logic.components`` derives, so that tests can compare
@@ -80,9 +81,11 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
     @cached_property
     def variables(self) -> tuple[Variable, ...]:
         accepted = self.wiring.accepted
+        late = {name for machine in self.parts.machines for name in machine.late_variables}
         return tuple(
             replace(variable, owner=Owner.SYSTEM) if variable.name in accepted else variable
             for variable in self.behaviour.contract.variables
+            if variable.name not in late
         )
 
     @cached_property
@@ -234,6 +237,7 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
             if root.machine is machine and root.state is not None and root.over:
                 is_over = bool(now[root.over]) or root.id in finished
                 own_values[root.state.done] = is_over
+                own_values[root.state.ending] = root.id in finished
         names = {variable: own for own, variable in machine.variables.items()}
         for seen in choose_values(done_options):
             written = {names[name]: value for name, value in seen.items() if name in names}

@@ -86,7 +86,7 @@ class Component:
         """Steps of the do behaviours; ``finish_variable`` stands for the end of a performance."""
         self.variables: list[Variable] = []
         self.ends: dict[str, Formula] = {}
-        """The condition under which a do behaviour ends, by the machine's variable for its end."""
+        """Whether a do behaviour has ended, or ends, by the machine's variables for its end."""
         self.released: set[str] = set()
         """Ids of writers whose writes are not described everywhere."""
         self.obstacle = ""
@@ -135,6 +135,7 @@ class Component:
                 event,
                 self._options,
                 partial(self._list_long_entries, object_),
+                self.writers,
             )
             if machine is None:
                 raise ComponentError(f"no steps can be derived from state machine '{element.name}'")
@@ -193,10 +194,8 @@ class Component:
         if len(behaviours) != 1:
             raise ComponentError(f"state '{state.literal}' has several do behaviours")
         behaviour = behaviours[0]
-        object_, activity = self._find_performed(machine.owner, behaviour) or (
-            machine.owner,
-            behaviour,
-        )
+        performed = self._find_performed(machine.owner, behaviour)
+        object_, activity = performed or (machine.owner, behaviour)
         name = state.do.removeprefix("do_")
         names = machine.owner.extend_path(name)
         run = self.performances.name_variable(f"run_{name}", prefix)
@@ -261,6 +260,7 @@ class Component:
         self.variables.append(memory)
         is_over = f.either(f.var(name), finish_variable(id))
         self.ends[machine.variables[state.done]] = is_over
+        self.ends[machine.variables[state.ending]] = finish_variable(id)
         remains = f.both(is_over, f.negate(left), f.negate(entered))
         self.add(f.negate(f.var(name)), Class.INIT, state.id)
         self.add(f.fold_iff(f.prime(f.var(name)), remains), Class.SAFETY, state.id)

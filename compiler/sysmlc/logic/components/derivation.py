@@ -15,7 +15,8 @@ from sysmlc.logic.activities.assumptions import derive_assumptions
 from sysmlc.logic.activities.derivation import derive_run_update, derive_token_updates
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
 from sysmlc.logic.components.component import Component, finish_name
-from sysmlc.logic.components.machines import find_unread_features
+from sysmlc.logic.components.late_reads import LateValues
+from sysmlc.logic.components.machines import MachineWrite, find_unread_features
 from sysmlc.logic.components.names import Atom, iter_atoms
 from sysmlc.logic.components.objects import ComponentError, Slot
 from sysmlc.logic.components.places import PlaceInBehaviour, iter_places
@@ -87,6 +88,8 @@ class _Description:
         self._machine_writes = [
             (machine, write) for machine in self.machines for write in machine.iter_writes()
         ]
+        self._writes_in_states: dict[tuple[str, str], list[MachineWrite]] = {}
+        """What the entry and do behaviours of each machine write."""
         self._arguments = component.arguments
         self._written = {write.slot for _, write in self._machine_writes}
         self._written |= {write.slot for write in self.performances.writes}
@@ -111,14 +114,18 @@ class _Description:
         self._reset_own_features(writers)
         gaps |= self._derive_updates(writers)
         gaps |= self._derive_starts(gaps)
+        late = LateValues(self.tree, gaps)
+        for machine in self.machines:
+            late.add(machine, self._writes_in_states.get(machine.key, []))
+        self._conjuncts += late.conjuncts
         wiring = derive_events(self.component)
         self._conjuncts += wiring.conjuncts
         gaps |= wiring.gaps
-        ends = self._define_ends(formulas)
+        ends = {**self._define_ends(formulas), **late.unassigned}
         contract = Contract(
             name,
             self.component.subject.id,
-            tuple(self._list_variables(formulas, wiring.variables).values()),
+            (*self._list_variables(formulas, wiring.variables).values(), *late.variables),
             tuple(
                 replace(ending, source=Source.DERIVED) for ending in derive_assumptions(formulas)
             ),
@@ -129,7 +136,12 @@ class _Description:
         )
         shared = {
             self.tree.read_slot(slot).variable.name: tuple(
-                replace(writer, condition=substitute(writer.condition, ends)) for writer in group
+                replace(
+                    writer,
+                    condition=substitute(writer.condition, ends),
+                    value=substitute(writer.value, ends),
+                )
+                for writer in group
             )
             for slot, group in writers.items()
             if len(group) > 1
@@ -192,14 +204,12 @@ class _Description:
         """Return the writers of each slot. A machine overrides the do behaviours of its states."""
         writers: dict[Slot, list[Writer]] = {}
         machine_of_root = {root.id: root.machine for root in self._roots}
-        # What the do behaviours of each machine write: slot, condition and value.
-        writes_in_states: dict[tuple[str, str], list[tuple[Slot, Formula, Formula]]] = {}
         for slot, writer, root in self._iter_performed_writes(formulas):
             machine = machine_of_root.get(root)
             when = writer.condition
             if machine is not None:
-                write = slot, when, writer.value
-                writes_in_states.setdefault(machine.key, []).append(write)
+                write = MachineWrite(slot, when, writer.value)
+                self._writes_in_states.setdefault(machine.key, []).append(write)
                 overriding = [
                     other.condition
                     for owner, other in self._machine_writes
@@ -208,11 +218,9 @@ class _Description:
                 when = f.both(when, f.negate(f.either(*overriding)))
             writers.setdefault(slot, []).append(replace(writer, condition=when))
         for machine, machine_write in self._machine_writes:
-            earlier = writes_in_states.get(machine.key, [])
-            for condition, value in self._follow_writes(machine_write.value, earlier):
-                writers.setdefault(machine_write.slot, []).append(
-                    Writer(f.both(machine_write.condition, condition), value, machine.element.id)
-                )
+            condition, value = machine_write.condition, machine_write.value
+            writer = Writer(condition, value, machine.element.id)
+            writers.setdefault(machine_write.slot, []).append(writer)
         return writers
 
     def _iter_performed_writes(
@@ -251,19 +259,6 @@ class _Description:
                     replace(writer, condition=f.both(writer.condition, f.negate(root.start)))
                     for writer in writers.get(slot, [])
                 ] + [Writer(root.start, value, activity.id)]
-
-    def _follow_writes(
-        self, value: Formula, earlier: list[tuple[Slot, Formula, Formula]]
-    ) -> Iterator[tuple[Formula, Formula]]:
-        """Yield the cases of a machine's value: after a write of a do behaviour, or without one."""
-        names = {variable.name for variable in f.variables(value)}
-        others: list[Formula] = []
-        for slot, when, written in earlier:
-            name = self.tree.read_slot(slot).variable.name
-            if name in names:
-                yield when, substitute(value, {name: written})
-                others.append(when)
-        yield f.negate(f.either(*others)), value
 
     def _derive_starts(self, gaps: Mapping[str, str]) -> dict[str, str]:
         """Add the initial values of features without gaps.

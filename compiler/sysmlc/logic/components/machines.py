@@ -1,6 +1,6 @@
 """State machines of the objects of a component: moves, writes of features, and do behaviours."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 
 from msgspec import Struct
 from msgspec.structs import replace
@@ -81,11 +81,22 @@ class PlacedMachine(Struct, frozen=True):
                 return variable.domain.literals
         return ()
 
+    @property
+    def late_variables(self) -> Mapping[str, Slot]:
+        """The slots with variables for their values after do behaviours have assigned them."""
+        late = self.machine.late
+        return {self.variables[late[name]]: self.slots[name] for name in late}
+
     def list_variables(self) -> Iterator[Variable]:
-        """Yield the variables of the machine other than features, the event and running entries."""
-        openings = {state.opening for state in self.machine.list_states()}
+        """Yield the machine's own variables.
+
+        These are all but features, the event, and what tells how far behaviours of states are.
+        """
+        states = self.machine.list_states()
+        others = {*self.slots, *self.machine.late.values(), EVENT}
+        others |= {name for state in states for name in (state.opening, state.ending)}
         for variable in self.machine.variables:
-            if variable.name not in (*self.slots, EVENT, *openings):
+            if variable.name not in others:
                 yield replace(variable, name=self.variables[variable.name])
 
     def iter_steps(self) -> Iterator[Conjunct]:
@@ -237,6 +248,7 @@ def place_machine(
     event: str,
     options: MachineOptions,
     list_long_entries: Callable[[Machine], Iterable[str]],
+    writers: WriterIndex,
 ) -> PlacedMachine | None:
     """Read a machine of an object; return None if no steps can be derived from it.
 
@@ -245,15 +257,14 @@ def place_machine(
     ComponentError.
     """
     machine = read_machine(tree.graph, element, Sink(), options, classifier=object_.type_)
-    machine = machine and _add_openings(machine, list_long_entries(machine))
-    exploration = None if machine is None else explore_machine(tree.graph, machine, Sink())
-    if machine is None or exploration is None:
+    if machine is None:
         return None
+    machine = _add_openings(machine, list_long_entries(machine))
+    written = frozenset(_list_written_ids(machine))
     variables: dict[str, str] = {EVENT: event}
-    for state in machine.list_states():
-        if state.opening:
-            name = identifier(f"run_{tree.graph[element_id(state.id)].name}_entry")
-            variables[state.opening] = tree.names.new(f"{prefix}_{name}" if prefix else name)
+    for state in filter(lambda state: state.opening, machine.list_states()):
+        name = identifier(f"run_{tree.graph[element_id(state.id)].name}_entry")
+        variables[state.opening] = tree.names.new(f"{prefix}_{name}" if prefix else name)
     slots: dict[str, Slot] = {}
     for variable in machine.variables:
         if variable.name in variables:
@@ -265,13 +276,48 @@ def place_machine(
         elif variable.name != EVENT:
             name = f"{prefix}_{variable.name}" if prefix else variable.name
             variables[variable.name] = tree.names.new(name)
-    for state in machine.list_states():
-        if state.done:
-            # What the state does decides its end, not the environment.
-            variables[state.done] = f"end of {prefix} {state.done}"
-    return PlacedMachine(
-        object_, element, exploration, variables, slots, frozenset(_list_written_ids(machine))
+    late = [name for name in slots if _has_other_writer(tree, slots[name], writers, written)]
+    machine = _add_late_variables(machine, late)
+    for name, late_name in machine.late.items():
+        variables[late_name] = tree.names.new(f"late_{variables[name]}")
+    # What a state does decides its end, not the environment.
+    ends = ((state.done, state.ending) for state in machine.list_states() if state.done)
+    variables |= {name: f"end of {prefix} {name}" for pair in ends for name in pair}
+    exploration = explore_machine(tree.graph, machine, Sink())
+    if exploration is None:
+        return None
+    return PlacedMachine(object_, element, exploration, variables, slots, written)
+
+
+def _has_other_writer(
+    tree: ObjectTree, slot: Slot, writers: WriterIndex, written: Collection[str]
+) -> bool:
+    """Whether anything but the effects, entries and exits in *written* may assign a feature."""
+    return any(
+        writer.id not in written
+        for element in tree.read_slot(slot).elements
+        for writer in (*writers.iter_writers(element), *writers.iter_unclear_writers(element))
     )
+
+
+def _add_late_variables(machine: Machine, features: Iterable[str]) -> Machine:
+    """Return the machine with variables for the values and ends of do behaviours.
+
+    *features* are those that the do behaviours may assign.
+    """
+    late = {name: f"late {name}" for name in features}
+    vertices = {
+        id: replace(vertex, ending=f"ending of {id}" * bool(vertex.done))
+        for id, vertex in machine.vertices.items()
+    }
+    values = [replace(machine.find_variable(name), name=late[name]) for name in late]
+    ends = [
+        Variable(vertex.ending, Owner.ENVIRONMENT, BooleanDomain(), element_id(vertex.id))
+        for vertex in vertices.values()
+        if vertex.ending
+    ]
+    variables = (*machine.variables, *values, *ends)
+    return replace(machine, vertices=vertices, variables=variables, late=late)
 
 
 def _add_openings(machine: Machine, states: Iterable[str]) -> Machine:

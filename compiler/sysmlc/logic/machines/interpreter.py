@@ -12,11 +12,13 @@ visible in the next step:
   while its source is complete: inner regions in final states, do behaviour finished. It goes
   before the triggered transitions of the same source. Inner transitions go before outer ones;
   orthogonal regions react independently, each reading the values before the step.
+- Do behaviours assign values before transitions are taken. The guard of a completion transition
+  reads these values in the step in which the do behaviour of its source ends.
 - Taking a transition runs exit behaviours (innermost first), effects and entry behaviours
   (outermost first) in sequence, for each transition on the path: a state is left if the path
   leads out of it, and entered if it leads in. Regions of entered states that the path does not
   enter start with their initial transitions. Guards behind a choice read the values reached
-  there, other guards the values before the transition. A value outside a range is clamped.
+  there, other guards the values before the step. A value outside a range is clamped.
 - All transitions that leave a fork are taken, in their order. The transitions that lead to a
   join are one transition: it is enabled if all their sources are complete and nothing inside
   the sources is enabled.
@@ -176,8 +178,8 @@ def list_reactions(
     """Return all combinations of the reactions of active states.
 
     Orthogonal regions react in the same step, so each combination has one reaction of each.
-    *written* are the values that do behaviours assign in this step: effects read them, guards do
-    not.
+    *written* are the values that do behaviours assign in this step: effects read them, and guards
+    behind a choice or of a completion transition whose do behaviour ends.
     """
     enabled = {
         state.id: options

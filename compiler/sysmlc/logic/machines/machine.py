@@ -114,8 +114,9 @@ class Vertex(Struct, frozen=True):
     ``do`` is the output that holds while the state is active, ``done`` the input that reports the
     end of the do behaviour, ``timer`` counts the steps that the state has been active, and ``pick``
     names the enabled outgoing transition that was taken. ``opening`` holds while an entry behaviour
-    that takes time runs; the machine of a component alone has it. An empty name means that there is
-    no such variable. ``border`` is the state that owns an entry or exit point.
+    that takes time runs, ``ending`` in the step in which the do behaviour ends; the machine of a
+    component alone has them. An empty name means that there is no such variable. ``border`` is the
+    state that owns an entry or exit point.
     """
 
     id: str
@@ -131,6 +132,7 @@ class Vertex(Struct, frozen=True):
     pick: str = ""
     border: str = ""
     opening: str = ""
+    ending: str = ""
 
     @property
     def is_stable(self) -> bool:
@@ -172,6 +174,9 @@ class Machine(Struct, frozen=True):
     assumed: tuple[str, ...] = ()
     """Assigned properties without a range, so that the compiler chose one."""
     memories: dict[str, Expression] = field(default_factory=dict)
+    late: dict[str, str] = field(default_factory=dict)
+    """The variables for the values of properties after do behaviours have assigned them in the
+    present step, by property; the machine of a component alone has them."""
 
     def find_variable(self, name: str) -> Variable:
         """Return the variable called *name*."""

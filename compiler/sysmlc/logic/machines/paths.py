@@ -44,8 +44,29 @@ class PathExplorer(Struct, frozen=True):
     def explore_transition(self, first: Transition) -> list[Path]:
         """Return the feasible paths of a transition that leaves a state."""
         configuration = self._known_configuration(first.sources)
-        paths = self._follow(Path(config=configuration, before=configuration), first)
+        late = {name: f.var(variable) for name, variable in self.machine.late.items()}
+        start = Path(config=configuration, before=configuration, late=late)
+        paths = [
+            after
+            for path in self._split_by_end(start, first)
+            for after in self._follow(path, first)
+        ]
         return self._drop_infeasible(self._start_open_regions(paths))
+
+    def _split_by_end(self, path: Path, first: Transition) -> list[Path]:
+        """Return a path for a completion by the end of a do behaviour, and one for others.
+
+        The end is the completion event (UML 2.5.1, 14.2.3.8.3): the guard sees what was assigned.
+        """
+        vertices = self.machine.vertices
+        names = [vertices[source].ending for source in first.sources]
+        ends = f.either(*(f.var(name) for name in names if name))
+        if first.occurrences or ends == f.FALSE or not path.late:
+            return [path]
+        return [
+            add_case(replace(path, guard_values=path.late), ends),
+            add_case(path, f.negate(ends)),
+        ]
 
     def explore_start(self, values: Mapping[str, Formula]) -> list[Path]:
         """Return the feasible paths into the initial states; properties start with *values*."""
@@ -100,7 +121,7 @@ class PathExplorer(Struct, frozen=True):
         source = self.machine.vertices[transition.source]
         # A choice is dynamic (UML 2.5.1, 14.2.3.7): guards behind it read the values reached there.
         if source.kind == "choice":
-            path = replace(path, guard_values=path.values)
+            path = replace(path, guard_values=path.current)
         if transition.guard is not None:
             truth = substitute(
                 elaborate_condition(transition.guard, self.machine.scope), path.guard_values
@@ -160,8 +181,8 @@ class PathExplorer(Struct, frozen=True):
         """Yield the cases of an assignment: condition, value, and whether the value was clamped."""
         result = elaborate_value(action.value, self.machine.scope, domain)
         for guarded_case in result.cases:
-            case = substitute(guarded_case.condition, path.values)
-            value = substitute(guarded_case.value, path.values)
+            case = substitute(guarded_case.condition, path.current)
+            value = substitute(guarded_case.value, path.current)
             if isinstance(domain, IntegerDomain) and isinstance(result.domain, IntegerDomain):
                 yield from split_by_range(case, value, domain, result.domain)
             else:
@@ -298,7 +319,7 @@ class PathExplorer(Struct, frozen=True):
 
         A region without one is never entered by default (``well_formedness``).
         """
-        started = replace(path, guard_values=path.values)
+        started = replace(path, guard_values=path.current)
         outgoing = self.machine.outgoing.get(self.machine.regions[region].initial, ())
         return [after for transition in outgoing for after in self._follow(started, transition)]
 

@@ -133,9 +133,13 @@ def take_transition(
     """Return the possible reactions of a transition that leaves a state.
 
     There are none if a guard is false, and several if the path leads through open choices. Effects
-    read the values in *written*, which actions that end in this step have assigned.
+    read the values in *written*, which actions that end in this step have assigned; so do the
+    guards of a completion transition if its do behaviour ends in this step.
     """
-    start = replace(Reaction({**now, **written}), guard_values=now)
+    endings = (machine.vertices[source].ending for source in first.sources)
+    is_end = not first.occurrences and any(now[name] for name in endings if name)
+    after = {**now, **written}
+    start = replace(Reaction(after), guard_values=after if is_end else now)
     runs = _follow(machine, start, now, first)
     return [after for run in runs for after in start_open_regions(machine, run, now)]
 

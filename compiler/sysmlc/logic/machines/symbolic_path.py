@@ -33,8 +33,13 @@ class Path(Struct, frozen=True):
     branch: Formula = f.TRUE
     case: Formula = f.TRUE
     values: Mapping[str, Formula] = field(default_factory=dict)
+    late: Mapping[str, Formula] = field(default_factory=dict)
+    """The values of properties that do behaviours may assign in the step, after they have."""
     guard_values: Mapping[str, Formula] = field(default_factory=dict)
-    """The values that guards read: those before the transition, or at the last choice vertex."""
+    """The values that guards read: those before the transition, or at the last choice vertex.
+
+    The guard of a completion transition reads the late values if the do behaviour has just ended.
+    """
     config: Mapping[str, str] = field(default_factory=dict)
     """The literal of each region variable that is known at this point of the path."""
     entered: Mapping[str, str] = field(default_factory=dict)
@@ -55,6 +60,11 @@ class Path(Struct, frozen=True):
     def when(self) -> Formula:
         """The condition under which the path is taken."""
         return f.both(self.branch, self.case)
+
+    @property
+    def current(self) -> Mapping[str, Formula]:
+        """The values that effects read, and guards behind a choice."""
+        return {**self.late, **self.values}
 
 
 def add_case(path: Path, case: Formula) -> Path:

@@ -14,7 +14,6 @@ from sysmlc.logic.components.derivation import (
     add_stated_conjuncts,
     describe_component,
 )
-from sysmlc.logic.components.late_reads import reject_late_reads
 from sysmlc.logic.components.names import ComponentNames
 from sysmlc.logic.components.objects import ComponentError
 from sysmlc.logic.contract import Contract
@@ -133,7 +132,6 @@ def _describe_behaviour(
 ) -> ComponentBehaviour | None:
     """Return the behaviour that requirements of a subject are about. Raises ComponentError."""
     if component is not None:
-        reject_late_reads(component)
         whole = describe_component(component, component_of(graph, subject))
         if behaviour is None:
             return replace(whole, is_of_parts=True)
