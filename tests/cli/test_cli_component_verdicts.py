@@ -593,3 +593,27 @@ def test_signals_and_their_ports_are_told_apart(decide, via, signal, connections
     others = "package Other { item def Go; }" + PARTS.format(via, signal)
     block = f"part s : Sender; part r : Receiver; part t : Receiver; {connections}"
     assert decide(block, "F r.m.state=T", others=others) == [verdict]
+
+
+def test_requirements_on_a_state_machine_without_contract_are_not_decided(workspace, all_passes):
+    """A region without a first state (SM421) gives no contract; the requirement was left out."""
+    model = """package P {
+        private import ScalarValues::*;
+        item def Go;
+        part def Cell {
+            attribute x : Boolean := false;
+            exhibit state Main {
+                state A;
+                transition first A accept Go do assign x := true then B;
+                state B;
+            }
+        }
+        requirement def R {
+            subject cell : Cell;
+            require constraint { language "ltl" /* G !x */ }
+        }
+    }"""
+    workspace.write("model.sysml", model)
+    result = workspace.sysmlc("contracts", "check", "model.sysml")
+    line = "P::R: not decided: state machine 'Main' has no contract (see 'sysmlc check')"
+    assert line in result.stdout

@@ -1,6 +1,6 @@
 """Constraints of requirements, grouped by the subjects, and requirements as a model states them."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Set
 
 from msgspec import Struct
 
@@ -185,8 +185,9 @@ _ONLY_TEXT = "not formalised: the requirement is only text"
 class StatedRequirement(Struct, frozen=True):
     """A required constraint: its requirement, the component that has to satisfy it, its text.
 
-    ``reason`` tells why the constraint is in no contract; it is empty if it is in one. A
-    requirement without constraints has itself as its only constraint.
+    ``reason`` tells why the constraint is in no contract, or why nothing can be checked against
+    it; it is empty if neither is so. A requirement without constraints has itself as its only
+    constraint.
     """
 
     name: str
@@ -208,6 +209,8 @@ def list_stated_requirements(
     Requirements that are only text follow. *reasons* are messages about constraints, by the id of
     the constraint.
     """
+    contracts = list(contracts)
+    described = {contract.origin for contract in contracts}
     origins = {
         conjunct.origin
         for contract in contracts
@@ -215,6 +218,7 @@ def list_stated_requirements(
     }
     listed: set[str] = set()
     for subject, statements in collect_statements(graph):
+        gap = _find_gap(graph, subject, described)
         for statement in statements:
             constraint = statement.constraint
             listed.add(constraint.id)
@@ -226,7 +230,7 @@ def list_stated_requirements(
                 component_of(graph, subject),
                 constraint.id,
                 str(constraint.attrs.get("body", "")).strip(),
-                "" if constraint.id in origins else reason,
+                gap if constraint.id in origins else reason,
             )
     requirements = [*filter(query.is_requirement, graph.of_kind(Kind.CLASS))]
     for requirement in requirements:
@@ -243,6 +247,23 @@ def list_stated_requirements(
     for requirement in requirements:
         if is_only_text(graph, requirement):
             yield _describe_text(graph, requirement)
+
+
+def _find_gap(graph: Graph, subject: Element, described: Set[str]) -> str:
+    """Return that a state machine of the subject has no contract, or nothing if each has one."""
+    family = (subject, *query.generals(graph, subject))
+    machines = (
+        element
+        for member in family
+        for element in graph.owned(member)
+        if element.kind is Kind.STATE_MACHINE and element.id not in described
+    )
+    machine = next(machines, None)
+    return (
+        ""
+        if machine is None
+        else f"state machine '{machine.name}' has no contract (see 'sysmlc check')"
+    )
 
 
 def is_only_text(graph: Graph, requirement: Element) -> bool:
