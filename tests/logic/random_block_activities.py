@@ -17,7 +17,8 @@ from sysmlc.ir.element import AttrValue
 from sysmlc.logic import evaluate
 from sysmlc.logic.activities import interpreter
 from sysmlc.logic.activities.derivation import list_variables
-from sysmlc.logic.activities.token_graph import Handshake, TokenGraph
+from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.activities.token_nodes import Handshake
 from sysmlc.logic.contract import Owner
 from sysmlc.logic.domains import values
 from sysmlc.logic.formula import Literal
@@ -346,7 +347,7 @@ def play(
     state = interpreter.initial_state(tokens)
     for _ in range(length):
         inputs = draw_inputs(tokens, dice)
-        yield state, {**inputs, **interpreter.values_of(tokens, state)}
+        yield state, {**inputs, **interpreter.values_of(tokens, state, inputs)}
         state = interpreter.next_state(
             tokens, state, inputs, evaluate.is_true, lambda _, options: dice.choice(options)
         )
@@ -357,8 +358,11 @@ def play_trace(tokens: TokenGraph, seed: int, length: int) -> list[Valuation]:
     return [valuation for _, valuation in play(tokens, random.Random(seed), length)]
 
 
-def list_successors(tokens: TokenGraph, valuation: Valuation) -> list[Valuation]:
-    """Return all states that may follow a valuation: one for each combination of choices."""
+def list_successors(tokens: TokenGraph, valuation: Valuation, inputs: Valuation) -> list[Valuation]:
+    """Return all states that may follow a valuation: one for each combination of choices.
+
+    *inputs* are those of the next step, on which the ends of regions there depend.
+    """
     state, successors, plans = interpreter.state_of(tokens, valuation), [], [[]]
     while plans:
         plan = plans.pop()
@@ -370,7 +374,7 @@ def list_successors(tokens: TokenGraph, valuation: Valuation) -> list[Valuation]
             return options[plan[len(counts) - 1] if len(counts) <= len(plan) else 0]
 
         successor = interpreter.next_state(tokens, state, valuation, evaluate.is_true, choose)
-        successors.append(interpreter.values_of(tokens, successor))
+        successors.append(interpreter.values_of(tokens, successor, inputs))
         for index in range(len(plan), len(counts)):
             prefix = plan + [0] * (index - len(plan))
             plans += [[*prefix, option] for option in range(1, counts[index])]

@@ -32,18 +32,32 @@ def test_one_action_has_an_assumption_about_its_end_and_guarantees_about_its_tok
     assert [f"{variable.owner} {variable.name}" for variable in contract.variables] == [
         "env done_work",
         "sys run_work",
-        "sys at_start_to_work",
-        "sys at_work_to_end",
     ]
     assert [*map(print_conjunct, contract.assumptions)] == ["G F (!run_work | done_work)"]
     assert [*map(print_conjunct, contract.guarantees)] == [
-        "(at_start_to_work)",
-        "(!at_work_to_end)",
-        "(!run_work)",
-        "G (at_start_to_work' <-> at_work_to_end)",
-        "G (at_work_to_end' <-> run_work & done_work & !at_work_to_end)",
-        "G (run_work' <-> (at_start_to_work | run_work & !done_work) & !at_work_to_end)",
-        "G F (at_work_to_end)",
+        "(run_work)",
+        "G (run_work' <-> run_work & !done_work & !(run_work & done_work) | run_work & done_work)",
+        "G F (run_work & done_work)",
+    ]
+
+
+def test_the_next_action_runs_in_the_step_after_the_end_of_the_one_before():
+    contract = derive(sketch("initial i\naction x\nmerge m\naction y\ni -> x\nx -> m\nm -> y"))
+    assert "G (run_y' <-> run_x & done_x | run_y & !done_y)" in map(
+        print_conjunct, contract.guarantees
+    )
+
+
+def test_a_token_that_waits_for_another_has_a_variable():
+    contract = derive(
+        sketch(
+            "initial i\nfork k\naction x\naction y\njoin j\naction z\ni -> k\nk -> x\nk -> y\n"
+            "x -> j\ny -> j\nj -> z"
+        )
+    )
+    assert [v.name for v in contract.variables if v.name.startswith("at_")] == [
+        "at_x_to_join_1",
+        "at_y_to_join_1",
     ]
 
 
@@ -52,13 +66,7 @@ def test_every_conjunct_has_a_sentence_and_an_origin():
     conjuncts = [*contract.assumptions, *contract.guarantees]
     assert [conjunct.text for conjunct in conjuncts] == [
         "Whenever action 'work' runs, the environment ends it sooner or later.",
-        "The flow from initial node 1 to action 'work' starts with a token.",
-        "The flow from action 'work' to activity final node 1 has no token at the start.",
-        "At the start action 'work' is not running.",
-        "The flow from initial node 1 to action 'work' gets a token when the activity starts, and "
-        "keeps it until action 'work' takes it.",
-        "The flow from action 'work' to activity final node 1 gets a token when action 'work' "
-        "gives one, and keeps it until activity final node 1 takes it.",
+        "At the start action 'work' is running.",
         "Action 'work' runs from when all its flows have brought a token until it is done.",
         "Activity 'a' finishes again and again.",
     ]
@@ -228,8 +236,9 @@ def list_fillers(contract: Contract) -> list[str]:
 
 
 def test_a_flow_that_never_gets_a_second_token_has_a_guarantee_without_a_constant():
-    contract = derive(sketch("initial i\nmerge m\naction work\ni -> m\nm -> work\nwork -> m"))
-    assert "G (!at_start_to_merge_1')" in map(print_conjunct, contract.guarantees)
+    loop = "d -> m\nm -> work\nwork -> m"
+    contract = derive(sketch(f"initial i\ndecision d\nmerge m\naction work\ni -> d\n{loop}"))
+    assert "G (!at_start_to_decision_1')" in map(print_conjunct, contract.guarantees)
     assert list_fillers(contract) == []
 
 

@@ -14,7 +14,8 @@ from sysmlc.logic import evaluate
 from sysmlc.logic.activities import net_safety
 from sysmlc.logic.activities.derivation import derive_contract
 from sysmlc.logic.activities.petri_net import reduce_net
-from sysmlc.logic.activities.token_graph import ACTIVITY_REGION, TokenGraph
+from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.activities.token_nodes import ACTIVITY_REGION
 from sysmlc.passes.activities import Activities, construction
 from sysmlc.passes.activities.drawing import read_drawing
 from sysmlc.passes.activities.exception_analysis import find_raising

@@ -23,6 +23,7 @@ from sysmlc.logic import domains, evaluate
 from sysmlc.logic.activities import interpreter, reachability
 from sysmlc.logic.activities.derivation import derive_contract
 from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.activities.token_step import TokenStep
 from sysmlc.logic.contract import Class, Contract, Owner
 from sysmlc.passes.activities import Activities
 
@@ -56,7 +57,7 @@ def test_the_contract_allows_each_step_and_none_that_differs_in_one_variable(blo
     contract = derive_contract(tokens)
     outputs = [variable.name for variable in contract.variables if variable.owner is Owner.SYSTEM]
     for before, after in pairwise(play_trace(tokens, seed, 10)):
-        successors = list_successors(tokens, before)
+        successors = list_successors(tokens, before, after)
         assert is_allowed(contract, before, after)
         for name in outputs:
             changed = {**after, name: not after[name]}
@@ -73,7 +74,7 @@ def test_the_contract_allows_every_choice_of_the_interpreter(block, way, seed):
     tokens = perform(tokens, way)
     contract = derive_contract(tokens)
     for before, after in pairwise(play_trace(tokens, seed, 26)):
-        for successor in list_successors(tokens, before):
+        for successor in list_successors(tokens, before, after):
             assert is_allowed(contract, before, {**after, **successor})
 
 
@@ -89,37 +90,37 @@ def test_the_search_covers_all_states_that_the_interpreter_reaches(block):
     search = reachability.explore_states(tokens, 3000)
     if not search.is_complete:
         return
-    states = list_reachable_states(tokens, input_domains)
+    states, steps = list_reachable_states(tokens, input_domains)
     # Events and guards that depend on one another make the search see more, never less.
     assert len(states) <= search.states
-    assert tokens.finishes or not any(interpreter.is_finished(tokens, state) for state in states)
+    assert tokens.finishes or not any(step.is_finished() for step in steps)
     for region in tokens.regions():
-        assert tokens.can_rest(region) or not is_resting_reachable(tokens, region, states)
+        assert tokens.can_rest(region) or not is_resting_reachable(region, steps)
 
 
 def list_reachable_states(tokens: TokenGraph, input_domains):
-    """Return the states that the interpreter reaches with any inputs and choices."""
-    worklist = [interpreter.initial_state(tokens)]
+    """Return the states that the interpreter reaches with any inputs and choices, and the steps."""
+    worklist, steps = [interpreter.initial_state(tokens)], []
     states = {*worklist}
     for state in worklist:
         for inputs in domains.valuations(input_domains):
-            valuation = {**inputs, **interpreter.values_of(tokens, state)}
-            for successor in list_successors(tokens, valuation):
+            steps.append(TokenStep(tokens, state, inputs, evaluate.is_true))
+            valuation = {**inputs, **interpreter.values_of(tokens, state, inputs)}
+            for successor in list_successors(tokens, valuation, inputs):
                 next_state = interpreter.state_of(tokens, successor)
                 if next_state not in states:
                     states.add(next_state)
                     worklist.append(next_state)
-    return states
+    return states, steps
 
 
-def is_resting_reachable(tokens: TokenGraph, region: str, states) -> bool:
+def is_resting_reachable(region: str, steps: list[TokenStep]) -> bool:
     """Whether a region can be complete without a token at one of its ends."""
     return any(
-        interpreter.is_complete(tokens, state, region)
-        and not any(edge.id in state.tokens for edge in tokens.ends(region))
-        and (not region or region in state.running)
-        and (not region or not interpreter.is_finished(tokens, state))
-        for state in states
+        step.is_complete(region)
+        and not step.reaches_final(region)
+        and (not region or region in step.old.running)
+        for step in steps
     )
 
 

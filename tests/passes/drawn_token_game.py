@@ -1,12 +1,14 @@
 """A game of tokens on a drawn activity, as UML 2.5.1 describes it in clauses 15 and 16.
 
-The game reads the drawing and uses nothing that the compiler derives. In one step, every node moves
-the tokens that it can move, as it finds them at the start of the step: an action starts, and ends
-when the environment says that it is done, or after one step if it sends or assigns something; a
-control node passes tokens on. An activity that is over starts again in the next step.
+The game reads the drawing and uses nothing that the compiler derives. In one step, actions end when
+the environment says that they are done, or after one step if they send or assign something. Their
+tokens pass control nodes and objects one after the other, until an action takes them: it runs in
+the next step. A token waits for the next step before a decision, on a branch that a decision with
+several open ones has chosen, and on a flow that interrupts a region. An activity that is over
+starts again in the next step.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import product
 
 from random_activities import BODIES, GUARDS, WORKERS
@@ -31,28 +33,19 @@ class Tokens:
 
 
 def start(drawing):
-    """Return the first state: tokens are on the flows that leave initial nodes."""
+    """Return the first state: tokens leave the initial nodes, and the first actions run."""
     first_flows = [
         id for id, (source, _, _) in drawing.flows.items() if drawing.nodes[source] == "initial"
     ]
     values = (("x", 0), ("y", False)) if drawing.bodies else ()
-    return Tokens(frozenset(first_flows), frozenset(), values)
+    step = _Step(drawing, Tokens(frozenset(first_flows), frozenset(), values))
+    step.pass_tokens()
+    return Tokens(frozenset(step.here | step.later), frozenset(step.running), values)
 
 
-def is_over(drawing, tokens):
-    """Whether a token is at an activity final, or no token can move any more."""
-    for node, kind in drawing.nodes.items():
-        if kind == "final" and tokens.flows & {*drawing.incoming(node)}:
-            return True
-    return not tokens.running and not any(
-        _can_move(drawing, node, tokens) for node in drawing.nodes
-    )
-
-
-def _can_move(drawing, node, tokens):
-    incoming = drawing.incoming(node)
-    ready = [flow for flow in incoming if flow in tokens.flows]
-    return bool(ready) and (drawing.nodes[node] in TAKES_ANY or len(ready) == len(incoming))
+def is_over(drawing, tokens, inputs):
+    """Whether a token reaches an activity final in this step, or nothing is left after it."""
+    return any(step.is_over() for step in _iter_steps(drawing, tokens, inputs))
 
 
 def compute_next_states(drawing, tokens, inputs):
@@ -60,105 +53,154 @@ def compute_next_states(drawing, tokens, inputs):
 
     *inputs* are the ids of the actions that end in this step, and the guards that hold.
     """
-    if is_over(drawing, tokens):
-        return {start(drawing)}
-    step = _Step(drawing, tokens, inputs)
+    results = set()
+    for step in _iter_steps(drawing, tokens, inputs):
+        results |= {start(drawing)} if step.is_over() else set(step.iter_results())
+    return results
+
+
+def list_written_values(drawing, tokens, inputs):
+    """Return the values that the properties may have after the writes of a step."""
+    (step, *_) = _iter_steps(drawing, tokens, inputs)
+    return list(step.iter_values())
+
+
+def _iter_steps(drawing, tokens, inputs):
+    """Yield the step for each choice of the branches that tokens at decisions take."""
+    values = dict(tokens.values)
+    true_guards = (guard for guard, holds in GUARDS.items() if values and holds(values))
+    open_guards = {*inputs, *true_guards}
+    decisions = []
     for node, kind in drawing.nodes.items():
-        step.move(node, kind)
-    return set(step.iter_results())
+        incoming, outgoing = drawing.incoming(node), drawing.outgoing(node)
+        if kind == "decision" and incoming and {*incoming} <= tokens.flows:
+            branches = _list_open_flows(drawing, outgoing, open_guards)
+            decisions.append([(incoming, branch) for branch in branches] or [((), None)])
+    for chosen in product(*decisions):
+        step = _Step(drawing, tokens)
+        step.end_actions(inputs)
+        for incoming, branch in chosen:
+            if branch is not None:
+                step.take(incoming)
+                step.give(branch)
+        step.pass_tokens()
+        yield step
 
 
 class _Step:
-    """The moves of one step; every move depends on the tokens at the start of the step."""
+    """One step: tokens that can move are ``here``, and ``later`` those that wait for the next."""
 
-    def __init__(self, drawing, tokens, inputs):
+    def __init__(self, drawing, tokens):
         self.drawing, self.tokens = drawing, tokens
-        self.consumed, self.produced, self.choices, self.writers = set(), [], [], {}
-        self.values = dict(tokens.values)
-        true_guards = (
-            guard for guard, holds in GUARDS.items() if self.values and holds(self.values)
-        )
-        self.inputs = {*inputs, *true_guards}
+        self.here, self.later = set(tokens.flows), set()
         self.running = set(tokens.running)
+        self.values, self.writers = dict(tokens.values), {}
+        self.passed, self.heard = set(), set()
+        self.waits = {id for id, (_, target, _) in drawing.flows.items() if self._waits(id, target)}
 
-    def move(self, node, kind):
-        incoming, outgoing = self.drawing.incoming(node), self.drawing.outgoing(node)
-        ready = [flow for flow in incoming if flow in self.tokens.flows]
-        has_all = bool(incoming) and len(ready) == len(incoming)
-        # Flows that interrupt the same region count as one.
-        reasons = {self.drawing.interrupts.get(flow, flow) for flow in ready}
-        if kind in TAKES_ANY and len(reasons) > 1 and outgoing:
-            raise UnsafeError
-        if (kind in TAKES_ANY and ready) or (kind in PASSES and has_all):
-            self.consumed.update(ready)
-            self.produced += outgoing
-        elif kind == "decision" and has_all:
-            self._decide(ready, outgoing)
-        elif kind in WORKERS:
-            self._work(node, kind, ready if has_all else [], outgoing)
+    def _waits(self, flow, target):
+        source = self.drawing.flows[flow][0]
+        guards = [self.drawing.flows[id][2] for id in self.drawing.outgoing(source)]
+        is_choice = self.drawing.nodes[source] == "decision" and (
+            guards.count("else") > 1 or len(guards) - guards.count("else") > 1
+        )
+        return is_choice or self.drawing.nodes[target] == "decision" or self._interrupts(flow)
 
-    def _decide(self, ready, outgoing):
-        open_flows = _list_open_flows(self.drawing, outgoing, self.inputs)
-        if open_flows:
-            self.consumed.update(ready)
-            self.choices.append(open_flows)
+    def _interrupts(self, flow):
+        return flow in self.drawing.interrupts
 
-    def _work(self, node, kind, ready, outgoing):
-        if node not in self.tokens.running:
-            if ready:
-                self.consumed.update(ready)
-                self.running.add(node)
-        elif ready:
-            raise UnsafeError
-        elif kind == "send" or node in self.drawing.bodies or node in self.inputs:
+    def end_actions(self, inputs):
+        for node in self.tokens.running:
+            body = self.drawing.bodies.get(node)
+            if self.drawing.nodes[node] != "send" and body is None and node not in inputs:
+                continue
             self.running.remove(node)
-            self.produced += outgoing
-            if node in self.drawing.bodies:
-                name, value = BODIES[self.drawing.bodies[node]]
+            for flow in self.drawing.outgoing(node):
+                self.give(flow)
+            if body is not None:
+                name, value = BODIES[body]
                 self.writers.setdefault(name, []).append(value(self.values))
 
-    def iter_results(self):
-        """Yield the state after the step for each choice of branches and of written values."""
-        for chosen in product(*self.choices):
-            produced = [*self.produced, *chosen]
-            produced += [flow for flow in self.drawing.implied if self._starts_to_wait(flow)]
-            tokens = _move_tokens(self.tokens, self.consumed, produced, self.running)
-            tokens = self._interrupt_regions(tokens, produced)
-            for written in product(*self.writers.values()):
-                values = self.values | dict(zip(self.writers, written, strict=True))
-                yield replace(tokens, values=tuple(values.items()))
+    def give(self, flow):
+        if flow in self.here | self.later:
+            raise UnsafeError
+        (self.later if flow in self.waits else self.here).add(flow)
 
-    def _starts_to_wait(self, flow):
+    def pass_tokens(self):
+        """Move tokens from node to node until none can move."""
+        while any(self._move(node, kind) for node, kind in self.drawing.nodes.items()):
+            pass
+
+    def _move(self, node, kind):
+        """Move the tokens at a node; return whether there was something to move."""
+        incoming, outgoing = self.drawing.incoming(node), self.drawing.outgoing(node)
+        ready = [flow for flow in incoming if flow in self.here]
+        has_all = bool(incoming) and len(ready) == len(incoming)
+        if kind in TAKES_ANY and ready:
+            # Flows that interrupt the same region count as one.
+            reasons = {self.drawing.interrupts.get(flow, flow) for flow in ready}
+            if outgoing and (len(reasons) > 1 or node in self.passed):
+                raise UnsafeError
+        elif kind in WORKERS and has_all:
+            if node in self.running:
+                raise UnsafeError
+            self.running.add(node)
+            outgoing = []
+        elif kind not in PASSES or not has_all:
+            return False
+        self.passed.add(node)
+        self.take(ready)
+        for flow in outgoing:
+            self.give(flow)
+        return True
+
+    def take(self, flows):
+        """Take tokens; accept actions begin to wait if one enters their region."""
+        self.here.difference_update(flows)
+        for flow in self.drawing.implied:
+            if self._starts_to_wait(flow, flows):
+                self.heard.add(flow)
+                self.give(flow)
+
+    def _starts_to_wait(self, flow, consumed):
         """Whether a token enters the region of an accept action that does not wait yet."""
         node, _, _ = self.drawing.flows[flow]
-        is_waiting = flow in self.tokens.flows or node in self.tokens.running
-        return not is_waiting and self._is_entered(self._find_innermost_region(node))
+        if flow in self.tokens.flows | self.heard or node in self.tokens.running:
+            return False
+        regions = [nodes for nodes in self.drawing.regions.values() if node in nodes]
+        innermost = min(regions, key=len)
+        ends = (self.drawing.flows[flow] for flow in consumed)
+        return any(source not in innermost and target in innermost for source, target, _ in ends)
 
-    def _find_innermost_region(self, node):
-        return min((nodes for nodes in self.drawing.regions.values() if node in nodes), key=len)
+    def is_over(self):
+        nodes = self.drawing.nodes
+        if any(nodes[self.drawing.flows[flow][1]] == "final" for flow in self.here):
+            return True
+        waiting = any(
+            kind == "decision" and {*self.drawing.incoming(node)} <= self.here
+            for node, kind in nodes.items()
+            if self.drawing.incoming(node)
+        )
+        return not self.running and not self.later and not waiting
 
-    def _is_entered(self, nodes):
-        ends = (self.drawing.flows[flow] for flow in self.consumed)
-        return any(source not in nodes and target in nodes for source, target, _ in ends)
-
-    def _interrupt_regions(self, tokens, produced):
-        """Remove the tokens and the running actions of each region that a new token interrupts."""
+    def iter_results(self):
+        """Yield the state after the step for each choice of written values."""
+        flows, running = self.here | self.later, set(self.running)
         interrupts = self.drawing.interrupts
-        for region in {interrupts[flow] for flow in produced if flow in interrupts}:
+        for region in {interrupts[flow] for flow in self.later if flow in interrupts}:
             nodes = self.drawing.regions[region]
-            inside = {id for id, (a, b, _) in self.drawing.flows.items() if {a, b} <= nodes}
-            tokens = replace(tokens, flows=tokens.flows - inside, running=tokens.running - nodes)
-        return tokens
+            flows -= {id for id, (a, b, _) in self.drawing.flows.items() if {a, b} <= nodes}
+            running -= nodes
+        for values in self.iter_values():
+            yield Tokens(frozenset(flows), frozenset(running), values)
+
+    def iter_values(self):
+        """Yield the values of the properties after the step."""
+        for written in product(*self.writers.values()):
+            yield tuple((self.values | dict(zip(self.writers, written, strict=True))).items())
 
 
 def _list_open_flows(drawing, outgoing, inputs):
     guards = {flow: drawing.flows[flow][2] for flow in outgoing}
     true = [flow for flow, guard in guards.items() if guard in inputs]
     return true or [flow for flow, guard in guards.items() if guard == "else"]
-
-
-def _move_tokens(tokens, consumed, produced, running):
-    remaining = tokens.flows - consumed
-    if len({*produced}) < len(produced) or remaining & {*produced}:
-        raise UnsafeError
-    return Tokens(remaining | {*produced}, frozenset(running))

@@ -6,7 +6,8 @@ from token_graphs import derive_token_graph, derive_token_graphs, list_edges, na
 
 from activity_sketch import sketch
 from sysmlc.diagnostics import catalogue
-from sysmlc.logic.activities.interpreter import State, is_complete
+from sysmlc.logic import evaluate
+from sysmlc.logic.activities.token_step import State, TokenStep
 
 RULES = catalogue()
 
@@ -153,8 +154,9 @@ def test_an_action_that_waits_for_a_token_from_outside_keeps_its_region_from_end
     list_sources = [graph.node(edge.source).label for edge in graph.incoming(graph.node("x"))]
     assert list_sources == ["fork 1", "the start"]
     state = State(frozenset(e.id for e in graph.inside("s")[0] if e.target == "x"), frozenset("s"))
-    assert not is_complete(graph, state, "s")
-    assert is_complete(graph, State(frozenset(), frozenset("s")), "s")
+    empty = State(frozenset(), frozenset("s"))
+    assert not TokenStep(graph, state, {}, evaluate.is_true).is_complete("s")
+    assert TokenStep(graph, empty, {}, evaluate.is_true).is_complete("s")
 
 
 def test_the_value_at_an_input_pin_may_pass_through_to_an_output_pin():

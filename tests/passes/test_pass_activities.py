@@ -202,8 +202,8 @@ def test_an_activity_ends_when_no_token_in_it_can_move():
 def test_the_condition_that_an_activity_is_over_gets_a_name_when_it_is_long():
     chain = "initial i\n" + "".join(f"action a{n}\n" for n in range(9)) + "i -> a0\n"
     graph = derive_token_graph(sketch(chain + "\n".join(f"a{n} -> a{n + 1}" for n in range(8))))
-    assert graph.quiets == (("", "over"),)
-    assert derive_token_graph(sketch("initial i\naction x\ni -> x")).quiets == ()
+    assert graph.named_conditions == (("", "over"),)
+    assert derive_token_graph(sketch("initial i\naction x\ni -> x")).named_conditions == ()
 
 
 # -- size ---------------------------------------------------------------------------------------
@@ -221,12 +221,20 @@ def test_nodes_that_only_pass_tokens_on_are_removed_from_large_activities():
     assert [edge.label for edge in graph.edges][1] == "the flow from action 'read' to action 'x'"
 
 
-def test_two_flows_that_reach_the_merge_before_the_end_at_once_are_two_tokens():
-    start, end = "initial i\naction x\nmerge m\nfinal e\ni -> x", "x -> m\nm -> e"
+def test_two_flows_that_reach_a_merge_at_once_are_two_tokens():
+    start = "initial i\naction x\naction y\nmerge m\nfinal e\ni -> x"
+    end = "x -> m\nm -> y\ny -> e"
     _, sink = derive_token_graphs(sketch(f"{start}\n{end}"))
     assert list_codes(sink) == []
     _, sink = derive_token_graphs(sketch(f"{start}\nx -> m\n{end}"))
     assert list_codes(sink) == ["SM454"]
+
+
+def test_the_second_token_at_a_merge_does_not_count_where_the_first_ends_the_activity():
+    text = sketch("initial i\naction x\nmerge m\nfinal e\ni -> x\nx -> m\nx -> m\nm -> e")
+    graph, sink = derive_token_graphs(text)
+    assert list_codes(sink) == []
+    assert graph
 
 
 @pytest.mark.parametrize(

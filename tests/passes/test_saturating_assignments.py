@@ -6,7 +6,14 @@ The compiler lets an assignment beyond the range saturate, and reports the actio
 from itertools import product
 
 import pytest
-from drawn_token_game import Tokens, UnsafeError, compute_next_states, is_over, start
+from drawn_token_game import (
+    Tokens,
+    UnsafeError,
+    compute_next_states,
+    is_over,
+    list_written_values,
+    start,
+)
 from random_activities import BODIES, GUARDS, WORKERS, AssignmentGenerator
 
 from long_runs import quick_first
@@ -41,7 +48,7 @@ def find_saturating_actions(drawing, initial_values):
     queue = [Tokens(first.flows, first.running, values) for values in initial_values]
     visited, saturating = set(queue), set()
     for tokens in queue:
-        if not is_over(drawing, tokens) and dict(tokens.values)["x"] == 2:
+        if dict(tokens.values)["x"] == 2:
             saturating |= {id for id in tokens.running if drawing.bodies.get(id) == INCREMENT}
         try:
             successors = set(iter_next_states(drawing, tokens, len(initial_values) > 1))
@@ -57,16 +64,18 @@ def iter_next_states(drawing, tokens, has_free_start):
 
     An x without an initial value (*has_free_start*) retains its value when the activity restarts.
     """
-    if has_free_start and is_over(drawing, tokens):
-        first = start(drawing)
-        yield Tokens(first.flows, first.running, (("x", dict(tokens.values)["x"]), ("y", False)))
-        return
     guards = {guard for _, _, guard in drawing.flows.values() if guard.startswith("g")}
     workers = {id for id in tokens.running if drawing.nodes[id] in WORKERS}
     free_inputs = sorted(workers | guards)
     for bits in product((False, True), repeat=len(free_inputs)):
         inputs = {name for name, bit in zip(free_inputs, bits, strict=True) if bit}
-        yield from compute_next_states(drawing, tokens, inputs)
+        if has_free_start and is_over(drawing, tokens, inputs):
+            first = start(drawing)
+            for values in list_written_values(drawing, tokens, inputs):
+                retained = (("x", dict(values)["x"]), ("y", False))
+                yield Tokens(first.flows, first.running, retained)
+        else:
+            yield from compute_next_states(drawing, tokens, inputs)
 
 
 def read_reports(text):

@@ -14,6 +14,7 @@ from sysmlc.ir import parse_text
 from sysmlc.logic import evaluate
 from sysmlc.logic.activities import interpreter
 from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.activities.token_nodes import Handshake
 from sysmlc.passes.activities import Activities
 from sysmlc.passes.recipe import Recipe
 from sysmlc.recipe.model import Model, Task
@@ -209,7 +210,7 @@ def build_token_graph(graph: TaskGraph) -> TokenGraph:
     ir_graph = parse_text(str(graph))
     Activities().run(ir_graph, Sink())
     tokens = next(tokens for tokens in ir_graph.derived(TokenGraph) if tokens.activity == "t")
-    return replace(tokens, handshake=None)
+    return replace(tokens, handshake=Handshake("running", "finished", is_started=True))
 
 
 class Execution:
@@ -234,7 +235,7 @@ class Execution:
         """Return the time of the execution."""
         while True:
             self._settle()
-            if interpreter.is_finished(self._tokens, self._state):
+            if not self._state.is_performed:
                 return self.clock
             self._start_services()
             id = min(self._busy, key=lambda service: (self._busy[service][0], service))
@@ -243,7 +244,7 @@ class Execution:
 
     def _settle(self) -> None:
         """Move tokens and execute assignments until only services run."""
-        while not interpreter.is_finished(self._tokens, self._state):
+        while self._state.is_performed:
             running = [id for id in self._graph.assignments if id in self._state.running]
             if running:
                 self._step("")

@@ -51,11 +51,10 @@ PULLS = """
 name: a wide gate pulls
 component: Gate.pass
 steps:
-  - expect: {run_read: false}
+  - expect: {run_read: true}
   - inputs: {done_read: true}
     expect: {run_read: true}
-  - expect: {run_read: false, angle: 90}
-  - expect: {run_pull: false}
+  - expect: {run_read: false, run_pull: false, angle: 90}
   - inputs: {done_pull: true}
     expect: {run_pull: true, run_release: false}
 """
@@ -73,14 +72,14 @@ def test_a_scenario_that_follows_the_diagram_passes():
     assert list(sink) == []
     assert report.passed
     assert report.as_text() == (
-        "passed  Gate.pass: a wide gate pulls (5 steps)\n1 of 1 scenarios passed\n"
+        "passed  Gate.pass: a wide gate pulls (4 steps)\n1 of 1 scenarios passed\n"
     )
 
 
 def test_properties_keep_their_value_and_done_inputs_last_one_step():
-    narrow = PULLS.replace("- expect: {run_read: false}", "- inputs: {angle: 30}", 1)
+    narrow = PULLS.replace("- expect: {run_read: true}", "- inputs: {angle: 30}", 1)
     report, _ = simulate(narrow.replace("angle: 90", "angle: 30, done_read: false"))
-    assert str(report.results[0].difference) == "step 4: run_pull is false, expected true"
+    assert str(report.results[0].difference) == "step 3: run_pull is false, expected true"
 
 
 def test_the_first_difference_is_reported_with_its_line():
@@ -88,7 +87,7 @@ def test_the_first_difference_is_reported_with_its_line():
     assert not report.passed
     assert report.as_text() == (
         "FAILED  Gate.pass: a wide gate pulls\n"
-        "        s.yaml:11: step 4: run_pull is true, expected false\n"
+        "        s.yaml:10: step 3: run_pull is true, expected false\n"
         "0 of 1 scenarios passed\n"
     )
 
@@ -104,7 +103,7 @@ def test_junit_has_a_case_for_each_scenario():
     good, bad = root.iter("testcase")
     assert (good.get("classname"), good.get("name")) == ("Gate.pass", "a wide gate pulls")
     assert good.find("failure") is None
-    assert bad.find("failure").get("message") == "step 4: run_pull is true, expected false"
+    assert bad.find("failure").get("message") == "step 3: run_pull is true, expected false"
     assert report.as_junit() == simulate(two_scenarios)[0].as_junit()
 
 
@@ -118,22 +117,17 @@ def test_the_failing_run_is_drawn_with_a_message_for_each_change():
         'participant "Gate.pass" as component\n'
         "== step 0 ==\n"
         "environment -> component : angle = 90\n"
-        "component -> environment : at_start_to_read = true\n"
+        "component -> environment : run_read = true\n"
         "== step 1 ==\n"
         "environment -> component : done_read = true\n"
-        "component -> environment : run_read = true\n"
-        "component -> environment : at_start_to_read = false\n"
         "== step 2 ==\n"
         "environment -> component : done_read = false\n"
         "component -> environment : run_read = false\n"
         "component -> environment : at_read_to_wide = true\n"
         "== step 3 ==\n"
-        "component -> environment : at_read_to_wide = false\n"
-        "component -> environment : at_wide_to_pull = true\n"
-        "== step 4 ==\n"
         "environment -> component : done_pull = true\n"
         "component -> environment : run_pull = true\n"
-        "component -> environment : at_wide_to_pull = false\n"
+        "component -> environment : at_read_to_wide = false\n"
         "note over component #FFDDDD\n"
         "  run_pull is true\n"
         "  expected: false\n"
@@ -147,7 +141,7 @@ component: Gate.pass
 steps:
   - repeat: 4
 trace:
-  - {run_read: false}
+  - {run_read: true, run_pull: false}
   - {run_read: true}
   - {run_read: true}
 """

@@ -64,11 +64,10 @@ def test_a_state_waits_for_the_end_of_the_activity_that_it_performs(play):
 steps:
   - inputs: {event: Go}
     expect: {state: Idle, run_pick: false}
-  - expect: {state: Busy, run_pick: true, pick_run_close: false}
+  - expect: {state: Busy, run_pick: true, pick_run_close: true}
   - inputs: {pick_done_close: true}
-    expect: {pick_run_close: true}
-  - expect: {pick_run_close: false, gripped: false}
-  - expect: {pick_run_grip: true, run_pick: true, state: Busy}
+    expect: {pick_run_close: true, pick_run_grip: false, gripped: false}
+  - expect: {pick_run_close: false, pick_run_grip: true, run_pick: true, state: Busy}
   - expect: {state: Full, gripped: true, held: true, run_pick: false}
 """
     # The guard reads the last assignment, so that both completion transitions are enabled.
@@ -83,9 +82,7 @@ def test_an_effect_reads_what_the_do_behaviour_assigns_in_its_last_step(play):
     scenario = """component: Cell
 steps:
   - inputs: {event: Go}
-  - {}
   - inputs: {pick_done_close: true}
-  - {}
   - expect: {pick_run_grip: true, held: false}
   - expect: {state: Full, gripped: true, held: true}
 """
@@ -119,9 +116,8 @@ part def Line {
 """
     scenario = """component: Line
 steps:
-  - expect: {run_one: true, run_two: true}
   - inputs: {two_done_wait: true}
-    expect: {run_set: true, two_run_wait: true}
+    expect: {run_one: true, run_set: true, run_two: true, two_run_wait: true}
   - repeat: 4
     expect: {x: true, run_one: false, run_two: false}
 """
@@ -165,12 +161,9 @@ part def Lift {
 def test_an_argument_is_taken_at_the_start_and_an_output_written_at_the_end(play):
     scenario = """component: P::Lift
 steps:
-  - expect: {run_job: true, run_up: false}
-  - {}
-  - expect: {run_up: true, run_change: true, goal: true, up_target: true}
+  - expect: {run_job: true, run_up: true, run_change: true, goal: true, up_target: true}
   - inputs: {up_done_drive: true}
     expect: {up_run_drive: true, goal: false, up_target: true}
-  - {}
   - expect: {up_run_arrive: true, height: false, run_up: true}
   - expect: {run_up: false, height: true}
 """
@@ -180,12 +173,9 @@ steps:
 def test_a_bound_argument_follows_the_feature(play):
     scenario = """component: P::Lift
 steps:
-  - {}
-  - {}
   - expect: {run_change: true, up_target: true}
   - inputs: {up_done_drive: true}
     expect: {up_target: false}
-  - {}
   - expect: {up_run_arrive: true}
   - expect: {run_up: false, height: false}
 """

@@ -12,6 +12,7 @@ from itertools import chain, combinations, product
 from random import Random
 
 from msgspec import Struct
+from msgspec.structs import replace
 
 FEATURES = ("b0", "b1")
 EVENTS = ("E0", "E1")
@@ -258,20 +259,40 @@ def list_actions(block: Block, *, is_elementary: bool = False) -> list[str]:
 class Performance(Struct, frozen=True):
     """A performance of an activity: its marks, and the values of its parameters.
 
-    A mark is a position and what is there: a token on the flow into the step ("flow"), the
-    performance of the step ("run", with the performance that a call has started), or a token that
-    waits for the join ("wait"). A position is the index of a step, and of a branch or -1. ``input``
-    is the value that was taken at the start, or None.
+    A mark is a position and what is there: the performance of the step ("run", with the performance
+    that a call has started), or a token that waits for the join ("wait"). A position is the index
+    of a step, and of a branch or -1. ``input`` is the value that was taken at the start, or None;
+    it ``is_due`` until the values of the first step are known.
     """
 
     marks: frozenset
     input: bool | None = None
+    is_due: bool = False
     output: bool = False
 
 
-def start(input_value: bool | None = None) -> Performance:
-    """Return the first state of a performance."""
-    return Performance(frozenset({(0, -1, "flow", None)}), input_value)
+def start(block: Block, name: str, *, is_due: bool = False) -> Performance:
+    """Return the first state of a performance, in which its first step runs."""
+    return Performance(frozenset(_arrive(block, block.activities[name], 0)), is_due=is_due)
+
+
+def take_inputs(block: Block, name: str, performance: Performance, scope: dict) -> Performance:
+    """Return the performance with the inputs of the calls that start with this step.
+
+    *scope* has the values of features and parameters in this step.
+    """
+    marks = set()
+    for mark in performance.marks:
+        step = None if mark[2] == "wait" else _step_at(block.activities[name], mark)
+        if step is not None and step.kind == "call":
+            (operator, value), inner = step.argument, mark[3]
+            if inner.is_due:
+                inner = replace(inner, input=evaluate(value, scope), is_due=False)
+            bound = evaluate(value, scope) if operator == "=" else inner.input
+            inner_scope = {**scope, "p": bound, "r": inner.output}
+            mark = (*mark[:3], take_inputs(block, step.called, inner, inner_scope))
+        marks.add(mark)
+    return replace(performance, marks=frozenset(marks))
 
 
 def _step_at(steps: tuple[Step, ...], mark: tuple) -> Step:
@@ -300,40 +321,43 @@ def advance(
     steps, marks = block.activities[name], performance.marks
     after, writes, finished = set(), [], set()
     for mark in marks:
-        position, _, what, _ = mark
-        if what == "run":
-            new_mark, new_writes, new_finished = _perform(block, steps, mark, path, ended, scope)
-            after.add(new_mark)
-            writes += new_writes
-            finished |= new_finished
-        elif what == "wait":
-            waiting = [other for other in marks if other[0] == position and other[2] == "wait"]
-            after.add(mark if len(waiting) < 2 else (position + 1, -1, "flow", None))
-        else:
-            after |= _arrive(steps, mark, scope)
-    is_finished = any(position == len(steps) for position, *_ in after)
+        if mark[2] == "wait":
+            after.add(mark)
+            continue
+        new_marks, new_writes, new_finished = _perform(block, steps, mark, path, ended, scope)
+        after |= new_marks
+        writes += new_writes
+        finished |= new_finished
+    waiting = {mark for mark in after if mark[2] == "wait"}
+    if len(waiting) == 2:
+        (position, *_), _ = waiting
+        after = _arrive(block, steps, position + 1)
+    is_finished = not after
     output = ([value for target, value in writes if target == "r"] or [performance.output])[0]
     features = [(target, value) for target, value in writes if target != "r"]
-    marks = frozenset() if is_finished else frozenset(after)
-    return Performance(marks, performance.input, output), is_finished, features, finished
+    advanced = replace(performance, marks=frozenset(after), output=output)
+    return advanced, is_finished, features, finished
 
 
-def _arrive(steps: tuple[Step, ...], mark: tuple, scope: dict) -> set[tuple]:
-    """Return the marks after a token on a flow has moved."""
-    position, branch, _, _ = mark
-    step = _step_at(steps, mark)
-    if step.kind == "fork":
-        return {(position, index, "flow", None) for index in range(2)}
-    operator, value = step.argument
-    input_value = evaluate(value, scope) if operator == ":=" else None
-    content = start(input_value) if step.kind == "call" else None
-    return {(position, branch, "run", content)}
+def _arrive(block: Block, steps: tuple[Step, ...], position: int) -> set[tuple]:
+    """Return the marks when a token reaches a step; none at the end, which takes no time."""
+    if position == len(steps):
+        return set()
+    step = steps[position]
+    branches = [*enumerate(step.branches)] if step.kind == "fork" else [(-1, step)]
+    marks = set()
+    for index, action in branches:
+        content = None
+        if action.kind == "call":
+            content = start(block, action.called, is_due=action.argument[0] == ":=")
+        marks.add((position, index, "run", content))
+    return marks
 
 
 def _perform(
     block: Block, steps: tuple[Step, ...], mark: tuple, path: tuple, ended: frozenset, scope: dict
-) -> tuple[tuple, list, set]:
-    """Return the mark after a step of a running action, what it writes and what ends in it."""
+) -> tuple[set, list, set]:
+    """Return the marks after a step of a running action, what it writes and what ends in it."""
     position, branch, _, inner = mark
     step = _step_at(steps, mark)
     own_path = (*path, step.name)
@@ -351,8 +375,10 @@ def _perform(
         # The value of an output is written at the end, with what is assigned to it just now.
         writes += [(step.feature, content.output)] if is_done and step.feature else []
     if not is_done:
-        return (position, branch, "run", content), writes, finished
-    following = (position + 1, -1, "flow", None) if branch < 0 else (position, branch, "wait", None)
+        return {(position, branch, "run", content)}, writes, finished
+    is_branch = branch >= 0
+    waiting = {(position, branch, "wait", None)}
+    following = waiting if is_branch else _arrive(block, steps, position + 1)
     return following, writes, finished | {own_path}
 
 
@@ -372,15 +398,28 @@ class State(Struct, frozen=True):
 
 def first_state(block: Block) -> State:
     """Return the state in the first step."""
-    own = start() if block.own else None
-    return _enter(block, "S0", (False, False), own)
+    own = start(block, block.own) if block.own else None
+    return _settle(block, _enter(block, "S0", (False, False), own))
 
 
 def _enter(block: Block, name: str, values: tuple[bool, bool], own: Performance | None) -> State:
     """Return the step in which a state is entered; its do behaviour waits for a long entry."""
-    entry = start() if name in block.entry else None
-    do = start() if name in block.do and entry is None else None
+    entry = start(block, block.entry[name]) if name in block.entry else None
+    do = start(block, block.do[name]) if name in block.do and entry is None else None
     return State(name, values, do, False, own, entry)
+
+
+def _settle(block: Block, state: State) -> State:
+    """Return the state after the calls that start with it have taken their inputs."""
+    values = dict(zip(FEATURES, state.values, strict=True))
+    do, own, entry = state.do, state.own, state.entry
+    if do is not None:
+        do = take_inputs(block, block.do[state.state], do, values)
+    if own is not None:
+        own = take_inputs(block, block.own, own, values)
+    if entry is not None:
+        entry = take_inputs(block, block.entry[state.state], entry, values)
+    return replace(state, do=do, own=own, entry=entry)
 
 
 def list_inputs(block: Block, state: State) -> Iterator[tuple[str, frozenset]]:
@@ -442,7 +481,8 @@ def list_reactions(
             own, own_writes = (None if is_finished else after), writes
         elif performance is state.entry:
             entry, do_writes = (None if is_finished else after), writes
-            do = start() if is_finished and state.state in block.do else None
+            starts = is_finished and state.state in block.do
+            do = start(block, block.do[state.state]) if starts else None
         else:
             do, do_ends, do_writes = (None if is_finished else after), is_finished, writes
     reactions = set()
@@ -455,7 +495,7 @@ def list_reactions(
                 else:
                     target = _find_target(move, seen)
                     reactions.add((move, _enter(block, target, written, own)))
-    return reactions
+    return {(move, _settle(block, successor)) for move, successor in reactions}
 
 
 def _list_moves(

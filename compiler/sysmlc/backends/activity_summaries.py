@@ -8,12 +8,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 
 from sysmlc.logic.activities.handshakes import describe_performance
-from sysmlc.logic.activities.token_graph import (
+from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.activities.token_nodes import (
     ACTIVITY_REGION,
     NodeKind,
     Store,
     TokenEdge,
-    TokenGraph,
     TokenNode,
     Write,
 )
@@ -232,7 +232,7 @@ class ActivitySummary:
         """Return the conditions of the first step that are about values, not about tokens."""
         own = {node.run for node in self._game.nodes}
         own |= {edge.variable for edge in self._game.edges}
-        own |= {name for _, name in self._game.quiets}
+        own |= {name for _, name in self._game.named_conditions}
         if self._game.handshake is not None:
             own.add(self._game.handshake.running)
         texts = [

@@ -9,7 +9,7 @@ from enum import StrEnum
 from msgspec import Struct
 from msgspec.structs import replace
 
-from sysmlc.logic.formula import TRUE, Formula, eq, fold_iff, prime, var
+from sysmlc.logic.formula import FALSE, TRUE, Const, Formula, eq, fold_iff, prime, var
 
 
 class Owner(StrEnum):
@@ -62,6 +62,15 @@ def equals(variable: Variable, value: Formula, *, is_next: bool = False) -> Form
     """Return the formula that a variable has a value, in this step or the next one."""
     name = prime(var(variable.name)) if is_next else var(variable.name)
     return fold_iff(name, value) if isinstance(variable.domain, BooleanDomain) else eq(name, value)
+
+
+def equal_values(variable: Variable, left: Formula, right: Formula) -> Formula:
+    """Return the formula that two values of a variable are equal."""
+    if isinstance(variable.domain, BooleanDomain):
+        return fold_iff(left, right)
+    if isinstance(left, Const) and isinstance(right, Const):
+        return TRUE if left == right else FALSE
+    return eq(left, right)
 
 
 class Class(StrEnum):

@@ -236,6 +236,26 @@ def opposite(formula: Formula) -> Formula:
     return f.negate(formula)
 
 
+def merge_terms(terms: Iterable[Formula]) -> list[Formula]:
+    """Return fewer conjunctions with the same disjunction: ``a & b`` and ``a & !b`` become ``a``.
+
+    Terms of which a single condition is a part are dropped.
+    """
+    merged = {frozenset(parts): parts for parts in map(f.split_conjunction, terms)}
+    worklist = list(merged.values())
+    for parts in worklist:
+        for part in parts:
+            rest = tuple(other for other in parts if other != part)
+            partner = frozenset((*rest, opposite(part)))
+            if rest and frozenset(parts) in merged and partner in merged:
+                del merged[frozenset(parts)], merged[partner]
+                merged[frozenset(rest)] = rest
+                worklist.append(rest)
+    single = {parts[0] for parts in merged.values() if len(parts) == 1}
+    kept = (parts for parts in merged.values() if len(parts) == 1 or not single & {*parts})
+    return [f.both(*parts) for parts in kept]
+
+
 def _remove_redundant_conjuncts(
     args: tuple[Formula, ...], domain_by_name: Mapping[str, Domain], facts: tuple[Formula, ...]
 ) -> Formula:

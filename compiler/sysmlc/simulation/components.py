@@ -22,7 +22,9 @@ from msgspec.structs import replace
 from sysmlc.ir import Element, Graph, query
 from sysmlc.logic import evaluate
 from sysmlc.logic.activities import interpreter as token_game
+from sysmlc.logic.activities.interpreter import BranchPlan
 from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.activities.token_step import State
 from sysmlc.logic.components.component import Component, Root
 from sysmlc.logic.components.derivation import ComponentBehaviour, describe_component
 from sysmlc.logic.components.machines import EVENT, PlacedMachine
@@ -128,7 +130,8 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
                     for written in choose_values(options):
                         after = {**before, **written}
                         yield from self._receive(
-                            self._complete(after, after, inputs, combination, state, is_first=True)
+                            self._complete(after, after, inputs, combination, state, is_first=True),
+                            state.running,
                         )
 
     def _list_first_values(self) -> Iterator[Valuation]:
@@ -141,9 +144,7 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
         for row in product(*choices):
             yield dict(zip(names, row, strict=True))
 
-    def _list_first_states(
-        self, reactions: tuple[_MachineReaction, ...]
-    ) -> Iterator[token_game.State]:
+    def _list_first_states(self, reactions: tuple[_MachineReaction, ...]) -> Iterator[State]:
         """Yield the first states of the performances: those of services may already run."""
         by_machine = {id(reaction.machine): reaction for reaction in reactions}
         choices: list[list[bool]] = []
@@ -156,7 +157,7 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
                 choices.append([is_active(machine, reaction.reaction.store, root.state.id)])
             else:
                 choices.append([True] if root.first == TRUE else [False, True])
-        nothing = token_game.State(frozenset(), frozenset())
+        nothing = State(frozenset(), frozenset())
         for choice in product(*choices):
             ids = {
                 root.id
@@ -195,15 +196,15 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
                 options[name] = [*options.get(name, []), *choices]
             kept = {name: now[name] for name in self._features}
             starts, stops = self._list_starts(state, now, finished, combination)
-            for following in self._list_states(state, now, starts, stops):
-                started = starts | (following.running - state.running)
+            for following, started in self._list_states(state, now, starts, stops):
                 stored = parameters.list_options(started)
                 for written in choose_values({**options, **stored}):
                     after = {**inputs, **kept, **written}
                     yield from self._receive(
                         self._complete(
                             now, after, inputs, combination, following, finished=finished
-                        )
+                        ),
+                        started,
                     )
 
     def _list_writes(
@@ -258,7 +259,7 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
 
     def _list_starts(
         self,
-        state: token_game.State,
+        state: State,
         now: Mapping[str, Literal],
         finished: set[str],
         reactions: tuple[_MachineReaction, ...],
@@ -280,18 +281,19 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
 
     def _list_states(
         self,
-        state: token_game.State,
+        state: State,
         now: Mapping[str, Literal],
         starts: set[str],
         stops: set[str],
-    ) -> Iterator[token_game.State]:
-        """Yield the states of the performances after one step."""
+    ) -> Iterator[tuple[State, frozenset[str]]]:
+        """Yield the states of the performances after one step, and the nodes that start."""
         worklist: list[list[int]] = [[]]
-        states: dict[token_game.State, None] = {}
+        states: dict[tuple[State, frozenset[str]], None] = {}
         while worklist:
-            plan = token_game.BranchPlan(worklist.pop())
+            plan = BranchPlan(worklist.pop())
             step = PerformanceStep(self._tokens, state, now, evaluate.is_true, plan.choose)
-            states[step.start_and_stop(starts, stops)] = None
+            following = step.start_and_stop(starts, stops)
+            states[following, frozenset(step.begun)] = None
             worklist += plan.list_alternatives()
         yield from states
 
@@ -301,13 +303,17 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
         after: Mapping[str, Literal],
         inputs: Mapping[str, Literal],
         reactions: tuple[_MachineReaction, ...],
-        state: token_game.State,
+        state: State,
         *,
         finished: set[str] | None = None,
         is_first: bool = False,
     ) -> Valuation:
         """Return the valuation of all variables; *after* has the inputs and the features."""
-        valuation: Valuation = {**inputs, **after, **token_game.values_of(self._tokens, state)}
+        valuation: Valuation = {
+            **inputs,
+            **after,
+            **token_game.values_of_state(self._tokens, state),
+        }
         for entry in reactions:
             machine = entry.machine
             names = machine.variables
@@ -336,10 +342,10 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
                     valuation[root.over] = is_over and not is_moved
         return valuation
 
-    def _receive(self, valuation: Valuation) -> Iterator[Valuation]:
+    def _receive(self, valuation: Valuation, started: frozenset[str]) -> Iterator[Valuation]:
         """Yield the valuations with the messages received, and with the values of arguments."""
         for received in receive_messages(self.wiring, valuation):
-            yield bind_arguments(self.parts.arguments, received)
+            yield bind_arguments(self.parts.arguments, received, started)
 
 
 def open_component(graph: Graph, subject: Element) -> ComponentPlayer | None:
@@ -356,7 +362,7 @@ def open_component(graph: Graph, subject: Element) -> ComponentPlayer | None:
         wiring = derive_events(component)
     except ComponentError:
         return None
-    if behaviour.gaps or component.performances.quiets:
+    if behaviour.gaps or component.performances.named_conditions:
         return None
     return ComponentPlayer(graph, component, behaviour, name, wiring)
 

@@ -1,11 +1,10 @@
 """One step of the performances of a component, of their variables, and of messages."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from itertools import product
 
 from sysmlc.logic import domains, evaluate
-from sysmlc.logic.activities import interpreter as token_game
-from sysmlc.logic.activities.token_graph import Firing, NodeKind, TokenEdge, TokenNode
+from sysmlc.logic.activities.token_step import State, TokenStep
 from sysmlc.logic.components.arguments import Arguments, Output
 from sysmlc.logic.components.objects import Slot
 from sysmlc.logic.components.signals import Wiring
@@ -14,72 +13,22 @@ from sysmlc.logic.machines.interpreter import Valuation
 from sysmlc.logic.machines.machine import NO_EVENT
 
 
-class PerformanceStep(token_game.TokenStep):
+class PerformanceStep(TokenStep):
     """One step of the performances of a component, whose outermost nodes others start and stop.
 
-    A region is complete, too, if a token reaches one of its final nodes just now: the way to a
-    final node takes no step. A performance that is complete does not start again.
+    A performance that is complete does not start again. ``begun`` are the nodes that start.
     """
 
-    def is_complete(self, region: str) -> bool:
-        if token_game.is_complete(self.graph, self.old, region):
-            return True
-        return any(self._arrives(edge) for edge in self.graph.ends(region))
-
-    def list_finished(self) -> set[str]:
-        """Return the ids of the running nodes that are done; what they write counts."""
-        return {
-            node.id
-            for node in self.graph.workers()
-            if node.id in self.old.running and self._finishes(node)
-        }
-
-    def start_and_stop(self, starts: set[str], stops: set[str]) -> token_game.State:
+    def start_and_stop(self, starts: set[str], stops: set[str]) -> State:
         """Return the next state after performances were stopped and others were started."""
         self.move_tokens()
         for id in stops:
             self.running.discard(id)
             self.clear_region(id)
         for id in starts:
-            self.running.add(id)
-            self.start_region(self.graph.node(id))
-        return token_game.State(frozenset(self.tokens), frozenset(self.running))
-
-    def _finishes(self, node: TokenNode) -> bool:
-        if node.kind is NodeKind.STRUCTURED:
-            return self.is_complete(node.id)
-        return self.is_done(node)
-
-    def _arrives(self, edge: TokenEdge) -> bool:
-        """Whether the source of an edge gives it a token in this step, without another choice."""
-        source = self.graph.node(edge.source)
-        around = self.graph.regions_around(source.region)
-        inner = self.graph.nodes_between(source.region, edge.region)
-        if any(region.id not in self.old.running for region in around) or any(
-            self.is_complete(region.id) for region in inner
-        ):
-            return False
-        waiting = [token.id in self.old.tokens for token in self.graph.incoming(source)]
-        match source.firing:
-            case Firing.ANY:
-                return any(waiting)
-            case Firing.ALL:
-                return bool(waiting) and all(waiting)
-            case Firing.CHOICE:
-                branches = self.graph.outgoing(source)
-                is_open = edge in self.list_open_branches(branches)
-                return is_open and all(waiting) and not _can_choose(source, branches)
-            case Firing.WORK:
-                return source.id in self.old.running and self._finishes(source)
-            case _:
-                return False
-
-
-def _can_choose(node: TokenNode, branches: list[TokenEdge]) -> bool:
-    """Whether several branches of a decision can be open at once, so that its token waits."""
-    else_count = sum(branch.is_else for branch in branches)
-    guarded_count = len(branches) - else_count
-    return else_count > 1 or (guarded_count > 1 and not node.exclusive)
+            self.start_node(self.graph.node(id))
+        self.begun &= self.running
+        return State(frozenset(self.tokens), frozenset(self.running))
 
 
 class ParameterStep:
@@ -120,12 +69,9 @@ class ParameterStep:
                 any_value = domains.values(variable.domain)
                 options[variable.name] = list(any_value if store.first is None else [store.first])
         for argument in self._arguments.values:
-            if argument.is_bound:
-                continue
             name = argument.variable.name
-            options.setdefault(name, [self._now[name]])
-            if argument.node in started:
-                options[name] = [evaluate_cases(argument.cases, self._now)]
+            if not argument.is_bound:
+                options.setdefault(name, [self._now[name]])
         return options
 
     def _list_after(self, variable: str) -> list[Literal]:
@@ -182,10 +128,15 @@ def receive_messages(wiring: Wiring, valuation: Valuation) -> Iterator[Valuation
         }
 
 
-def bind_arguments(arguments: Arguments, valuation: Valuation) -> Valuation:
-    """Return the valuation with the values of bound arguments (``=``)."""
+def bind_arguments(
+    arguments: Arguments, valuation: Valuation, started: Collection[str]
+) -> Valuation:
+    """Return the valuation with the values of bound arguments (``=``), and of calls that start.
+
+    *started* are the nodes that run newly in this step.
+    """
     for argument in arguments.values:
-        if argument.is_bound:
+        if argument.is_bound or argument.node in started:
             value = evaluate_cases(argument.cases, valuation)
             valuation = {**valuation, argument.variable.name: value}
     return valuation

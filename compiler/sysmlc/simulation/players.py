@@ -11,7 +11,9 @@ from sysmlc.ir import Element, Graph, Kind, query
 from sysmlc.logic import evaluate
 from sysmlc.logic.activities import derivation as activity_contract
 from sysmlc.logic.activities import interpreter as token_game
+from sysmlc.logic.activities.interpreter import BranchPlan
 from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.activities.token_step import State
 from sysmlc.logic.contract import (
     BooleanDomain,
     Domain,
@@ -142,23 +144,26 @@ class ActivityPlayer(Struct, frozen=True, dict=True):
 
     def initial(self, inputs: Mapping[str, Literal]) -> list[Valuation]:
         return [
-            {**inputs, **token_game.values_of(self.tokens, token_game.initial_state(self.tokens))}
+            {
+                **inputs,
+                **token_game.values_of(self.tokens, token_game.initial_state(self.tokens), inputs),
+            }
         ]
 
     def successors(
         self, now: Mapping[str, Literal], inputs: Mapping[str, Literal]
     ) -> list[Valuation]:
         state = token_game.state_of(self.tokens, now)
-        states: dict[token_game.State, None] = {}
+        states: dict[State, None] = {}
         worklist: list[list[int]] = [[]]
         while worklist:
-            plan = token_game.BranchPlan(worklist.pop())
+            plan = BranchPlan(worklist.pop())
             successor = token_game.next_state(
                 self.tokens, state, now, evaluate.is_true, plan.choose
             )
             states[successor] = None
             worklist += plan.list_alternatives()
-        return [{**inputs, **token_game.values_of(self.tokens, after)} for after in states]
+        return [{**inputs, **token_game.values_of(self.tokens, after, inputs)} for after in states]
 
 
 class MachinePlayer(Struct, frozen=True, dict=True):

@@ -24,8 +24,9 @@ from sysmlc.logic.contract import (
     IntegerDomain,
     Owner,
     Variable,
+    equal_values,
 )
-from sysmlc.logic.formula import Apply, Const, Formula, Op
+from sysmlc.logic.formula import Apply, Formula, Op
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import as_ltl
 from sysmlc.logic.reduction.formula_reduction import NotReducibleError
@@ -218,9 +219,18 @@ class BehaviourCheck:
 
         The ranges of Integers are facts of the model: the numbers next to them count, too.
         """
-        names = _names_of((conjunct,))
         declared = (*self._behaviour.contract.variables, *self._requirements.variables)
-        read = tuple(_widen(variable) for variable in declared if variable.name in names)
+        by_name = {variable.name: variable for variable in declared}
+        if conjunct.wording is not None:
+            # The end of an action with steps, for which a long condition stands, is free here, too.
+            words = f.variable_names(conjunct.wording)
+            actions = (name for name in words if name.endswith(")"))
+            shown = by_name | {atom.variable.name: atom.variable for atom in self._behaviour.atoms}
+            shown |= {name: Variable(name, Owner.SYSTEM, BooleanDomain(), "") for name in actions}
+            if shown.keys() >= words:
+                by_name, conjunct = shown, Conjunct(conjunct.wording, Class.OTHER, conjunct.origin)
+        names = _names_of((conjunct,))
+        read = tuple(_widen(variable) for name, variable in by_name.items() if name in names)
         free = Contract("", "", read, (), ())
         new_manager = manager_factory(self._options)
         return RunSearch((free,), new_manager).entails((), conjunct)
@@ -340,15 +350,6 @@ def _widen(variable: Variable) -> Variable:
         return variable
     domain = IntegerDomain(variable.domain.low - 1, variable.domain.high + 1)
     return replace(variable, domain=domain)
-
-
-def equal_values(variable: Variable, left: Formula, right: Formula) -> Formula:
-    """Return the formula that two values of a variable are equal."""
-    if isinstance(variable.domain, BooleanDomain):
-        return f.fold_iff(left, right)
-    if isinstance(left, Const) and isinstance(right, Const):
-        return f.TRUE if left == right else f.FALSE
-    return f.eq(left, right)
 
 
 def iter_strengthened(

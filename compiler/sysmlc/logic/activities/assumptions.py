@@ -14,13 +14,13 @@ from msgspec import Struct
 from sysmlc.ir.algorithms import strongly_connected_components
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.step_formulas import StepFormulas, token_at
-from sysmlc.logic.activities.token_graph import (
+from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.activities.token_nodes import (
     ACTIVITY_REGION,
     Duration,
     Firing,
     NodeKind,
     TokenEdge,
-    TokenGraph,
     TokenNode,
 )
 from sysmlc.logic.contract import Class, Conjunct
@@ -208,7 +208,8 @@ def _loop_assumption(formulas: StepFormulas, loop: Loop) -> Iterator[Conjunct]:
     inner_edges = (
         edge for edge in graph.edges if edge.source in nodes_in and edge.target in nodes_in
     )
-    tokens_inside = [token_at(edge) for edge in inner_edges if not edge.keeps]
+    holding = (edge for edge in inner_edges if graph.can_hold(edge) and not edge.keeps)
+    tokens_inside = [token_at(edge) for edge in holding]
     tokens_inside += [f.var(node.run) for node in graph.workers() if node.id in nodes_in]
     nodes = [graph.node(edge.source) for edge in loop.exits]
     names = " or ".join(dict.fromkeys(node.label for node in nodes))

@@ -11,12 +11,12 @@ from functools import cached_property
 
 from msgspec import Struct
 
-from sysmlc.logic.activities.token_graph import (
+from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.activities.token_nodes import (
     ACTIVITY_REGION,
     Firing,
     NodeKind,
     TokenEdge,
-    TokenGraph,
     TokenNode,
 )
 

@@ -15,13 +15,14 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.activities.assumptions import derive_assumptions, find_endless_entries
 from sysmlc.logic.activities.handshakes import derive_handshake
 from sysmlc.logic.activities.step_formulas import StepFormulas, token_at
-from sysmlc.logic.activities.token_graph import (
+from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.activities.token_nodes import (
     ACTIVITY_REGION,
+    NO_START,
     Duration,
     Guard,
     Store,
     TokenEdge,
-    TokenGraph,
     TokenNode,
     Write,
 )
@@ -78,10 +79,10 @@ def _derive_guarantees(formulas: StepFormulas) -> Iterator[Conjunct]:
 def derive_token_updates(formulas: StepFormulas) -> Iterator[Conjunct]:
     """Yield how tokens move, and which regions are complete."""
     graph = formulas.graph
-    for region, name in _list_completions(graph):
-        yield _derive_completion(formulas, region, name)
+    for id, name in _list_named_conditions(graph):
+        yield _derive_named_condition(formulas, id, name)
     for edge in graph.edges:
-        if not formulas.is_chosen(edge):
+        if graph.can_hold(edge) and not formulas.is_chosen(edge):
             yield _derive_edge_update(formulas, edge)
     for node in formulas.list_choosers():
         yield from _derive_choice(formulas, node)
@@ -96,46 +97,47 @@ def list_variables(graph: TokenGraph) -> tuple[Variable, ...]:
     handshake = graph.handshake
     inputs = (name for name in (handshake.start, handshake.stop) if name) if handshake else ()
     outputs = (handshake.running, handshake.finished) if handshake else ()
-    token_variables = [(edge.variable, edge.origin) for edge in graph.edges]
-    region_variables = [
-        (name, _origin_of(graph, region)) for region, name in _list_completions(graph)
-    ]
+    token_variables = [(edge.variable, edge.origin) for edge in graph.edges if graph.can_hold(edge)]
+    conditions = [(name, _origin_of(graph, id)) for id, name in _list_named_conditions(graph)]
     system_variables = (
         Variable(name, Owner.SYSTEM, BooleanDomain(), origin)
         for name, origin in (*((name, graph.activity) for name in outputs), *run_variables)
     )
     auxiliary_variables = (
         Variable(name, Owner.SYSTEM, BooleanDomain(), origin, is_auxiliary=True)
-        for name, origin in (*token_variables, *region_variables)
+        for name, origin in (*token_variables, *conditions)
     )
     calls = (Variable(name, Owner.ENVIRONMENT, BooleanDomain(), graph.activity) for name in inputs)
     stored = (store.variable for store in graph.stores)
     return (*calls, *graph.inputs, *stored, *system_variables, *auxiliary_variables)
 
 
-def _list_completions(graph: TokenGraph) -> list[tuple[str, str]]:
-    """List the regions with a variable for their end, except one that the handshake has."""
-    is_named = graph.handshake is not None
-    return [quiet for quiet in graph.quiets if not (is_named and quiet[0] == ACTIVITY_REGION)]
+def _list_named_conditions(graph: TokenGraph) -> list[tuple[str, str]]:
+    """List the conditions with a variable, except an end that the handshake has."""
+    ends = [] if graph.handshake is None else [ACTIVITY_REGION]
+    return [condition for condition in graph.named_conditions if condition[0] not in ends]
 
 
-def _origin_of(graph: TokenGraph, region: str) -> str:
-    return graph.activity if region == ACTIVITY_REGION else graph.node(region).origin
-
-
-def _label_of(graph: TokenGraph, region: str) -> str:
-    return graph.label if region == ACTIVITY_REGION else graph.node(region).label
+def _origin_of(graph: TokenGraph, id: str) -> str:
+    """Return the origin of a region or an edge."""
+    if id == ACTIVITY_REGION:
+        return graph.activity
+    edge = graph.find_edge(id)
+    return graph.node(id).origin if edge is None else edge.origin
 
 
 def _derive_start_tokens(graph: TokenGraph) -> Iterator[Conjunct]:
     is_started = graph.handshake is None or graph.handshake.is_started
-    for edge in graph.edges:
-        is_marked = edge.marked and edge.region == ACTIVITY_REGION and is_started
+    start = graph.start_all(ACTIVITY_REGION) if is_started else NO_START
+    for edge in filter(graph.can_hold, graph.edges):
+        is_marked = edge.id in start.tokens
         value = token_at(edge) if is_marked else f.negate(token_at(edge))
         yield Conjunct(value, Class.INIT, edge.origin, _describe_start(graph, edge, is_marked))
     for node in graph.workers():
-        text = f"At the start {node.label} is not running."
-        yield Conjunct(f.negate(f.var(node.run)), Class.INIT, node.origin, text)
+        is_first = node.id in start.running
+        text = f"At the start {node.label} is {'' if is_first else 'not '}running."
+        value = f.var(node.run) if is_first else f.negate(f.var(node.run))
+        yield Conjunct(value, Class.INIT, node.origin, text)
 
 
 def _describe_start(graph: TokenGraph, edge: TokenEdge, is_marked: bool) -> str:
@@ -148,17 +150,9 @@ def _describe_start(graph: TokenGraph, edge: TokenEdge, is_marked: bool) -> str:
 
 def _derive_edge_update(formulas: StepFormulas, edge: TokenEdge) -> Conjunct:
     """Return the conjunct that determines whether the edge holds a token in the next step."""
-    moves = f.both(
-        f.either(
-            formulas.given_formula(edge),
-            formulas.kept_formula(edge),
-            formulas.listening_formula(edge),
-        ),
-        f.negate(formulas.cleared_formula(edge.region, {edge.source, edge.target})),
-    )
-    holds_token = f.either(
-        f.both(formulas.begin_formula(edge.region), _constant(edge.marked)), moves
-    )
+    cleared = formulas.cleared_formula(edge.region, {edge.source, edge.target})
+    rests = f.both(formulas.resting_formula(edge), f.negate(cleared))
+    holds_token = f.either(_begin_with_token(formulas, edge), rests)
     return Conjunct(
         _next_value(edge.variable, holds_token),
         Class.SAFETY,
@@ -167,18 +161,27 @@ def _derive_edge_update(formulas: StepFormulas, edge: TokenEdge) -> Conjunct:
     )
 
 
-def _derive_completion(formulas: StepFormulas, region: str, name: str) -> Conjunct:
-    label = _label_of(formulas.graph, region)
-    text = (
-        f"'{name}' is true when {label} has ended: a token is at a final node, "
-        "or nothing in it can move."
-    )
-    value = f.fold_iff(f.var(name), formulas.completion_formula(region))
-    return Conjunct(value, Class.SAFETY, _origin_of(formulas.graph, region), text)
+def _begin_with_token(formulas: StepFormulas, edge: TokenEdge) -> Formula:
+    """Return that the region of the edge starts in the next step, with a token on the edge."""
+    is_first = edge.id in formulas.graph.start(edge.region).tokens
+    return formulas.begin_formula(edge.region) if is_first else f.FALSE
 
 
-def _constant(value: bool) -> Formula:
-    return f.TRUE if value else f.FALSE
+def _derive_named_condition(formulas: StepFormulas, id: str, name: str) -> Conjunct:
+    """Return the conjunct that defines the variable of a region or an edge."""
+    graph, edge = formulas.graph, formulas.graph.find_edge(id)
+    if edge is None:
+        label = graph.label if id == ACTIVITY_REGION else graph.node(id).label
+        text = (
+            f"'{name}' is true in the last step of {label}: a token reaches a final node, "
+            "or nothing is left in it after this step."
+        )
+        condition = formulas.completion_formula(id)
+    else:
+        text = f"'{name}' is true when {edge.label} gets a token."
+        condition = formulas.arrival_condition(edge)
+    value = f.fold_iff(f.var(name), condition)
+    return Conjunct(value, Class.SAFETY, _origin_of(graph, id), text)
 
 
 def _next_value(variable: str, value: Formula) -> Formula:
@@ -264,7 +267,7 @@ def _derive_branch_update(formulas: StepFormulas, edge: TokenEdge) -> Iterator[C
         f.prime(token_at(edge)),
         formulas.cleared_formula(edge.region, {edge.source, edge.target}),
     )
-    begin = f.both(formulas.begin_formula(edge.region), _constant(edge.marked))
+    begin = _begin_with_token(formulas, edge)
     allowed = f.either(
         begin,
         f.both(
@@ -281,8 +284,8 @@ def derive_run_update(formulas: StepFormulas, node: TokenNode) -> Conjunct:
     runs = f.either(
         formulas.start_formula(node), f.both(f.var(node.run), f.negate(formulas.done_formula(node)))
     )
-    cleared = formulas.cleared_formula(node.region, {node.id})
-    value = f.both(runs, f.negate(cleared))
+    cleared = formulas.aborted_formula(node.region, {node.id})
+    value = f.either(f.both(runs, f.negate(cleared)), formulas.first_formula(node))
     until = "for one step" if node.duration is Duration.PULSE else "until it is done"
     text = f"{_capitalize(node.label)} runs from when all its flows have brought a token {until}."
     return Conjunct(_next_value(node.run, value), Class.SAFETY, node.origin, text)
@@ -309,7 +312,7 @@ def _derive_progress(formulas: StepFormulas) -> Iterator[Conjunct]:
     condition = "" if handshake is None else f" while {graph.label} runs"
     for entry in find_endless_entries(graph):
         text = f"{_capitalize(entry.label)} is reached again and again{condition}."
-        reached = f.either(idle, *map(token_at, graph.incoming(entry)))
+        reached = f.either(idle, *map(formulas.present_formula, graph.incoming(entry)))
         yield Conjunct(reached, Class.LIVENESS, entry.origin, text)
 
 
@@ -328,10 +331,9 @@ def _derive_store_updates(formulas: StepFormulas, store: Store) -> Iterator[Conj
         if store.local and store.first is not None
         else f.FALSE
     )
-    # The new start wins over a write in the step in which the last performance is stopped.
-    is_reset = f.both(restart, formulas.stop_formula())
+    # The new start wins over a write in the last step of the performance before.
     writing = [
-        f.both(formulas.finish_formula(formulas.graph.node(write.node)), f.negate(is_reset))
+        f.both(formulas.finish_formula(formulas.graph.node(write.node)), f.negate(restart))
         for write in store.writes
     ]
     for write, write_formula in zip(store.writes, writing, strict=True):

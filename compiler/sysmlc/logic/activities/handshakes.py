@@ -14,12 +14,8 @@ from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.concurrency import ConcurrencyRelation
 from sysmlc.logic.activities.step_formulas import StepFormulas
-from sysmlc.logic.activities.token_graph import (
-    ACTIVITY_REGION,
-    Duration,
-    Handshake,
-    TokenGraph,
-)
+from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.activities.token_nodes import ACTIVITY_REGION, Duration, Handshake
 from sysmlc.logic.contract import Class, Conjunct
 from sysmlc.logic.expressions.expression import last_name
 from sysmlc.logic.identifiers import Names, identifier
@@ -174,8 +170,8 @@ def derive_handshake(formulas: StepFormulas, handshake: Handshake) -> Iterator[C
     yield Conjunct(f.fold_iff(f.prime(running), runs), Class.SAFETY, origin, text)
     ends = f.both(running, formulas.completion_formula(ACTIVITY_REGION))
     text = (
-        f"'{handshake.finished}' is true in the last step of {label}: a token is at a final node, "
-        "or nothing in it can move."
+        f"'{handshake.finished}' is true in the last step of {label}: a token reaches a final "
+        "node, or nothing is left in it after this step."
     )
     yield Conjunct(f.fold_iff(finished, ends), Class.SAFETY, origin, text)
 

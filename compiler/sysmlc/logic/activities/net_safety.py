@@ -13,7 +13,8 @@ does not hold: a region that is safe only because of the synchronous steps fails
 from collections.abc import Iterable, Iterator
 
 from sysmlc.logic.activities.petri_net import Net, Safety, build_net, reduce_net
-from sysmlc.logic.activities.token_graph import Firing, TokenEdge, TokenGraph, TokenNode
+from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.activities.token_nodes import Firing, TokenEdge, TokenNode
 
 _MAX_MARKINGS_UNREDUCED = 2_000
 """Limit of markings without reductions: the search takes some milliseconds."""

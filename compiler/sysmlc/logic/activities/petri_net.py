@@ -10,7 +10,8 @@ from itertools import combinations
 
 from msgspec import Struct
 
-from sysmlc.logic.activities.token_graph import Firing, TokenEdge, TokenGraph, TokenNode
+from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.activities.token_nodes import Firing, TokenEdge, TokenNode
 
 
 @dataclass(slots=True)

@@ -19,8 +19,11 @@ from sysmlc.logic import domains, evaluate
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities import interpreter as token_game
 from sysmlc.logic.activities.concurrency import ConcurrencyRelation
+from sysmlc.logic.activities.interpreter import BranchPlan
 from sysmlc.logic.activities.step_formulas import StepFormulas
-from sysmlc.logic.activities.token_graph import Store, TokenGraph, Write
+from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.activities.token_nodes import Store, Write
+from sysmlc.logic.activities.token_step import State
 from sysmlc.logic.activities.value_analysis import MAX_VALUES, ValueAnalysis
 from sysmlc.logic.contract import Domain
 from sysmlc.logic.formula import Const, Formula, Literal
@@ -76,7 +79,7 @@ def _variable_names(formulas: Iterable[Formula]) -> set[str]:
 
 class _Search:
     def __init__(self, graph: TokenGraph, writes_to_decide: list[Write]) -> None:
-        self._graph, self._formulas = graph, StepFormulas(graph)
+        self._graph, self._formulas = graph, StepFormulas(replace(graph, named_conditions=()))
         self._open_writes = list(writes_to_decide)
         self._domains = {variable.name: variable.domain for variable in graph.inputs}
         self._steps = _MAX_MOVES // (len(graph.nodes) + len(graph.edges))
@@ -118,18 +121,18 @@ class _Search:
                     worklist.append(successor)
         return True
 
-    def _can_saturate(self, write: Write, state: token_game.State) -> bool:
+    def _can_saturate(self, write: Write, state: State) -> bool:
         """Whether the node may end in this state and assign a saturated value."""
-        if write.node not in state.running or token_game.is_finished(self._graph, state):
+        if write.node not in state.running:
             return False
-        node, values = self._graph.node(write.node), token_game.values_of(self._graph, state)
+        node, values = self._graph.node(write.node), token_game.values_of_state(self._graph, state)
         constants = {name: Const(value) for name, value in values.items()}
         condition = substitute(
             f.both(self._formulas.finish_formula(node), f.either(*write.stops)), constants
         )
         return is_satisfiable(condition, self._domains)
 
-    def _successors(self, state: token_game.State) -> Iterator[token_game.State]:
+    def _successors(self, state: State) -> Iterator[State]:
         for inputs in domains.valuations(self._input_domains):
             plans: list[list[int]] = [[]]
             while plans:
@@ -138,14 +141,14 @@ class _Search:
                 plans += oracle.list_alternatives()
 
 
-def _initial_states(graph: TokenGraph, unset: Mapping[str, Domain]) -> Iterator[token_game.State]:
+def _initial_states(graph: TokenGraph, unset: Mapping[str, Domain]) -> Iterator[State]:
     default = token_game.initial_state(graph)
     for values in domains.valuations(unset):
         stored = tuple((name, values.get(name, value)) for name, value in default.stored)
         yield replace(default, stored=stored)
 
 
-class _PlannedChoices(token_game.BranchPlan):
+class _PlannedChoices(BranchPlan):
     """Decisions of the environment in one step: open branches, and conditions over its inputs."""
 
     def __init__(

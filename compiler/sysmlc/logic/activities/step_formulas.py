@@ -1,7 +1,8 @@
 """Formulas about the present step of the token game.
 
 The derivation of contracts combines them: which nodes start and finish, which edges gain and lose a
-token, which regions are complete or end.
+token, which regions are complete or end. Nodes without steps pass a token in the step in which they
+get it, so that a formula follows it back to the action that gives it or the edge on which it rests.
 """
 
 from collections.abc import Iterator, Mapping
@@ -9,21 +10,22 @@ from functools import cached_property
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.concurrency import ConcurrencyRelation
-from sysmlc.logic.activities.token_graph import (
+from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.activities.token_nodes import (
     ACTIVITY_REGION,
     Duration,
     Firing,
     Interruptible,
     NodeKind,
     TokenEdge,
-    TokenGraph,
     TokenNode,
 )
 from sysmlc.logic.formula import Formula
+from sysmlc.logic.simplification import merge_terms
 
 
 def token_at(edge: TokenEdge) -> Formula:
-    """Return the formula that the edge holds a token."""
+    """Return the formula that a token rests on the edge, which must be one that can hold it."""
     return f.var(edge.variable)
 
 
@@ -35,10 +37,13 @@ class StepFormulas:
 
     def __init__(self, graph: TokenGraph) -> None:
         self.graph = graph
-        self._quiets = dict(graph.quiets)
+        self._names = dict(graph.named_conditions)
+        self._present: dict[str, Formula] = {}
         self._completions: dict[str, Formula] = {}
         self._interrupted: dict[str, Formula] = {}
         self._endings: dict[str, Formula] = {}
+        for edge in graph.passing_edges:
+            self.present_formula(edge)
 
     @cached_property
     def concurrency(self) -> ConcurrencyRelation:
@@ -48,9 +53,9 @@ class StepFormulas:
     # -- nodes -----------------------------------------------------------------------------
 
     def waiting_formula(self, node: TokenNode) -> Formula:
-        """A token is on every incoming edge."""
+        """The node can take a token from every incoming edge."""
         incoming = self.graph.incoming(node)
-        return f.both(*map(token_at, incoming)) if incoming else f.FALSE
+        return f.both(*map(self.present_formula, incoming)) if incoming else f.FALSE
 
     def start_formula(self, node: TokenNode) -> Formula:
         """The node can take its tokens; the formula does not exclude that its region ends now."""
@@ -59,8 +64,10 @@ class StepFormulas:
         )
 
     def idle_formula(self, node: TokenNode) -> Formula:
-        """The node does not run; true for a node that never receives tokens while it runs."""
-        return f.negate(f.var(node.run)) if node.queues else f.TRUE
+        """The node does not run any longer; true for a node that gets no tokens while it runs."""
+        if not node.queues:
+            return f.TRUE
+        return f.either(f.negate(f.var(node.run)), self.done_formula(node))
 
     def region_runs_formula(self, node: TokenNode) -> Formula:
         """The region of the node runs; true where the tokens of the node imply it."""
@@ -77,19 +84,16 @@ class StepFormulas:
         return node.done
 
     def finish_formula(self, node: TokenNode) -> Formula:
-        """A running node is done, and no region around it ends in this step."""
-        # What ends in the step in which the activity is stopped has ended (UML 2.5.1, 14.2.3.4).
-        going = f.both(f.var(node.run), self.done_formula(node), self.region_runs_formula(node))
-        return f.both(going, f.negate(self._completed_formula(node.region)))
+        """A running node is done; what it writes counts even if a region around it ends now."""
+        return f.both(f.var(node.run), self.done_formula(node))
 
     def list_choosers(self) -> list[TokenNode]:
         """List the decisions with several branches that can be open at the same time."""
-        return [n for n in self.graph.nodes if _can_choose(self.graph.outgoing(n), n)]
+        return list(filter(self.graph.can_choose, self.graph.nodes))
 
     def is_chosen(self, edge: TokenEdge) -> bool:
         """Whether the edge leaves a decision with several branches open at the same time."""
-        source = self.graph.node(edge.source)
-        return _can_choose(self.graph.outgoing(source), source)
+        return self.graph.can_choose(self.graph.node(edge.source))
 
     # -- complete regions ------------------------------------------------------------------
 
@@ -98,43 +102,81 @@ class StepFormulas:
         handshake = self.graph.handshake
         if region == ACTIVITY_REGION and handshake is not None:
             return f.var(handshake.finished)
-        name = self._quiets.get(region)
+        name = self._names.get(region)
         return f.var(name) if name else self.completion_formula(region)
 
     def completion_formula(self, region: str) -> Formula:
-        """A token is at a final node of the region, or nothing in the region can move."""
+        """A token reaches a final node of the region, or nothing is left in it after this step."""
         if region not in self._completions:
             self._completions[region] = self._build_completion(region)
         return self._completions[region]
 
     def _build_completion(self, region: str) -> Formula:
-        at_final = map(token_at, self.graph.ends(region))
+        at_final = self._final_formula(region)
         if not self.graph.can_rest(region):
-            return f.either(*at_final)
-        moving = [
-            part for node in self.graph.members(region) for part in self._activity_formulas(node)
+            return at_final
+        remaining = [
+            part for node in self.graph.members(region) for part in self._remaining_formulas(node)
         ]
-        return f.either(*at_final, f.both(*map(f.negate, moving)))
+        remaining += map(self.given_formula, self.graph.list_delays(region))
+        return f.either(at_final, f.both(*map(f.negate, merge_terms(remaining))))
 
-    def _activity_formulas(self, node: TokenNode) -> Iterator[Formula]:
+    def _final_formula(self, region: str) -> Formula:
+        """A token reaches a final node of the region."""
+        return f.either(*map(self.present_formula, self.graph.ends(region)))
+
+    def _remaining_formulas(self, node: TokenNode) -> Iterator[Formula]:
         """Yield the conditions under which the node prevents the end of its region."""
-        if node.firing in (Firing.ANY, Firing.END):
-            yield from map(token_at, self.graph.incoming(node))
-        elif node.firing is not Firing.NEVER and self.graph.incoming(node):
-            yield f.both(*map(token_at, self.graph.triggers(node)))
+        triggers = self.graph.triggers(node)
+        has_all = f.both(*map(self.present_formula, triggers)) if triggers else f.FALSE
         if node.firing is Firing.WORK:
-            yield f.var(node.run)
+            yield has_all
+            yield f.both(f.var(node.run), f.negate(self.done_formula(node)))
+        elif node.firing is Firing.ALL:
+            # With all its tokens it passes them on, and does not remain itself.
+            yield f.both(has_all, f.negate(self.waiting_formula(node)))
+        elif node.firing is Firing.CHOICE and self.graph.can_choose(node):
+            yield has_all
+        elif node.firing is Firing.CHOICE and triggers:
+            yield f.both(*map(self.kept_formula, triggers))
 
-    def _region_end_formula(self, inner: str, outer: str) -> Formula:
-        """A region from *inner* outwards ends, not counting *outer* and the regions around it."""
+    def _aborted_formula(self, inner: str, outer: str) -> Formula:
+        """A final node ends a region from *inner* outwards, not counting *outer* and around it.
+
+        Tokens leave a region that ends because nothing is left in it.
+        """
         if inner == outer:
             return f.FALSE
-        return f.either(*map(self._node_end_formula, self.graph.nodes_between(inner, outer)))
+        between = self.graph.nodes_between(inner, outer)
+        return f.either(*(self._final_formula(node.id) for node in between))
 
     def _node_end_formula(self, around: TokenNode) -> Formula:
         return f.both(f.var(around.run), self.complete_formula(around.id))
 
     # -- edges -----------------------------------------------------------------------------
+
+    def present_formula(self, edge: TokenEdge) -> Formula:
+        """The target can take a token from the edge: one rests on it, or it gets one just now."""
+        if edge.id not in self._present:
+            rests = token_at(edge) if self.graph.can_hold(edge) else f.FALSE
+            arrives = f.FALSE if self.graph.delays(edge) else self._arriving_formula(edge)
+            self._present[edge.id] = f.either(rests, arrives)
+        return self._present[edge.id]
+
+    def _arriving_formula(self, edge: TokenEdge) -> Formula:
+        """The edge gets a token; a variable of the graph stands for it if there is one."""
+        name = self._names.get(edge.id)
+        return f.var(name) if name else self.arrival_condition(edge)
+
+    def arrival_condition(self, edge: TokenEdge) -> Formula:
+        """The source gives the edge a token, or the edge begins to listen."""
+        return f.either(self.given_formula(edge), self.listening_formula(edge))
+
+    def resting_formula(self, edge: TokenEdge) -> Formula:
+        """A token is on the edge after this step, unless something removes it."""
+        if self.graph.delays(edge):
+            return f.either(self._arriving_formula(edge), self.kept_formula(edge))
+        return f.both(self.present_formula(edge), f.negate(self.taken_formula(edge)))
 
     def guard_formula(self, edge: TokenEdge) -> Formula:
         """Return the guard of the edge; ``else`` is true if no guard of a sibling is."""
@@ -149,13 +191,13 @@ class StepFormulas:
     def given_formula(self, edge: TokenEdge) -> Formula:
         """The source gives the edge a token, or may do so if it can choose between branches."""
         source = self.graph.node(edge.source)
-        alive = f.negate(self._region_end_formula(source.region, edge.region))
+        alive = f.negate(self._aborted_formula(source.region, edge.region))
         return f.both(self._source_formula(source, edge), self.region_runs_formula(source), alive)
 
     def _source_formula(self, source: TokenNode, edge: TokenEdge) -> Formula:
         match source.firing:
             case Firing.ANY:
-                return f.either(*map(token_at, self.graph.incoming(source)))
+                return f.either(*map(self.present_formula, self.graph.incoming(source)))
             case Firing.ALL:
                 return self.waiting_formula(source)
             case Firing.CHOICE:
@@ -170,7 +212,7 @@ class StepFormulas:
         target = self.graph.node(edge.target)
         if edge.keeps:
             return f.FALSE
-        alive = f.negate(self._region_end_formula(target.region, edge.region))
+        alive = f.negate(self._aborted_formula(target.region, edge.region))
         return f.both(self._target_formula(target, edge), self.region_runs_formula(target), alive)
 
     def _target_formula(self, target: TokenNode, edge: TokenEdge) -> Formula:
@@ -194,7 +236,8 @@ class StepFormulas:
     def _other_tokens(self, edge: TokenEdge) -> Formula:
         """A token is on every other edge into the same node."""
         incoming = self.graph.incoming(self.graph.node(edge.target))
-        return f.both(*(token_at(sibling) for sibling in incoming if sibling is not edge))
+        others = (sibling for sibling in incoming if sibling is not edge)
+        return f.both(*map(self.present_formula, others))
 
     def listening_formula(self, edge: TokenEdge) -> Formula:
         """A token enters the region of a listening edge, whose target neither waits nor runs."""
@@ -202,10 +245,11 @@ class StepFormulas:
             return f.FALSE
         target = self.graph.node(edge.target)
         arrivals = (
-            f.both(token_at(edge_around), self.taken_formula(edge_around))
+            f.both(self.present_formula(edge_around), self.taken_formula(edge_around))
             for edge_around in self.graph.entering(edge.listens)
         )
-        is_idle = f.both(f.negate(token_at(edge)), f.negate(f.var(target.run)))
+        rests = token_at(edge) if self.graph.can_hold(edge) else f.FALSE
+        is_idle = f.both(f.negate(rests), f.negate(f.var(target.run)))
         regions = self.graph.regions_around(edge.region)
         return f.both(
             f.either(*arrivals), is_idle, *(f.var(edge_around.run) for edge_around in regions)
@@ -227,7 +271,17 @@ class StepFormulas:
 
     def cleared_formula(self, region: str, members: set[str]) -> Formula:
         """The region ends, or an interruption removes the tokens of *members* (node ids)."""
-        return f.either(self.ended_formula(region), *self.interruption_formulas(region, members))
+        return f.either(self._completed_formula(region), self.aborted_formula(region, members))
+
+    def aborted_formula(self, region: str, members: set[str]) -> Formula:
+        """The region ends before its tokens are used up, or an interruption removes them.
+
+        For a node that starts or goes on, this is all: with it, something is left in its region.
+        """
+        around = (node.id for node in self.graph.regions_around(region))
+        finals = map(self._final_formula, (ACTIVITY_REGION, *around))
+        interruptions = self.interruption_formulas(region, members)
+        return f.either(*finals, self.stop_formula(), *interruptions)
 
     def ended_formula(self, region: str) -> Formula:
         """The region, or a region around it, ends or is stopped."""
@@ -263,13 +317,19 @@ class StepFormulas:
         return self._interrupted[interruptible.id]
 
     def begin_formula(self, region: str) -> Formula:
-        """The region starts in the next step."""
+        """The region starts in the next step, by its tokens or with the region around it."""
         if region == ACTIVITY_REGION:
             return self._restart_formula()
         node = self.graph.node(region)
-        return f.both(
-            self.start_formula(node), f.negate(self.cleared_formula(node.region, {node.id}))
+        starts = f.both(
+            self.start_formula(node), f.negate(self.aborted_formula(node.region, {node.id}))
         )
+        return f.either(starts, self.first_formula(node))
+
+    def first_formula(self, node: TokenNode) -> Formula:
+        """The region of the node starts in the next step, and the node runs from then on."""
+        is_first = node.id in self.graph.start(node.region).running
+        return self.begin_formula(node.region) if is_first else f.FALSE
 
     def _restart_formula(self) -> Formula:
         """The activity starts in the next step. A start while it runs has no effect."""
@@ -292,9 +352,9 @@ class PerformanceFormulas(StepFormulas):
     def __init__(
         self, graph: TokenGraph, starts: Mapping[str, Formula], stops: Mapping[str, Formula]
     ) -> None:
-        super().__init__(graph)
         self._starts = starts
         self._stops = stops
+        super().__init__(graph)
 
     def start_formula(self, node: TokenNode) -> Formula:
         """The node starts; for an outermost node, others decide it."""
@@ -308,26 +368,12 @@ class PerformanceFormulas(StepFormulas):
         """The region starts in the next step."""
         return self._starts[region] if region in self._starts else super().begin_formula(region)
 
-    def cleared_formula(self, region: str, members: set[str]) -> Formula:
-        """The region ends, is interrupted, or the performance around it is stopped."""
-        cleared = super().cleared_formula(region, members)
+    def aborted_formula(self, region: str, members: set[str]) -> Formula:
+        """A final node, an interruption or the stop of the performance ends the region."""
+        aborted = super().aborted_formula(region, members)
         outermost = [node.id for node in self.graph.regions_around(region)][-1:]
         stops = (self._stops.get(id, f.FALSE) for id in (*outermost, *members))
-        return f.either(cleared, *stops)
-
-    def finish_formula(self, node: TokenNode) -> Formula:
-        """A running node is done; its writes count even if a region around it ends now."""
-        return f.both(f.var(node.run), self.done_formula(node))
-
-    def _build_completion(self, region: str) -> Formula:
-        """The region is complete in this step, also if a token reaches a final node just now.
-
-        The way to a final node takes no step, so that an action ends with its last inner action.
-        """
-        arrivals = (
-            self.given_formula(edge) for edge in self.graph.ends(region) if not self.is_chosen(edge)
-        )
-        return f.either(super()._build_completion(region), *arrivals)
+        return f.either(aborted, *stops)
 
     def run_formula(self, root: TokenNode) -> Formula:
         """The performance of an outermost node runs in the next step."""
@@ -337,13 +383,3 @@ class PerformanceFormulas(StepFormulas):
             f.negate(self._stops.get(root.id, f.FALSE)),
         )
         return f.either(self._starts[root.id], goes_on)
-
-
-def _can_choose(branches: list[TokenEdge], node: TokenNode) -> bool:
-    """Whether several branches of the node can be open at the same time."""
-    # Several else branches are open together, although UML allows only one.
-    if node.firing is not Firing.CHOICE:
-        return False
-    else_branches = [branch for branch in branches if branch.is_else]
-    guarded_count = len(branches) - len(else_branches)
-    return len(else_branches) > 1 or (guarded_count > 1 and not node.exclusive)

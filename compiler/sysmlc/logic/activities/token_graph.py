@@ -1,216 +1,38 @@
-"""Token graphs: activities as 1-safe token games with one Boolean for each edge.
+"""Token graphs: activities as 1-safe token games.
 
 The pass ``activities`` derives a token graph from an activity diagram (UML 2.5.1, clauses 15 and
 16; fUML 1.5, clause 8). Contracts, the reference interpreter and back ends read it.
 
-In one step of the game, every token that can move passes one node; each node reads the edges as
-they are at the start of the step. ``FIRING`` states what each kind of node does with tokens.
+In one step of the game, actions end, and their tokens pass all forks, joins, merges, object nodes,
+silent actions and final nodes on their way: what follows runs in the next step
+(docs/decisions/0046). A token rests on an edge when its target cannot take it yet, and for one step
+on the edges that ``delays`` names. ``FIRING`` states what each kind of node does with tokens.
 
 A region is the content of a structured node, or of the activity. An edge belongs to the innermost
-region that contains both of its ends. A node moves tokens only while its region runs; a token for a
-node in a region that does not run waits on its edge. A region is complete when a token is at one of
-its final nodes, or when nothing in it can move.
+region that contains both of its ends. A node moves tokens only while its region runs. A region is
+complete when a token reaches one of its final nodes, or when nothing in it is left after the step.
 """
 
-from collections.abc import Iterator
-from enum import StrEnum
+from collections.abc import Container, Iterator
 from functools import cached_property
 
 from msgspec import Struct
 
+from sysmlc.logic.activities.token_nodes import (
+    ACTIVITY_REGION,
+    NO_START,
+    Duration,
+    Firing,
+    Handshake,
+    Interruptible,
+    NodeKind,
+    RegionStart,
+    Store,
+    TokenEdge,
+    TokenNode,
+)
 from sysmlc.logic.contract import Variable
-from sysmlc.logic.formula import Formula, Literal, variables
-
-ACTIVITY_REGION = ""
-"""The region of nodes and edges that are in no structured node."""
-
-
-class NodeKind(StrEnum):
-    """Kind of a node in UML's words; an object node or pin that only passes tokens is a merge."""
-
-    INITIAL = "initial"
-    ACTION = "action"
-    STRUCTURED = "structured"
-    FORK = "fork"
-    JOIN = "join"
-    MERGE = "merge"
-    DECISION = "decision"
-    DATA_STORE = "data-store"
-    SINK = "sink"
-    FLOW_FINAL = "flow-final"
-    ACTIVITY_FINAL = "final"
-
-
-class Firing(StrEnum):
-    """How a node moves tokens in one step."""
-
-    NEVER = "never"
-    """It only names where tokens are at the start of its region."""
-    ALL = "all"
-    """It takes a token from every incoming edge and gives one to every outgoing edge."""
-    ANY = "any"
-    """It takes the tokens of all marked incoming edges and gives one to every outgoing edge."""
-    CHOICE = "choice"
-    """It waits for all incoming edges and gives one token to one edge whose guard is open."""
-    WORK = "work"
-    """It starts as ALL does; when it is done, it gives a token to every outgoing edge."""
-    END = "end"
-    """A token that reaches it ends the region."""
-
-
-class Duration(StrEnum):
-    """How long an action runs."""
-
-    TIMED = "timed"
-    """Until the environment ends it."""
-    PULSE = "pulse"
-    """One step, because its effect is visible outside: it sends a signal or writes a value."""
-    SILENT = "silent"
-    """No time, because it has no visible effect: it reads or computes a value."""
-
-
-FIRING: dict[NodeKind, Firing] = {
-    NodeKind.INITIAL: Firing.NEVER,
-    NodeKind.ACTION: Firing.WORK,
-    NodeKind.STRUCTURED: Firing.WORK,
-    NodeKind.FORK: Firing.ALL,
-    NodeKind.JOIN: Firing.ALL,
-    NodeKind.MERGE: Firing.ANY,
-    NodeKind.DECISION: Firing.CHOICE,
-    NodeKind.DATA_STORE: Firing.ANY,
-    NodeKind.SINK: Firing.ANY,
-    NodeKind.FLOW_FINAL: Firing.ANY,
-    NodeKind.ACTIVITY_FINAL: Firing.END,
-}
-
-
-_ACTION, _SILENT, _ALL, _WORK = NodeKind.ACTION, Duration.SILENT, Firing.ALL, Firing.WORK
-# Module-level names: in Python 3.11, looking up a member of an enumeration takes twice as long.
-
-
-class Guard(Struct, frozen=True):
-    """Guard of an edge that leaves a decision; ``condition`` is None for else."""
-
-    text: str
-    condition: Formula | None
-
-
-class TokenNode(Struct, frozen=True):
-    """One node; ``label`` is the name that diagnostics use ("action 'read id'").
-
-    ``region`` is the id of the structured node that owns it. ``run`` is the variable that is true
-    while it runs, ``done`` the condition on inputs that ends a timed action. ``exclusive`` is true
-    for a decision whose guards never hold together, ``exhaustive`` if one of them always holds.
-    ``queues`` is true for an action that may receive tokens while it runs; they wait until it is
-    done (UML 2.5.1, 16.2.3: no action is locally reentrant unless it says so).
-    """
-
-    id: str
-    kind: NodeKind
-    label: str
-    origin: str
-    region: str = ACTIVITY_REGION
-    duration: Duration = Duration.TIMED
-    run: str = ""
-    done: Formula | None = None
-    exclusive: bool = False
-    exhaustive: bool = False
-    queues: bool = False
-
-    @property
-    def firing(self) -> Firing:
-        """How the node moves tokens."""
-        return _ALL if self.duration is _SILENT and self.kind is _ACTION else FIRING[self.kind]
-
-
-class TokenEdge(Struct, frozen=True):
-    """One edge and the variable that is true while it holds a token.
-
-    ``origins`` are the ids of the drawn flows that the edge stands for, several after a collapse. A
-    ``marked`` edge holds a token when its region starts. ``interrupts`` is the id of the
-    interruptible region that loses its tokens when a token enters this edge. A ``keeps`` edge
-    leaves a data store: its token stays when it is taken. An edge that ``listens`` to an
-    interruptible region (its id) gets a token when one enters the region, unless its target holds a
-    token or runs: this enables accept actions without incoming flows (UML 2.5.1, 15.6.3).
-    """
-
-    id: str
-    variable: str
-    label: str
-    source: str
-    target: str
-    origins: tuple[str, ...]
-    region: str = ACTIVITY_REGION
-    marked: bool = False
-    guard: Guard | None = None
-    interrupts: str = ""
-    keeps: bool = False
-    listens: str = ""
-
-    @property
-    def origin(self) -> str:
-        """The first drawn flow that the edge stands for."""
-        return self.origins[0]
-
-    @property
-    def is_else(self) -> bool:
-        """Whether the edge is taken when no other branch of its decision is open."""
-        return self.guard is not None and self.guard.condition is None
-
-
-class Interruptible(Struct, frozen=True):
-    """Nodes (ids) that lose their tokens together.
-
-    Such a group is an interruptible activity region, the nodes that an exception ends, or the nodes
-    that a loop restarts in each round.
-    """
-
-    id: str
-    label: str
-    nodes: tuple[str, ...]
-
-
-class Write(Struct, frozen=True):
-    """A write of a variable when a node is done.
-
-    ``values`` are pairs of a condition and the value written under it, both over the values at that
-    time; exactly one of the conditions holds. Under a condition in ``stops`` the value is clamped
-    to a bound of the range. ``text`` is the value as the modeller writes it, empty if earlier
-    assignments are substituted into it.
-    """
-
-    node: str
-    text: str
-    values: tuple[tuple[Formula, Formula], ...]
-    stops: tuple[Formula, ...] = ()
-
-
-class Store(Struct, frozen=True):
-    """A variable that the activity decides: it keeps its value until a node writes another.
-
-    ``first`` is its initial value, or None if the model gives none. A ``local`` variable is reset
-    to it each time the activity starts.
-    """
-
-    variable: Variable
-    writes: tuple[Write, ...]
-    first: Literal | None = None
-    local: bool = False
-
-
-class Handshake(Struct, frozen=True):
-    """Variables with which an activity is started and abandoned, and tells that it runs and ends.
-
-    ``start`` and ``stop`` are inputs: an activity without the first is never started from outside,
-    one without the second always runs to its end. An activity that ``is_started`` runs in the first
-    step.
-    """
-
-    running: str
-    finished: str
-    start: str = ""
-    stop: str = ""
-    is_started: bool = False
+from sysmlc.logic.formula import Formula, variables
 
 
 class TokenGraph(Struct, frozen=True, dict=True):
@@ -219,8 +41,9 @@ class TokenGraph(Struct, frozen=True, dict=True):
     ``inputs`` are the variables that the environment decides. ``pulses`` names those that stand for
     an event or the end of an action; the others keep their value until they change. ``finishes`` is
     false if no run can end. ``rests`` are the regions that can be complete without a token at a
-    final node (None: any of them). ``quiets`` are pairs of a region and the variable that is true
-    when it is complete: formulas that would repeat a long condition refer to the variable.
+    final node (None: any of them). ``named_conditions`` are pairs of a region and the variable
+    that is true when it is complete, or of an edge (id) and the variable that is true when it gets
+    a token: formulas that would repeat a long condition refer to the variable.
     ``stores`` are the variables that nodes write. ``shared`` are variables that nodes write but
     that the activity alone does not decide: other behaviours write them, too, or they are features
     of parts; ``shared_inputs`` are further variables that these writes read. An activity without
@@ -237,7 +60,7 @@ class TokenGraph(Struct, frozen=True, dict=True):
     interruptibles: tuple[Interruptible, ...] = ()
     finishes: bool = True
     rests: frozenset[str] | None = None
-    quiets: tuple[tuple[str, str], ...] = ()
+    named_conditions: tuple[tuple[str, str], ...] = ()
     stores: tuple[Store, ...] = ()
     shared: tuple[Store, ...] = ()
     shared_inputs: tuple[Variable, ...] = ()
@@ -278,6 +101,14 @@ class TokenGraph(Struct, frozen=True, dict=True):
         """Return the node with this id. Raises KeyError."""
         return self._nodes[id]
 
+    @cached_property
+    def _edges(self) -> dict[str, TokenEdge]:
+        return {edge.id: edge for edge in self.edges}
+
+    def find_edge(self, id: str) -> TokenEdge | None:
+        """Return the edge with this id, if there is one."""
+        return self._edges.get(id)
+
     def incoming(self, node: TokenNode) -> list[TokenEdge]:
         """Return the edges that reach the node, in order."""
         return self._incoming[node.id]
@@ -288,7 +119,7 @@ class TokenGraph(Struct, frozen=True, dict=True):
 
     def workers(self) -> Iterator[TokenNode]:
         """Iterate over the nodes that run for some steps and have a variable for that."""
-        return (node for node in self.nodes if node.firing is _WORK)
+        return (node for node in self.nodes if node.firing is Firing.WORK)
 
     @cached_property
     def _inside(self) -> dict[str, tuple[list[TokenEdge], list[TokenNode]]]:
@@ -385,3 +216,172 @@ class TokenGraph(Struct, frozen=True, dict=True):
             if node.firing is Firing.END
             for edge in self._incoming[node.id]
         ]
+
+    # -- steps ---------------------------------------------------------------------------------
+
+    def can_choose(self, node: TokenNode) -> bool:
+        """Whether several branches of the node can be open at the same time."""
+        # Several else branches are open together, although UML allows only one.
+        if node.firing is not Firing.CHOICE:
+            return False
+        branches = self._outgoing[node.id]
+        else_count = sum(branch.is_else for branch in branches)
+        guarded_count = len(branches) - else_count
+        return else_count > 1 or (guarded_count > 1 and not node.exclusive)
+
+    def delays(self, edge: TokenEdge) -> bool:
+        """Whether a token that the edge gets moves on in the next step at the earliest.
+
+        It waits for a decision, whose guards read the values after this step, on a branch that was
+        chosen, where it interrupts a region, before the content of a structured node, and where a
+        cycle has no action.
+        """
+        return edge.id in self._delaying
+
+    @property
+    def passing_edges(self) -> list[TokenEdge]:
+        """The edges from nodes that pass tokens on in the step in which they get them.
+
+        Each comes after those that bring the tokens, and those in nested regions come first, so
+        that no recursion along the flows is deep.
+        """
+        return self._passing[1]
+
+    @cached_property
+    def _delaying(self) -> frozenset[str]:
+        return self._passing[0]
+
+    @cached_property
+    def _passing(self) -> tuple[frozenset[str], list[TokenEdge]]:
+        """The ids of the edges that delay tokens, and the edges on which tokens pass, in order."""
+        edges = {
+            edge.id
+            for edge in self.edges
+            if self._nodes[edge.target].firing is Firing.CHOICE
+            or self.can_choose(self._nodes[edge.source])
+            or edge.interrupts
+            or self.enters(edge)
+        }
+        # Depth first through nodes without steps: an edge back to an open node closes a cycle.
+        opened: set[str] = set()
+        closed: dict[str, None] = {}
+        for node in self.nodes:
+            path = [(node.id, self._iter_steps(node, edges))] if node.id not in closed else []
+            opened |= {id for id, _ in path}
+            while path:
+                id, following = path[-1]
+                edge = next(following, None)
+                if edge is None:
+                    closed[id] = None
+                    opened.discard(id)
+                    path.pop()
+                elif edge.target in opened:
+                    edges.add(edge.id)
+                elif edge.target not in closed:
+                    opened.add(edge.target)
+                    path.append((edge.target, self._iter_steps(self._nodes[edge.target], edges)))
+        ordered = sorted(map(self.node, reversed(closed)), key=self._nesting_depth, reverse=True)
+        return frozenset(edges), [
+            edge for node in ordered for edge in self._iter_steps(node, frozenset())
+        ]
+
+    def _nesting_depth(self, node: TokenNode) -> int:
+        return sum(1 for _ in self.regions_around(node.region))
+
+    def _iter_steps(self, node: TokenNode, delaying: Container[str]) -> Iterator[TokenEdge]:
+        """Iterate over the edges on which a token leaves the node in the step in which it comes."""
+        passes = node.firing in (Firing.ANY, Firing.ALL)
+        edges = self._outgoing[node.id] if passes else []
+        return (edge for edge in edges if edge.id not in delaying)
+
+    def list_delays(self, region: str) -> list[TokenEdge]:
+        """List the edges that prevent the end of a region in the step in which they get a token.
+
+        On those inside the region the token moves on after this step; those that leave the region
+        interrupt it. The branches of a decision that chooses are not meant: it prevents the end.
+        """
+        return self._delays.get(region, [])
+
+    @cached_property
+    def _delays(self) -> dict[str, list[TokenEdge]]:
+        edges: dict[str, list[TokenEdge]] = {}
+        for edge in self.edges:
+            source = self._nodes[edge.source]
+            if edge.interrupts and edge.region != source.region:
+                edges.setdefault(source.region, []).append(edge)
+            if self.delays(edge) and not self.enters(edge) and not self.can_choose(source):
+                edges.setdefault(edge.region, []).append(edge)
+        return edges
+
+    def can_hold(self, edge: TokenEdge) -> bool:
+        """Whether a token may be on the edge after a step."""
+        return edge.id in self._holding
+
+    @cached_property
+    def _holding(self) -> frozenset[str]:
+        resting = {id for region in self.regions() for id in self.start(region).tokens}
+        return frozenset(
+            edge.id for edge in self.edges if edge.id in resting or self._makes_wait(edge)
+        )
+
+    def _makes_wait(self, edge: TokenEdge) -> bool:
+        target = self._nodes[edge.target]
+        waits = target.queues or len(self._incoming[target.id]) > 1
+        is_synchronous = target.firing in (Firing.ALL, Firing.WORK)
+        is_stuck = edge.keeps or target.firing is Firing.NEVER
+        return self.delays(edge) or is_stuck or (is_synchronous and waits)
+
+    def start(self, region: str) -> RegionStart:
+        """Return what a region has in its first step, without the content of nested regions.
+
+        Its tokens have passed the nodes without steps. A token at a final node rests for the first
+        step, so that each performance lasts one step at least.
+        """
+        return self._starts.get(region, NO_START)
+
+    @cached_property
+    def _starts(self) -> dict[str, RegionStart]:
+        return {region: self._compute_start(region) for region in self.regions()}
+
+    def _compute_start(self, region: str) -> RegionStart:
+        tokens = {edge.id for edge in self.inside(region)[0] if edge.marked}
+        moved: dict[str, TokenNode] = {}
+        while True:
+            ready = (node for node in self.members(region) if node.id not in moved)
+            node = next((node for node in ready if self._starts_moving(node, tokens)), None)
+            if node is None:
+                break
+            moved[node.id] = node
+            taken = [edge for edge in self._incoming[node.id] if edge.id in tokens]
+            tokens -= {edge.id for edge in taken if not edge.keeps}
+            if node.firing is not Firing.WORK:
+                tokens |= {edge.id for edge in self._outgoing[node.id]}
+            for edge in self.inside(region)[0]:
+                heard = bool(edge.listens) and any(e in taken for e in self.entering(edge.listens))
+                if heard and edge.target not in moved:
+                    tokens.add(edge.id)
+        running = frozenset(id for id, node in moved.items() if node.firing is Firing.WORK)
+        return RegionStart(frozenset(tokens), running, frozenset(moved))
+
+    def _starts_moving(self, node: TokenNode, tokens: set[str]) -> bool:
+        """Whether the node takes tokens before the first step of its region."""
+        ready = [edge.id in tokens and not self.delays(edge) for edge in self._incoming[node.id]]
+        if node.firing is Firing.WORK:
+            return bool(ready) and all(ready)
+        stays_inside = all(
+            edge.region == node.region and not edge.interrupts for edge in self._outgoing[node.id]
+        )
+        is_all = node.firing is Firing.ALL and bool(ready) and all(ready)
+        return stays_inside and (is_all or (node.firing is Firing.ANY and any(ready)))
+
+    def start_all(self, region: str) -> RegionStart:
+        """Return what a region has in its first step, with the content of nested regions."""
+        start = self.start(region)
+        tokens, running, moved = set(start.tokens), set(start.running), set(start.moved)
+        for id in start.running:
+            if self._nodes[id].kind is NodeKind.STRUCTURED:
+                inner = self.start_all(id)
+                tokens |= inner.tokens
+                running |= inner.running
+                moved |= inner.moved
+        return RegionStart(frozenset(tokens), frozenset(running), frozenset(moved))

@@ -16,13 +16,13 @@ from sysmlc.logic.activities.concurrency import (
     index_moves_by_place,
 )
 from sysmlc.logic.activities.step_formulas import StepFormulas
-from sysmlc.logic.activities.token_graph import (
+from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.activities.token_nodes import (
     ACTIVITY_REGION,
     Firing,
     NodeKind,
     Store,
     TokenEdge,
-    TokenGraph,
     Write,
 )
 from sysmlc.logic.contract import Domain

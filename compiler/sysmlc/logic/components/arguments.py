@@ -14,7 +14,7 @@ from msgspec.structs import replace
 from sysmlc.ir import Element, Kind
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
-from sysmlc.logic.activities.token_graph import Store
+from sysmlc.logic.activities.token_nodes import Store
 from sysmlc.logic.components.objects import ComponentError, ComponentObject, ObjectTree, Slot
 from sysmlc.logic.components.performances import Copy, Performances, element_of_copy
 from sysmlc.logic.composition.structure import find_drawn_activity
@@ -308,30 +308,32 @@ class Arguments:
             fitted += [(f.both(case.condition, when), value) for when, value in cases]
         return fitted
 
-    # -- steps -------------------------------------------------------------------------------------
+    def derive(self, steps: PerformanceFormulas, first: dict[str, Formula]) -> Iterator[Conjunct]:
+        """Yield when parameters take their values, and the steps of stored variables.
 
-    def derive(self, formulas: PerformanceFormulas) -> Iterator[Conjunct]:
-        """Yield when parameters take their values, and the steps of stored variables."""
+        An argument is taken in the first step of its call, after the writes of the step before.
+        *first* are the conditions under which nodes run in the first step of all.
+        """
         for store, node in self.locals:
             if store.variable.name not in self.gaps:
-                yield from self._derive_local(formulas, store, node)
+                yield from self._derive_local(steps, store, node)
         stored = {store.variable.name for store, _ in self.locals}
         for argument in self.values:
-            origin, variable = argument.variable.origin, argument.variable
+            variable = argument.variable
             if variable.name in self.gaps:
                 continue
-            starts = formulas.begin_formula(argument.node)
-            for case, value in argument.cases:
-                if argument.is_bound:
-                    formula = f.implies(case, equals(variable, value))
-                else:
-                    taken = equals(variable, value, is_next=True)
-                    formula = f.implies(f.both(starts, case), taken)
-                yield Conjunct(formula, Class.SAFETY, origin, source=Source.DERIVED)
+            cases = (f.implies(case, equals(variable, value)) for case, value in argument.cases)
+            taken, starts = f.both(*cases), steps.begin_formula(argument.node)
+            relations = [taken]
+            if not argument.is_bound:
+                relations = [f.implies(starts, f.prime(taken))]
+                begins = f.implies(first.get(argument.node, f.FALSE), taken)
+                yield Conjunct(begins, Class.INIT, variable.origin, source=Source.DERIVED)
             if not argument.is_bound and variable.name not in stored:
                 kept = equals(variable, f.var(variable.name), is_next=True)
-                formula = f.implies(f.negate(starts), kept)
-                yield Conjunct(formula, Class.SAFETY, origin, source=Source.DERIVED)
+                relations.append(f.implies(f.negate(starts), kept))
+            for formula in relations:
+                yield Conjunct(formula, Class.SAFETY, variable.origin, source=Source.DERIVED)
 
     def _derive_local(
         self, formulas: PerformanceFormulas, store: Store, node: str

@@ -14,6 +14,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.activities.assumptions import derive_assumptions
 from sysmlc.logic.activities.derivation import derive_run_update, derive_token_updates
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
+from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.components.component import Component, finish_name
 from sysmlc.logic.components.late_reads import LateValues
 from sysmlc.logic.components.machines import MachineWrite, find_unread_features
@@ -104,10 +105,11 @@ class _Description:
     def describe(self, name: str) -> ComponentBehaviour:
         """Return the behaviour with all features that were named so far. Raises ComponentError."""
         formulas = self._make_formulas(name)
-        self._derive_performances(formulas)
+        first = self._find_first_conditions(formulas.graph)
+        self._derive_performances(formulas, first)
         for machine in self.machines:
             self._conjuncts += machine.iter_steps()
-        self._conjuncts += self._arguments.derive(formulas)
+        self._conjuncts += self._arguments.derive(formulas, first)
         gaps = dict(self.performances.gaps) | self._arguments.gaps
         writers = self._list_writers(formulas)
         assigned = [(join_path(*slot), self.tree.read_slot(slot).variable) for slot in writers]
@@ -148,7 +150,7 @@ class _Description:
         }
         places = tuple(
             place.replace_variables(ends)
-            for place in iter_places(self.component, formulas.graph, assigned)
+            for place in iter_places(self.component, formulas, assigned)
         )
         long_ends = self.performances.long_ends
         atoms = tuple(
@@ -183,18 +185,28 @@ class _Description:
         """Whether the component decides the value of a feature."""
         return slot in self._written or not self.tree.used_slots[slot].is_input
 
-    def _derive_performances(self, formulas: PerformanceFormulas) -> None:
-        graph = formulas.graph
+    def _find_first_conditions(self, graph: TokenGraph) -> dict[str, Formula]:
+        """Return under which condition edges and nodes have tokens in the first step, by id."""
+        starts = ((root, graph.start_all(root.id)) for root in self._roots)
+        return {
+            id: root.first
+            for root, start in starts
+            for id in (root.id, *start.tokens, *start.running)
+        }
+
+    def _derive_performances(
+        self, formulas: PerformanceFormulas, first: Mapping[str, Formula]
+    ) -> None:
+        graph, roots = formulas.graph, {root.id for root in self._roots}
         self._conjuncts += derive_token_updates(formulas)
-        first = {root.id: root.first for root in self._roots}
-        for edge in graph.edges:
-            is_first = first.get(edge.region, f.FALSE) if edge.marked else f.FALSE
+        for edge in filter(graph.can_hold, graph.edges):
+            is_first = first.get(edge.id, f.FALSE)
             self._add(f.fold_iff(f.var(edge.variable), is_first), Class.INIT, edge.origin)
         for node in graph.workers():
             self._add(
                 f.fold_iff(f.var(node.run), first.get(node.id, f.FALSE)), Class.INIT, node.origin
             )
-            if node.id in first:
+            if node.id in roots:
                 runs = f.fold_iff(f.prime(f.var(node.run)), formulas.run_formula(node))
                 self._add(runs, Class.SAFETY, node.origin)
             else:
@@ -348,46 +360,11 @@ class _Description:
         variables += (store.variable for store, _ in self.performances.locals)
         for name, origin, is_auxiliary in (
             *((node.run, node.origin, False) for node in graph.workers()),
-            *((edge.variable, edge.origin, True) for edge in graph.edges),
-            *((name, graph.activity, True) for _, name in graph.quiets),
+            *((edge.variable, edge.origin, True) for edge in graph.edges if graph.can_hold(edge)),
+            *((name, graph.activity, True) for _, name in graph.named_conditions),
         ):
             variables.append(Variable(name, Owner.SYSTEM, BooleanDomain(), origin, is_auxiliary))
         by_name: dict[str, Variable] = {}
         for variable in variables:
             by_name.setdefault(variable.name, variable)
         return by_name
-
-
-def add_stated_conjuncts(behaviour: ComponentBehaviour, stated: Contract) -> ComponentBehaviour:
-    """Return the behaviour with the formulas that the author wrote on its own contract.
-
-    *stated* is the contract of the component's own behaviour. Formulas about variables that the
-    behaviour of the component does not have are left out; they prove nothing.
-    """
-    contract = behaviour.contract
-    names = {variable.name for variable in contract.variables}
-    formulas = (*stated.assumptions, *stated.guarantees)
-    origins = {conjunct.origin for conjunct in formulas if not conjunct.is_derived}
-    # History bits store the past for a formula of the author.
-    bits = [
-        variable
-        for variable in stated.variables
-        if variable.name not in names and variable.origin in origins
-    ]
-    variables = names | {variable.name for variable in bits}
-
-    def select(conjuncts: tuple[Conjunct, ...]) -> tuple[Conjunct, ...]:
-        return tuple(
-            conjunct
-            for conjunct in conjuncts
-            if conjunct.origin in origins
-            and variables.issuperset(variable.name for variable in f.variables(conjunct.formula))
-        )
-
-    merged = replace(
-        contract,
-        variables=(*contract.variables, *bits),
-        assumptions=(*contract.assumptions, *select(stated.assumptions)),
-        guarantees=(*contract.guarantees, *select(stated.guarantees)),
-    )
-    return replace(behaviour, contract=merged)

@@ -123,8 +123,9 @@ class ComponentNames:
             formulas = component.formulas
             return Meaning(formulas.done_formula(formulas.graph.node(ended)), BooleanDomain())
         graph = component.formulas.graph
-        names = {node.run for node in graph.workers()} | {edge.variable for edge in graph.edges}
-        names |= {quiet for _, quiet in graph.quiets}
+        names = {node.run for node in graph.workers()}
+        names |= {edge.variable for edge in graph.edges if graph.can_hold(edge)}
+        names |= {condition for _, condition in graph.named_conditions}
         return Meaning(f.var(name), BooleanDomain()) if name in names else None
 
     def _find_feature(self, name: str) -> Meaning | None:

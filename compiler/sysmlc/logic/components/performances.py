@@ -14,7 +14,8 @@ from msgspec.structs import replace
 
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic import formula as f
-from sysmlc.logic.activities.token_graph import (
+from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.activities.token_nodes import (
     ACTIVITY_REGION,
     Duration,
     Guard,
@@ -22,7 +23,6 @@ from sysmlc.logic.activities.token_graph import (
     NodeKind,
     Store,
     TokenEdge,
-    TokenGraph,
     TokenNode,
     Write,
 )
@@ -99,7 +99,7 @@ class Performances:
         self.nodes: list[TokenNode] = []
         self.edges: list[TokenEdge] = []
         self.interruptibles: list[Interruptible] = []
-        self.quiets: list[tuple[str, str]] = []
+        self.named_conditions: list[tuple[str, str]] = []
         self.rests: set[str] = set()
         self.inputs: dict[str, Variable] = {}
         self.locals: list[tuple[Store, str]] = []
@@ -154,7 +154,7 @@ class Performances:
             inputs=(*self.inputs.values(), *given),
             interruptibles=tuple(self.interruptibles),
             rests=frozenset(self.rests),
-            quiets=tuple(self.quiets),
+            named_conditions=tuple(self.named_conditions),
             stores=(
                 *(Store(variable, ()) for variable in decided),
                 *(store for store, _ in self.locals),
@@ -218,7 +218,10 @@ class Performances:
                     nodes=tuple(ids[node] for node in group.nodes),
                 )
             )
-        self.quiets += [(regions[region], copy.variables[name]) for region, name in tokens.quiets]
+        self.named_conditions += [
+            (regions.get(id, f"{root}{_COPY_SEPARATOR}{id}"), copy.variables[name])
+            for id, name in tokens.named_conditions
+        ]
         for store in (*tokens.stores, *tokens.shared):
             self._add_store(store, copy, ids)
 
@@ -227,7 +230,7 @@ class Performances:
         for name in (
             *(node.run for node in tokens.workers()),
             *(edge.variable for edge in tokens.edges),
-            *(name for _, name in tokens.quiets),
+            *(name for _, name in tokens.named_conditions),
         ):
             variables[name] = self.name_variable(name, prefix)
         stored = (store.variable for store in (*tokens.stores, *tokens.shared))

@@ -9,7 +9,7 @@ from msgspec.structs import replace
 
 from sysmlc.ir import Edge
 from sysmlc.logic import formula as f
-from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.activities.step_formulas import StepFormulas
 from sysmlc.logic.components.machines import PlacedMachine
 from sysmlc.logic.composition.structure import join_path
 from sysmlc.logic.contract import BooleanDomain, Variable
@@ -62,7 +62,7 @@ class PlaceInBehaviour(Struct, frozen=True):
 
 
 def iter_places(
-    component: "Component", tokens: TokenGraph, assigned: Iterable[tuple[str, Variable]]
+    component: "Component", formulas: StepFormulas, assigned: Iterable[tuple[str, Variable]]
 ) -> Iterator[PlaceInBehaviour]:
     """Yield states, actions, transitions, events, guards of decisions, and features.
 
@@ -75,7 +75,7 @@ def iter_places(
     for action in component.performances.paths:
         names.setdefault(action.node, action.names)
     for id, path in names.items():
-        node = tokens.node(id)
+        node = formulas.graph.node(id)
         running = f.var(node.run)
         yield PlaceInBehaviour(".".join(path), node.origin, running)
         element = component.graph.get(node.origin)
@@ -83,17 +83,14 @@ def iter_places(
             text = f"the event of action '{'.'.join(path)}'"
             accepts = f.both(running, node.done)
             yield PlaceInBehaviour(text, node.origin, accepts, PlaceKind.EVENT, running)
-    for edge in tokens.edges:
+    for edge in formulas.graph.edges:
         if edge.guard is not None and edge.guard.condition is not None:
-            arrives = (
-                f.var(enter.variable) for enter in tokens.edges if enter.target == edge.source
-            )
             yield PlaceInBehaviour(
                 edge.guard.text,
                 edge.origin,
-                f.var(edge.variable),
+                formulas.present_formula(edge),
                 PlaceKind.GUARD,
-                f.either(*arrives),
+                formulas.waiting_formula(formulas.graph.node(edge.source)),
             )
     for name, variable in assigned:
         value = f.var(variable.name)

@@ -12,7 +12,8 @@ from msgspec.structs import replace
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic import formula as f
-from sysmlc.logic.activities.token_graph import Handshake, TokenGraph
+from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.activities.token_nodes import Handshake
 from sysmlc.logic.composition.members import (
     Block,
     Member,

@@ -11,12 +11,11 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.components.component import Component
 from sysmlc.logic.components.derivation import (
     ComponentBehaviour,
-    add_stated_conjuncts,
     describe_component,
 )
 from sysmlc.logic.components.names import ComponentNames
 from sysmlc.logic.components.objects import ComponentError
-from sysmlc.logic.contract import Contract
+from sysmlc.logic.contract import Conjunct, Contract
 from sysmlc.logic.expressions.context import report_range
 from sysmlc.logic.expressions.elaboration import ElaborationError, Fault, elaborate_condition
 from sysmlc.logic.expressions.expression import ExpressionError
@@ -135,7 +134,7 @@ def _describe_behaviour(
         whole = describe_component(component, component_of(graph, subject))
         if behaviour is None:
             return replace(whole, is_of_parts=True)
-        return add_stated_conjuncts(whole, behaviour)
+        return _add_stated_conjuncts(whole, behaviour)
     if behaviour is None or not obstacle:
         return None
     return _describe_alone(graph, behaviour, obstacle)
@@ -287,3 +286,38 @@ def _report_ranges(graph: Graph, scope: Scope, formula: Formula, sink: Sink) -> 
     for feature in scope.context.features.values():
         if feature.variable in used:
             report_range(graph, feature, sink)
+
+
+def _add_stated_conjuncts(behaviour: ComponentBehaviour, stated: Contract) -> ComponentBehaviour:
+    """Return the behaviour with the formulas that the author wrote on its own contract.
+
+    *stated* is the contract of the component's own behaviour. Formulas about variables that the
+    behaviour of the component does not have are left out; they prove nothing.
+    """
+    contract = behaviour.contract
+    names = {variable.name for variable in contract.variables}
+    formulas = (*stated.assumptions, *stated.guarantees)
+    origins = {conjunct.origin for conjunct in formulas if not conjunct.is_derived}
+    # History bits store the past for a formula of the author.
+    bits = [
+        variable
+        for variable in stated.variables
+        if variable.name not in names and variable.origin in origins
+    ]
+    variables = names | {variable.name for variable in bits}
+
+    def select(conjuncts: tuple[Conjunct, ...]) -> tuple[Conjunct, ...]:
+        return tuple(
+            conjunct
+            for conjunct in conjuncts
+            if conjunct.origin in origins
+            and variables.issuperset(variable.name for variable in f.variables(conjunct.formula))
+        )
+
+    merged = replace(
+        contract,
+        variables=(*contract.variables, *bits),
+        assumptions=(*contract.assumptions, *select(stated.assumptions)),
+        guarantees=(*contract.guarantees, *select(stated.guarantees)),
+    )
+    return replace(behaviour, contract=merged)

@@ -10,12 +10,12 @@ from sysmlc.ir import Graph, Kind
 from sysmlc.ir.algorithms import find_reachable
 from sysmlc.logic import domains, evaluate
 from sysmlc.logic import formula as f
-from sysmlc.logic.activities.token_graph import (
+from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.activities.token_nodes import (
     ACTIVITY_REGION,
     Firing,
     NodeKind,
     TokenEdge,
-    TokenGraph,
     TokenNode,
 )
 from sysmlc.logic.formula import Formula, variable_names, variables

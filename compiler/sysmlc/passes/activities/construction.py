@@ -13,13 +13,8 @@ from msgspec.structs import replace
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.ir.element import derived_id
-from sysmlc.logic.activities.token_graph import (
-    Duration,
-    Interruptible,
-    NodeKind,
-    TokenGraph,
-    TokenNode,
-)
+from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.activities.token_nodes import Duration, Interruptible, NodeKind, TokenNode
 from sysmlc.logic.feature_writes import takes_one_step
 from sysmlc.logic.identifiers import identifier
 from sysmlc.passes.activities import rules

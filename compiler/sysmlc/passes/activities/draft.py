@@ -6,7 +6,7 @@ from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, Kind, query
 from sysmlc.ir.element import derived_id
 from sysmlc.ir.pending import TextFile
-from sysmlc.logic.activities.token_graph import Guard, NodeKind, TokenEdge, TokenNode
+from sysmlc.logic.activities.token_nodes import Guard, NodeKind, TokenEdge, TokenNode
 from sysmlc.logic.identifiers import identifier
 from sysmlc.passes.activities.drawing import Drawing, Flow, flow_label
 from sysmlc.passes.activities.exception_analysis import Raising

@@ -11,7 +11,7 @@ from msgspec import Struct
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.logic.activities.token_graph import ACTIVITY_REGION
+from sysmlc.logic.activities.token_nodes import ACTIVITY_REGION
 from sysmlc.logic.feature_writes import takes_one_step
 from sysmlc.passes.activities import rules
 from sysmlc.passes.activities.regions import (

@@ -7,7 +7,7 @@ the activity catches ends the activity.
 
 from sysmlc.ir import Element, Kind
 from sysmlc.ir.element import derived_id
-from sysmlc.logic.activities.token_graph import ACTIVITY_REGION, Guard, NodeKind
+from sysmlc.logic.activities.token_nodes import ACTIVITY_REGION, Guard, NodeKind
 from sysmlc.passes.activities import rules
 from sysmlc.passes.activities.draft import Draft
 from sysmlc.passes.activities.exception_analysis import CALLS, may_raise

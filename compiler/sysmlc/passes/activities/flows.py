@@ -3,7 +3,7 @@
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.ir.element import derived_id
 from sysmlc.logic import formula as f
-from sysmlc.logic.activities.token_graph import Guard, NodeKind
+from sysmlc.logic.activities.token_nodes import Guard, NodeKind
 from sysmlc.passes.activities import rules
 from sysmlc.passes.activities.draft import Draft, lower_bound
 from sysmlc.passes.activities.drawing import Flow, flow_label

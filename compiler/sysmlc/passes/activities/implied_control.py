@@ -9,7 +9,7 @@ from itertools import pairwise
 
 from sysmlc.ir import Element, Kind
 from sysmlc.logic import formula as f
-from sysmlc.logic.activities.token_graph import Firing, Guard, NodeKind, TokenNode
+from sysmlc.logic.activities.token_nodes import Firing, Guard, NodeKind, TokenNode
 from sysmlc.logic.identifiers import identifier
 from sysmlc.passes.activities.draft import Draft
 from sysmlc.passes.activities.regions import Part

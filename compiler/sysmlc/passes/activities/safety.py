@@ -5,7 +5,7 @@ Most activities are 1-safe in any order of moves, which ``net_safety`` proves fa
 the same step, so that a flow is empty again before its next token arrives.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import lru_cache
 
 from msgspec import Struct
@@ -13,12 +13,12 @@ from msgspec.structs import replace
 
 from sysmlc.logic.activities import net_safety as token_net
 from sysmlc.logic.activities import reachability as token_search
-from sysmlc.logic.activities.token_graph import (
+from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.activities.token_nodes import (
     ACTIVITY_REGION,
     Firing,
     NodeKind,
     TokenEdge,
-    TokenGraph,
     TokenNode,
 )
 from sysmlc.logic.identifiers import Names
@@ -82,7 +82,22 @@ def name_conditions(tokens: TokenGraph, names: Names) -> TokenGraph:
         if tokens.can_rest(region)
         and _count_places(tokens, region) * _count_uses(tokens, region) >= _MIN_NAMED_SIZE
     )
-    return replace(tokens, quiets=tuple(conditions))
+    arrivals = ((edge.id, names.new(f"to_{edge.variable}")) for edge in _find_long_ways(tokens))
+    return replace(tokens, named_conditions=(*conditions, *arrivals))
+
+
+def _find_long_ways(tokens: TokenGraph) -> Iterator[TokenEdge]:
+    """Yield edges that get their tokens from so many places that a variable stands for it.
+
+    Without variables, the condition at the end of n forks that joins follow would have 2^n parts.
+    """
+    sizes: dict[str, int] = {}
+    for edge in tokens.passing_edges:
+        incoming = tokens.incoming(tokens.node(edge.source))
+        sizes[edge.id] = 1 + sum(sizes.get(before.id, 1) for before in incoming)
+        if sizes[edge.id] >= _MIN_NAMED_SIZE:
+            sizes[edge.id] = 1
+            yield edge
 
 
 def _name_idle_condition(tokens: TokenGraph, region: str) -> str:

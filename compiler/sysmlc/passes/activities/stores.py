@@ -10,7 +10,8 @@ from msgspec.structs import replace
 
 from sysmlc.ir import Element, Graph, query
 from sysmlc.logic import formula as f
-from sysmlc.logic.activities.token_graph import Store, TokenGraph, Write
+from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.activities.token_nodes import Store, Write
 from sysmlc.logic.contract import Domain, IntegerDomain, Owner, Variable
 from sysmlc.logic.expressions.elaboration import ElaborationError
 from sysmlc.logic.expressions.features import Feature
