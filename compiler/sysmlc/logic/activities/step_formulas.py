@@ -99,11 +99,16 @@ class StepFormulas:
 
     def complete_formula(self, region: str) -> Formula:
         """The region is complete; a variable of the graph stands for it if there is one."""
+        variable = self._completion_variable(region)
+        return self.completion_formula(region) if variable is None else variable
+
+    def _completion_variable(self, region: str) -> Formula | None:
+        """Return the variable of the graph that is true when the region is complete, or None."""
         handshake = self.graph.handshake
         if region == ACTIVITY_REGION and handshake is not None:
             return f.var(handshake.finished)
         name = self._names.get(region)
-        return f.var(name) if name else self.completion_formula(region)
+        return f.var(name) if name else None
 
     def completion_formula(self, region: str) -> Formula:
         """A token reaches a final node of the region, or nothing is left in it after this step."""
@@ -271,17 +276,24 @@ class StepFormulas:
 
     def cleared_formula(self, region: str, members: set[str]) -> Formula:
         """The region ends, or an interruption removes the tokens of *members* (node ids)."""
-        return f.either(self._completed_formula(region), self.aborted_formula(region, members))
+        return f.either(self._completed_formula(region), self.removed_formula(region, members))
 
     def aborted_formula(self, region: str, members: set[str]) -> Formula:
-        """The region ends before its tokens are used up, or an interruption removes them.
+        """The region ends or an interruption removes *members*, although one of them is left in it.
 
-        For a node that starts or goes on, this is all: with it, something is left in its region.
+        A region without a variable for its end is asked only for its final nodes: it ends by itself
+        only if nothing is left in it.
         """
         around = (node.id for node in self.graph.regions_around(region))
-        finals = map(self._final_formula, (ACTIVITY_REGION, *around))
-        interruptions = self.interruption_formulas(region, members)
-        return f.either(*finals, self.stop_formula(), *interruptions)
+        ends = (
+            self._completion_variable(id) or self._final_formula(id)
+            for id in (ACTIVITY_REGION, *around)
+        )
+        return f.either(*ends, self.removed_formula(region, members))
+
+    def removed_formula(self, region: str, members: set[str]) -> Formula:
+        """The activity is abandoned, or an interruption removes the tokens of *members*."""
+        return f.either(self.stop_formula(), *self.interruption_formulas(region, members))
 
     def ended_formula(self, region: str) -> Formula:
         """The region, or a region around it, ends or is stopped."""
@@ -368,12 +380,11 @@ class PerformanceFormulas(StepFormulas):
         """The region starts in the next step."""
         return self._starts[region] if region in self._starts else super().begin_formula(region)
 
-    def aborted_formula(self, region: str, members: set[str]) -> Formula:
-        """A final node, an interruption or the stop of the performance ends the region."""
-        aborted = super().aborted_formula(region, members)
+    def removed_formula(self, region: str, members: set[str]) -> Formula:
+        """An interruption or the stop of the performance removes the tokens of *members*."""
         outermost = [node.id for node in self.graph.regions_around(region)][-1:]
         stops = (self._stops.get(id, f.FALSE) for id in (*outermost, *members))
-        return f.either(aborted, *stops)
+        return f.either(super().removed_formula(region, members), *stops)
 
     def run_formula(self, root: TokenNode) -> Formula:
         """The performance of an outermost node runs in the next step."""
