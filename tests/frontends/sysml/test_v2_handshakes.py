@@ -149,7 +149,7 @@ def test_a_recursive_call_has_a_handshake():
                 "!running_pick",
                 "running_pick' <-> start_pick & (!running_pick | finished_pick)"
                 " | running_pick & !finished_pick",
-                "finished_pick <-> running_pick & at_reach_to_done",
+                "finished_pick <-> running_pick & run_reach & done_reach",
                 "!running_pick | finished_pick",
             ],
         ),
@@ -158,7 +158,7 @@ def test_a_recursive_call_has_a_handshake():
             [
                 "running_pick",
                 "running_pick' <-> running_pick & !finished_pick",
-                "finished_pick <-> running_pick & at_reach_to_done",
+                "finished_pick <-> running_pick & run_reach & done_reach",
                 "!running_pick | finished_pick",
             ],
         ),
