@@ -21,8 +21,8 @@ from sysmlc.logic.activities.token_nodes import (
 )
 from sysmlc.logic.activities.token_step import Choose, NotSafeError, State, TokenStep
 
-_STEPS_PER_STATE = 16
-"""Limit of steps for each allowed state; above it the search gives up."""
+_MAX_EXAMINED_NODES = 1_000_000
+"""Limit of nodes and edges that all steps examine together, which takes about two seconds."""
 
 
 @dataclass(slots=True)
@@ -45,7 +45,7 @@ class ReachabilityResult:
 
 
 def explore_states(graph: TokenGraph, limit: int) -> ReachabilityResult:
-    """Search all reachable states, at most *limit* of them."""
+    """Search all reachable states, at most *limit* of them; in a large graph, fewer."""
     # Which actions get tokens while they run is a result of the search.
     nodes = tuple(replace(node, queues=True) for node in graph.nodes)
     graph = replace(graph, nodes=nodes, stores=(), named_conditions=(), handshake=None)
@@ -53,6 +53,7 @@ def explore_states(graph: TokenGraph, limit: int) -> ReachabilityResult:
     start = graph.start_all(ACTIVITY_REGION)
     first = State(start.tokens, start.running)
     visited, worklist, steps = {first}, [first], 0
+    max_steps = _MAX_EXAMINED_NODES // (1 + len(graph.nodes) + len(graph.edges))
     reached.fired |= start.moved
     try:
         for state in worklist:
@@ -67,7 +68,7 @@ def explore_states(graph: TokenGraph, limit: int) -> ReachabilityResult:
                 if after not in visited:
                     visited.add(after)
                     worklist.append(after)
-                if len(visited) > limit or steps > limit * _STEPS_PER_STATE:
+                if len(visited) > limit or steps > max_steps:
                     reached.is_complete = False
                     return reached
     except NotSafeError as error:

@@ -51,8 +51,8 @@ TOO_LARGE = rule(
     "SM455",
     "activity-too-large-to-check",
     Severity.WARNING,
-    "activity '{activity}' has more than {limit} markings; whether each flow holds at most one "
-    "token was not decided, so it gets no contract",
+    "activity '{activity}' has too many markings to search (at most {limit}); whether each flow "
+    "holds at most one token was not decided, so it gets no contract",
     help=(
         "move parts of the activity into activities of their own, or raise the limit "
         "(option max_markings of the pass activities)"
