@@ -227,17 +227,71 @@ def test_an_entry_that_takes_time_disables_the_transitions_of_the_state_around(d
     assert decide(block, "G (running(set) -> X state=S)", "G (state=S)") == ["holds", "broken"]
 
 
+def test_a_state_is_left_when_its_exit_ends(decide):
+    formulas = {
+        "G (state=S & event=Go & !running(set) -> X (running(w) & state=S))": "holds",
+        "G (running(set) & !finished(set) -> X running(set))": "holds",
+        "G (finished(set) -> X state=T)": "holds",
+        "G (state=T -> y)": "holds",
+        "G (event=Go & state=S -> F state=T)": "holds-if-actions-end",
+        "G (event=Go & state=S -> X state=T)": "broken",
+        "F running(set)": "broken",
+    }
+    block = FLAGS + WAIT_SET + LEAVE.format("exit set;", "accept Go")
+    assert decide(block, *formulas) == list(formulas.values())
+
+
+def test_the_effect_of_a_transition_reads_what_the_exit_assigns(decide):
+    block = FLAGS + WAIT_SET + LEAVE.format("exit set;", "accept Go do assign x := y")
+    formulas = ("G (running(set) -> !x)", "G (state=T -> x)", "G !x")
+    assert decide(block, *formulas) == ["holds", "holds", "broken"]
+
+
+def test_an_exit_stops_the_do_behaviour_and_events_that_come_while_it_runs_are_lost(decide):
+    work = "action work { first start; then action c; then action d; then done; }"
+    machine = "exhibit state M { entry; then S; state S { do work; exit set; } state T; state A; "
+    machine += "transition first S accept Go then T; transition first S accept Stop then A; }"
+    formulas = {
+        "running(work)": "holds",
+        "G !(running(set) & running(work))": "holds",
+        "G (running(set) -> G !running(work))": "holds",
+        "G (event=Go & state=S & !running(set) -> G !(state=A))": "holds",
+        "G !(running(set) & event=Stop)": "broken",
+        "G !(state=A)": "broken",
+    }
+    block = FLAGS + "item def Stop;" + WAIT_SET + work + machine
+    assert decide(block, *formulas) == list(formulas.values())
+
+
+def test_a_state_without_transitions_never_performs_its_exit(decide):
+    block = FLAGS + WAIT_SET + "exhibit state M { entry; then S; state S { exit set; } }"
+    assert decide(block, "G !running(set)", "F y") == ["holds", "broken"]
+
+
+INNER = "entry; then I; state I { exit set; } transition first I accept Go then J; state J;"
+
+
 @pytest.mark.parametrize(
     ("behaviours", "effect"),
     [
-        ("exit set;", ""),
         ("", "do set"),
         ("entry set; entry; then I; state I;", ""),
+        ("exit set; entry; then I; state I;", "accept Go"),
+        (INNER, "accept Go"),
     ],
 )
-def test_exits_and_effects_that_take_time_are_not_decided(decide, behaviours, effect):
+def test_effects_that_take_time_and_entries_beside_substates_are_not_decided(
+    decide, behaviours, effect
+):
     block = FLAGS + WAIT_SET + LEAVE.format(behaviours, effect)
     assert decide(block, "F (state=T)", "G !x") == ["not-decided", "not-decided"]
+
+
+def test_an_exit_that_takes_time_before_a_choice_is_not_decided(decide):
+    machine = "exhibit state M { entry; then S; state S { exit set; } state T; "
+    machine += "#SysMLC::Choice state c; transition first c if x then T; "
+    machine += "transition first c if not x then S; transition first S accept Go then c; }"
+    assert decide(FLAGS + WAIT_SET + machine, "G !y", "G !x") == ["not-decided", "not-decided"]
 
 
 DO = "exhibit state M { entry; then S; state S { do set; } transition first S then T; state T; }"

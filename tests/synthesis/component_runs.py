@@ -58,6 +58,8 @@ class Block(Struct, frozen=True):
     """The activities that have parameters."""
     entry: dict[str, str] = {}
     """The activities that states perform when they are entered; they take time."""
+    exit: dict[str, str] = {}
+    """The activities that states perform before they are left; they take time."""
 
 
 def make_block(random: Random) -> Block:
@@ -85,11 +87,13 @@ def make_block(random: Random) -> Block:
     )
     own = roots.pop() if roots and random.random() < 0.4 else ""
     long = [name for name in roots if _takes_time(activities[name])]
-    entry = {random.choice(states): long.pop()} if long and random.random() < 0.6 else {}
-    used = _list_performed(activities, [*do.values(), *entry.values(), own])
+    entry = {random.choice(states): long.pop()} if long and random.random() < 0.5 else {}
+    exit = {random.choice(states): long.pop()} if long and random.random() < 0.7 else {}
+    used = _list_performed(activities, [*do.values(), *entry.values(), *exit.values(), own])
     performed = {name: activities[name] for name in names if name in used}
-    moves = tuple(dict.fromkeys(moves))
-    return Block(performed, do, moves, own, states, signatures, entry)
+    # A state with an exit that takes time is left straight to other states.
+    moves = tuple(dict.fromkeys(replace(m, choice=None) if m.source in exit else m for m in moves))
+    return Block(performed, do, moves, own, states, signatures, entry, exit)
 
 
 def _takes_time(steps: tuple[Step, ...]) -> bool:
@@ -175,7 +179,8 @@ def _write_lines(block: Block) -> list[str]:
     for state in block.states:
         entry = f" entry {block.entry[state]};" if state in block.entry else ""
         do = f" do {block.do[state]};" if state in block.do else ""
-        lines.append(f"state {state} {{{entry}{do} }}")
+        exit = f" exit {block.exit[state]};" if state in block.exit else ""
+        lines.append(f"state {state} {{{entry}{do}{exit} }}")
     for move in block.moves:
         accept = f" accept {move.event}" if move.event else ""
         guard = f" if {move.guard}" if move.guard else ""
@@ -238,7 +243,8 @@ def _write_action(step: Step) -> str:
 
 def list_actions(block: Block, *, is_elementary: bool = False) -> list[str]:
     """Return the paths of all actions, or of those that the environment ends."""
-    roots = [*block.do.values(), *block.entry.values(), *filter(None, [block.own])]
+    states = (*block.do.values(), *block.entry.values(), *block.exit.values())
+    roots = [*states, *filter(None, [block.own])]
     paths = [] if is_elementary else list(roots)
     worklist = [(name, step) for name in roots for step in block.activities[name]]
     while worklist:
@@ -386,7 +392,10 @@ def _perform(
 
 
 class State(Struct, frozen=True):
-    """A state of a block: marks of performances that do not run are None."""
+    """A state of a block: marks of performances that do not run are None.
+
+    While ``exit`` runs, ``leaving`` is the transition that has been taken.
+    """
 
     state: str
     values: tuple[bool, bool]
@@ -394,6 +403,8 @@ class State(Struct, frozen=True):
     is_over: bool
     own: Performance | None
     entry: Performance | None = None
+    exit: Performance | None = None
+    leaving: Move | None = None
 
 
 def first_state(block: Block) -> State:
@@ -419,7 +430,10 @@ def _settle(block: Block, state: State) -> State:
         own = take_inputs(block, block.own, own, values)
     if entry is not None:
         entry = take_inputs(block, block.entry[state.state], entry, values)
-    return replace(state, do=do, own=own, entry=entry)
+    exit = state.exit
+    if exit is not None:
+        exit = take_inputs(block, block.exit[state.state], exit, values)
+    return replace(state, do=do, own=own, entry=entry, exit=exit)
 
 
 def list_inputs(block: Block, state: State) -> Iterator[tuple[str, frozenset]]:
@@ -444,6 +458,8 @@ def _list_performances(block: Block, state: State) -> list[tuple[str, Performanc
         performances.append((block.do[state.state], state.do))
     if state.own is not None:
         performances.append((block.own, state.own))
+    if state.exit is not None:
+        performances.append((block.exit[state.state], state.exit))
     return performances
 
 
@@ -474,7 +490,7 @@ def list_reactions(
     values = dict(zip(FEATURES, state.values, strict=True))
     do, do_ends, do_writes = state.do, False, []
     own, own_writes = state.own, []
-    entry = state.entry
+    entry, exit = state.entry, state.exit
     for root, performance in _list_performances(block, state):
         after, is_finished, writes, _ = advance(block, root, performance, (root,), ended, values)
         if root == block.own:
@@ -483,15 +499,28 @@ def list_reactions(
             entry, do_writes = (None if is_finished else after), writes
             starts = is_finished and state.state in block.do
             do = start(block, block.do[state.state]) if starts else None
+        elif performance is state.exit:
+            exit, do_writes = (None if is_finished else after), writes
         else:
             do, do_ends, do_writes = (None if is_finished else after), is_finished, writes
     reactions = set()
     for seen in _list_seen(values, do_writes):
-        for move in _list_moves(block, state, values, seen, event, do_ends) or [None]:
-            for written in _list_values(values, seen, do_writes, own_writes, move):
+        moves = _list_moves(block, state, values, seen, event, do_ends)
+        if state.exit is not None:
+            moves = [] if exit is not None else [state.leaving]
+        for move in moves or [None]:
+            # The effect of a transition comes after the exit behaviour.
+            is_delayed = move is not None and state.state in block.exit and state.exit is None
+            effect = None if is_delayed else move
+            for written in _list_values(values, seen, do_writes, own_writes, effect):
                 if move is None:
                     is_over = state.is_over or do_ends
-                    reactions.add((None, State(state.state, written, do, is_over, own, entry)))
+                    after = replace(state, do=do, is_over=is_over, entry=entry, exit=exit)
+                    reactions.add((None, replace(after, values=written, own=own)))
+                elif is_delayed:
+                    exit_start = start(block, block.exit[state.state])
+                    after = State(state.state, written, None, False, own, None, exit_start, move)
+                    reactions.add((move, after))
                 else:
                     target = _find_target(move, seen)
                     reactions.add((move, _enter(block, target, written, own)))

@@ -19,7 +19,7 @@ from itertools import islice, product
 from msgspec import Struct
 from msgspec.structs import replace
 
-from sysmlc.ir import Element, Graph, query
+from sysmlc.ir import Edge, Element, Graph, query
 from sysmlc.logic import evaluate
 from sysmlc.logic.activities import interpreter as token_game
 from sysmlc.logic.activities.interpreter import BranchPlan
@@ -43,6 +43,7 @@ from sysmlc.simulation.performances import (
     PerformanceStep,
     bind_arguments,
     choose_values,
+    decide_ends,
     evaluate_cases,
     list_first_options,
     receive_messages,
@@ -67,8 +68,13 @@ class _MachineReaction(Struct, frozen=True):
         return state.id in self.reaction.opened
 
     def leaves(self, state: Vertex) -> bool:
-        """Whether the state is left."""
-        return state.id in self.reaction.left_states
+        """Whether the state is left, or begins to be left by an exit behaviour that takes time."""
+        return state.id in self.reaction.left_states or self.starts_exit(state)
+
+    def starts_exit(self, state: Vertex) -> bool:
+        """Whether the exit behaviour of the state, which takes time, starts after this step."""
+        store, assigned = self.reaction.store, self.reaction.assigned
+        return any(phase.memory in assigned and store[phase.memory] for phase in state.leaving)
 
 
 class ComponentPlayer(Struct, frozen=True, dict=True):
@@ -118,7 +124,7 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
                 [
                     self._make_reaction(machine, reaction, {})
                     for reaction in machine_interpreter.list_first_reactions(
-                        machine.machine, _select(machine, before)
+                        machine.machine, {**machine.machine.initial, **_select(machine, before)}
                     )
                 ]
                 for machine in self.parts.machines
@@ -149,7 +155,7 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
         by_machine = {id(reaction.machine): reaction for reaction in reactions}
         choices: list[list[bool]] = []
         for root in self.parts.roots:
-            if root.after:
+            if root.after or root.role is Edge.EXIT:
                 choices.append([False])
             elif root.machine is not None and root.state is not None:
                 reaction = by_machine[id(root.machine)]
@@ -230,15 +236,11 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
     ) -> Iterator[_MachineReaction]:
         """Yield the reactions of a machine after what its do behaviours write in this step."""
         own_values = _select(machine, now)
+        own_values |= decide_ends(self.parts.roots, machine, now, finished)
         done_options: _Options = {}
         for name, value, root in writes:
             if root.machine is machine:
                 done_options.setdefault(name, []).append(value)
-        for root in self.parts.roots:
-            if root.machine is machine and root.state is not None and root.over:
-                is_over = bool(now[root.over]) or root.id in finished
-                own_values[root.state.done] = is_over
-                own_values[root.state.ending] = root.id in finished
         names = {variable: own for own, variable in machine.variables.items()}
         for seen in choose_values(done_options):
             written = {names[name]: value for name, value in seen.items() if name in names}
@@ -271,9 +273,11 @@ class ComponentPlayer(Struct, frozen=True, dict=True):
         for root in self.parts.roots:
             if root.machine is not None and root.state is not None:
                 reaction = by_machine[id(root.machine)]
-                is_started = root.after in finished if root.after else reaction.enters(root.state)
+                is_exit = root.role is Edge.EXIT
+                begins = reaction.starts_exit if is_exit else reaction.enters
+                is_started = root.after in finished if root.after else begins(root.state)
                 starts |= {root.id} if is_started else set()
-                stops |= {root.id} if reaction.leaves(root.state) else set()
+                stops |= {root.id} if reaction.leaves(root.state) and not is_exit else set()
             elif root.service and now[root.service]:
                 is_free = root.id not in state.running or root.id in finished
                 starts |= {root.id} if is_free else set()

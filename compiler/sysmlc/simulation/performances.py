@@ -3,9 +3,12 @@
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from itertools import product
 
+from sysmlc.ir import Edge
 from sysmlc.logic import domains, evaluate
 from sysmlc.logic.activities.token_step import State, TokenStep
 from sysmlc.logic.components.arguments import Arguments, Output
+from sysmlc.logic.components.component import Root
+from sysmlc.logic.components.machines import PlacedMachine
 from sysmlc.logic.components.objects import Slot
 from sysmlc.logic.components.signals import Wiring
 from sysmlc.logic.formula import Formula, Literal
@@ -140,6 +143,28 @@ def bind_arguments(
             value = evaluate_cases(argument.cases, valuation)
             valuation = {**valuation, argument.variable.name: value}
     return valuation
+
+
+def decide_ends(
+    roots: Iterable[Root], machine: PlacedMachine, now: Mapping[str, Literal], finished: set[str]
+) -> Valuation:
+    """Return the machine's variables that tell which behaviours of its states have ended.
+
+    *finished* are the nodes that end in this step.
+    """
+    ends: Valuation = {}
+    for root in roots:
+        if root.machine is not machine or root.state is None:
+            continue
+        is_finished = root.id in finished
+        if root.over:
+            ends[root.state.done] = bool(now[root.over]) or is_finished
+            ends[root.state.ending] = is_finished
+        if root.role is Edge.EXIT:
+            for phase in root.state.leaving:
+                is_leaving = bool(now[machine.variables[phase.memory]])
+                ends[phase.end] = is_leaving and is_finished
+    return ends
 
 
 def evaluate_cases(cases: Iterable[tuple[Formula, Formula]], now: Mapping[str, Literal]) -> Literal:

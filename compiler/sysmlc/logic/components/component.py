@@ -28,6 +28,11 @@ from sysmlc.logic.identifiers import Names, identifier
 from sysmlc.logic.machines.machine import Machine, Vertex, element_id
 from sysmlc.logic.machines.reader import MachineOptions, find_context_classifier
 
+_LONG_LIMITS = {
+    Edge.ENTRY: " beside substates or a time-out",
+    Edge.EXIT: " beside substates, a time-out, a choice, or a state around it",
+}
+"""Where entries and exits that take time are not described."""
 _SENDING = ("send", "broadcast", "call-operation")  # sub-kinds of actions
 
 
@@ -46,8 +51,8 @@ class Root:
     """The entry behaviour after which it starts, if that takes time."""
     service: str = ""
     """The input with which the environment starts it."""
-    is_entry: bool = False
-    """Whether it is the entry behaviour of its state, not the do behaviour."""
+    role: Edge = Edge.DO
+    """Whether it is the entry, do or exit behaviour of its state."""
     over: str = ""
     """The variable that its state uses to remember its end."""
 
@@ -134,52 +139,68 @@ class Component:
                 prefix,
                 event,
                 self._options,
-                partial(self._list_long_entries, object_),
+                partial(self._list_long, object_),
                 self.writers,
             )
             if machine is None:
                 raise ComponentError(f"no steps can be derived from state machine '{element.name}'")
             self.machines.append(machine)
-            entries = {
-                state.id: self._add_entry(machine, state, prefix)
-                for state in machine.machine.list_states()
-                if state.opening
-            }
+            entries: dict[str, str] = {}
+            exits = frozenset(self._list_long(object_, machine.machine, Edge.EXIT))
+            for state in machine.machine.list_states():
+                if state.opening:
+                    run = machine.variables[state.opening]
+                    entries[state.id] = self._add_transient(machine, state, prefix, Edge.ENTRY, run)
+                if state.id in exits:
+                    run = self.performances.name_variable(f"run_{state.literal}_exit", prefix)
+                    self._add_transient(machine, state, prefix, Edge.EXIT, run)
             for state, behaviours in machine.list_do_states(self.tree):
                 self._add_do(machine, state, behaviours, prefix, entries.get(state.id, ""))
             self._release_instant_behaviours(machine)
 
-    def _list_long_entries(self, object_: ComponentObject, machine: Machine) -> Iterator[str]:
-        """Yield the ids of the states whose entries take time and are described."""
+    def _list_long(self, object_: ComponentObject, machine: Machine, role: Edge) -> Iterator[str]:
+        """Yield the ids of the states whose entries, or exits, take time and are described."""
         for state in machine.list_states():
-            behaviours = self.graph.targets(self.graph[element_id(state.id)], Edge.ENTRY)
+            behaviours = self.graph.targets(self.graph[element_id(state.id)], role)
             performed = [self._find_performed(object_, behaviour) for behaviour in behaviours]
             takes_time = any(pair and self._takes_time(pair[1]) for pair in performed)
-            if takes_time and len(behaviours) == 1 and not state.regions and not state.timer:
+            is_plain = not state.regions and not state.timer
+            if role is Edge.EXIT:
+                is_plain = is_plain and machine.has_simple_exits(state)
+            if takes_time and len(behaviours) == 1 and is_plain:
                 yield state.id
 
     def _takes_time(self, activity: Element) -> bool:
         tokens = self.performances.find_tokens(activity)
         return self.performances.has_steps(activity) if tokens is None else tokens.takes_time
 
-    def _add_entry(self, machine: PlacedMachine, state: Vertex, prefix: str) -> str:
-        """Add the entry behaviour of a state, which takes time; return its node.
+    def _add_transient(
+        self, machine: PlacedMachine, state: Vertex, prefix: str, role: Edge, run: str
+    ) -> str:
+        """Add the entry or exit behaviour of a state, which takes time; return its node.
 
-        The state is active meanwhile, and none of its transitions is enabled (the Library: the
-        entry is inside of the performance of the state).
+        The state is active meanwhile, and none of its transitions is enabled (the Library: entry
+        and exit are inside of the performance of the state).
         """
-        (behaviour,) = self.graph.targets(self.graph[element_id(state.id)], Edge.ENTRY)
+        (behaviour,) = self.graph.targets(self.graph[element_id(state.id)], role)
         performed = self._find_performed(machine.owner, behaviour)
         assert performed is not None
         object_, activity = performed
-        name = activity.name or "entry"
+        name = activity.name or str(role)
         names = machine.owner.extend_path(name)
         caller = Caller(object_, names, _join_names(prefix, state.literal, name))
-        id = self.performances.add(activity, caller, machine.variables[state.opening])
+        id = self.performances.add(activity, caller, run)
         self.performances.paths.append(ActionPath((*names[:-1], state.literal, name), id))
-        starts, stops = machine.entered_formula(state), machine.left_formula(state)
-        is_first = machine.active_formula(state)
-        self.roots.append(Root(id, starts, stops, is_first, machine, state, is_entry=True))
+        if role is Edge.ENTRY:
+            starts, stops = machine.entered_formula(state), machine.left_formula(state)
+            is_first = machine.active_formula(state)
+        else:
+            starts, stops, is_first = machine.exit_starts_formula(state), f.FALSE, f.FALSE
+            for phase in state.leaving:
+                is_leaving = f.var(machine.variables[phase.memory])
+                end = machine.variables[phase.end]
+                self.ends[end] = f.both(is_leaving, finish_variable(id))
+        self.roots.append(Root(id, starts, stops, is_first, machine, state, role=role))
         return id
 
     def _add_do(
@@ -204,7 +225,8 @@ class Component:
         place = (*names[:-1], state.literal, name)
         self.performances.paths.append(ActionPath(place, id))
         is_first = f.FALSE if entry else machine.active_formula(state)
-        entered, left = machine.entered_formula(state), machine.left_formula(state)
+        entered = machine.entered_formula(state)
+        left = f.either(machine.left_formula(state), machine.exit_starts_formula(state))
         starts = finish_variable(entry) if entry else entered
         root = Root(id, starts, left, is_first, machine, state, after=entry)
         self.roots.append(root)
@@ -216,13 +238,15 @@ class Component:
         """Record the writers in activities that entries, exits and effects perform.
 
         The machine performs them within its step, which is not described. What takes time is an
-        obstacle, apart from the entries that are performances of their own, and so is what they
-        send to other objects.
+        obstacle, apart from the entries and exits that are performances of their own, and so is
+        what they send to other objects.
         """
-        openings = {element_id(s.id) for s in machine.machine.list_states() if s.opening}
+        described = {
+            (element_id(root.state.id), root.role) for root in self.roots if root.state is not None
+        }
         for element in self._iter_machine_elements(machine):
             for edge in (Edge.ENTRY, Edge.EXIT, Edge.EFFECT):
-                if edge is Edge.ENTRY and element.id in openings:
+                if (element.id, edge) in described:
                     continue
                 for behaviour in self.graph.targets(element, edge):
                     performed = self._find_performed(machine.owner, behaviour)
@@ -235,8 +259,8 @@ class Component:
                         self.obstacle = f"no step describes what {edge} '{activity.name}' sends"
                     if self._takes_time(activity):
                         name = element.name or "a transition"
-                        beside = " beside substates or a time-out" * (edge is Edge.ENTRY)
-                        self.obstacle = f"the {edge} '{activity.name}' of {name} takes time{beside}"
+                        self.obstacle = f"the {edge} '{activity.name}' of {name} takes time"
+                        self.obstacle += _LONG_LIMITS.get(edge, "")
                     self.released.update(action.id for action in inner)
 
     def _iter_machine_elements(self, machine: PlacedMachine) -> Iterator[Element]:

@@ -90,7 +90,7 @@ class _Description:
             (machine, write) for machine in self.machines for write in machine.iter_writes()
         ]
         self._writes_in_states: dict[tuple[str, str], list[MachineWrite]] = {}
-        """What the entry and do behaviours of each machine write."""
+        """What the entry, do and exit behaviours of the states of each machine write."""
         self._arguments = component.arguments
         self._written = {write.slot for _, write in self._machine_writes}
         self._written |= {write.slot for write in self.performances.writes}

@@ -33,7 +33,7 @@ class LateValues:
         """The values of the variables for features that no do behaviour of the machine assigns."""
 
     def add(self, machine: PlacedMachine, writes: Sequence[MachineWrite]) -> None:
-        """Add the variables of a machine; *writes* are those of its entry and do behaviours.
+        """Add the variables of a machine; *writes* are those of the behaviours of its states.
 
         Raises ComponentError for a write that the machine would not see.
         """

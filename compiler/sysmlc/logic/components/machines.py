@@ -16,7 +16,7 @@ from sysmlc.logic.components.objects import (
     is_value,
 )
 from sysmlc.logic.composition.naming import rename_variables
-from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, EnumerationDomain, Owner, Variable
+from sysmlc.logic.contract import Class, Conjunct, EnumerationDomain, Owner, Variable
 from sysmlc.logic.feature_writes import WriterIndex
 from sysmlc.logic.formula import Const, Formula, Literal
 from sysmlc.logic.identifiers import identifier
@@ -95,6 +95,7 @@ class PlacedMachine(Struct, frozen=True):
         states = self.machine.list_states()
         others = {*self.slots, *self.machine.late.values(), EVENT}
         others |= {name for state in states for name in (state.opening, state.ending)}
+        others |= {phase.end for phase in self.machine.list_exit_phases()}
         for variable in self.machine.variables:
             if variable.name not in others:
                 yield replace(variable, name=self.variables[variable.name])
@@ -183,6 +184,12 @@ class PlacedMachine(Struct, frozen=True):
         )
         return self.rename(f.either(*changes))
 
+    def exit_starts_formula(self, state: Vertex) -> Formula:
+        """The exit behaviour of the state, which takes time, starts after this step."""
+        transitions = {phase.transition for phase in state.leaving}
+        moves = self.exploration.moves
+        return self.rename(f.either(*(m.fires for m in moves if m.transition.id in transitions)))
+
     def left_formula(self, state: Vertex) -> Formula:
         """A transition leaves the state in this step."""
         changes = (
@@ -247,24 +254,25 @@ def place_machine(
     prefix: str,
     event: str,
     options: MachineOptions,
-    list_long_entries: Callable[[Machine], Iterable[str]],
+    list_long: Callable[[Machine, Edge], Iterable[str]],
     writers: WriterIndex,
 ) -> PlacedMachine | None:
     """Read a machine of an object; return None if no steps can be derived from it.
 
     *prefix* stands before its own variables; *event* is the variable of the object's event.
-    *list_long_entries* returns the ids of the states whose entries take time. Raises
+    *list_long* returns the ids of the states whose entries, or exits, take time. Raises
     ComponentError.
     """
     machine = read_machine(tree.graph, element, Sink(), options, classifier=object_.type_)
     if machine is None:
         return None
-    machine = _add_openings(machine, list_long_entries(machine))
+    machine = machine.with_openings(list_long(machine, Edge.ENTRY))
     written = frozenset(_list_written_ids(machine))
+    machine = machine.with_exit_phases(list(list_long(machine, Edge.EXIT)))
     variables: dict[str, str] = {EVENT: event}
-    for state in filter(lambda state: state.opening, machine.list_states()):
-        name = identifier(f"run_{tree.graph[element_id(state.id)].name}_entry")
-        variables[state.opening] = tree.names.new(f"{prefix}_{name}" if prefix else name)
+    for name, words in _list_phase_names(tree, machine):
+        word = identifier(words)
+        variables[name] = tree.names.new(f"{prefix}_{word}" if prefix else word)
     slots: dict[str, Slot] = {}
     for variable in machine.variables:
         if variable.name in variables:
@@ -277,16 +285,27 @@ def place_machine(
             name = f"{prefix}_{variable.name}" if prefix else variable.name
             variables[variable.name] = tree.names.new(name)
     late = [name for name in slots if _has_other_writer(tree, slots[name], writers, written)]
-    machine = _add_late_variables(machine, late)
+    machine = machine.with_late_values(late)
     for name, late_name in machine.late.items():
         variables[late_name] = tree.names.new(f"late_{variables[name]}")
     # What a state does decides its end, not the environment.
-    ends = ((state.done, state.ending) for state in machine.list_states() if state.done)
-    variables |= {name: f"end of {prefix} {name}" for pair in ends for name in pair}
+    ends = [name for state in machine.list_states() for name in (state.done, state.ending) if name]
+    ends += [phase.end for phase in machine.list_exit_phases()]
+    variables |= {name: f"end of {prefix} {name}" for name in ends}
     exploration = explore_machine(tree.graph, machine, Sink())
     if exploration is None:
         return None
     return PlacedMachine(object_, element, exploration, variables, slots, written)
+
+
+def _list_phase_names(tree: ObjectTree, machine: Machine) -> Iterator[tuple[str, str]]:
+    """Yield the variables of entries and exits that take time, and names for them."""
+    for state in machine.list_states():
+        name = tree.graph[element_id(state.id)].name
+        if state.opening:
+            yield state.opening, f"run_{name}_entry"
+        for phase in state.leaving:
+            yield phase.memory, f"leaving_{name}"
 
 
 def _has_other_writer(
@@ -298,39 +317,6 @@ def _has_other_writer(
         for element in tree.read_slot(slot).elements
         for writer in (*writers.iter_writers(element), *writers.iter_unclear_writers(element))
     )
-
-
-def _add_late_variables(machine: Machine, features: Iterable[str]) -> Machine:
-    """Return the machine with variables for the values and ends of do behaviours.
-
-    *features* are those that the do behaviours may assign.
-    """
-    late = {name: f"late {name}" for name in features}
-    vertices = {
-        id: replace(vertex, ending=f"ending of {id}" * bool(vertex.done))
-        for id, vertex in machine.vertices.items()
-    }
-    values = [replace(machine.find_variable(name), name=late[name]) for name in late]
-    ends = [
-        Variable(vertex.ending, Owner.ENVIRONMENT, BooleanDomain(), element_id(vertex.id))
-        for vertex in vertices.values()
-        if vertex.ending
-    ]
-    variables = (*machine.variables, *values, *ends)
-    return replace(machine, vertices=vertices, variables=variables, late=late)
-
-
-def _add_openings(machine: Machine, states: Iterable[str]) -> Machine:
-    """Return the machine with variables that are true while the entries of *states* run."""
-    openings = {id: f"opening of {id}" for id in states}
-    vertices = {
-        id: replace(vertex, opening=openings.get(id, "")) for id, vertex in machine.vertices.items()
-    }
-    new = (
-        Variable(name, Owner.ENVIRONMENT, BooleanDomain(), element_id(id))
-        for id, name in openings.items()
-    )
-    return replace(machine, vertices=vertices, variables=(*machine.variables, *new))
 
 
 def find_unread_features(

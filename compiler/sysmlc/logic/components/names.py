@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from msgspec import Struct
 from msgspec.structs import replace
 
+from sysmlc.ir import Edge
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
 from sysmlc.logic.components.machines import EVENT, PlacedMachine
@@ -285,5 +286,5 @@ def _shorten_paths(component: "Component") -> dict[str, str]:
 def _list_performed_states(component: "Component") -> Iterator[str]:
     """Yield the variables of the do behaviours that are performances."""
     for root in component.roots:
-        if root.machine is not None and root.state is not None and not root.is_entry:
+        if root.machine is not None and root.state is not None and root.role is Edge.DO:
             yield root.machine.variables[root.state.do]

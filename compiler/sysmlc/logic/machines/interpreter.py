@@ -286,7 +286,7 @@ def _list_options(
 
 
 def _is_blocked(machine: Machine, now: Mapping[str, Literal], transition: Transition) -> bool:
-    """Whether an entry behaviour that takes time runs in a state that the transition leaves."""
+    """Whether an entry or exit behaviour that takes time disables the transition."""
     return any(now[name] for name in machine.list_blockers(transition))
 
 

@@ -4,11 +4,15 @@ The values describe the diagram and name the variables of the contract. ``interp
 meaning of a step.
 """
 
-from msgspec import Struct, field
+from collections.abc import Collection, Iterable, Iterator
 
-from sysmlc.logic.contract import Variable
+from msgspec import Struct, field
+from msgspec.structs import replace
+
+from sysmlc.logic.contract import BooleanDomain, Owner, Variable
 from sysmlc.logic.expressions.elaboration import Scope
 from sysmlc.logic.expressions.expression import Expression
+from sysmlc.logic.expressions.expression import Literal as LiteralExpression
 from sysmlc.logic.formula import Literal
 
 NO_EVENT = "none"
@@ -108,15 +112,28 @@ class Transition(Struct, frozen=True):
         return self.source, *(partner.source for partner in self.join_partners)
 
 
+class ExitPhase(Struct, frozen=True):
+    """The time between a trigger and the end of an exit behaviour that takes time.
+
+    ``memory`` is the variable that holds meanwhile, ``end`` the input that holds in the last step.
+    ``transition`` is the id of the transition, whose first half sets the memory.
+    """
+
+    transition: str
+    memory: str
+    end: str
+
+
 class Vertex(Struct, frozen=True):
     """A state, final state or pseudostate.
 
     ``do`` is the output that holds while the state is active, ``done`` the input that reports the
     end of the do behaviour, ``timer`` counts the steps that the state has been active, and ``pick``
-    names the enabled outgoing transition that was taken. ``opening`` holds while an entry behaviour
-    that takes time runs, ``ending`` in the step in which the do behaviour ends; the machine of a
-    component alone has them. An empty name means that there is no such variable. ``border`` is the
-    state that owns an entry or exit point.
+    names the enabled outgoing transition that was taken. An empty name means that there is no such
+    variable. ``border`` is the state that owns an entry or exit point. The machine of a component
+    alone has ``opening``, which holds while an entry behaviour that takes time runs, ``ending``,
+    which holds in the step in which the do behaviour ends, and ``leaving``, the phases of an exit
+    behaviour that takes time, one for each transition that leaves the state.
     """
 
     id: str
@@ -133,6 +150,7 @@ class Vertex(Struct, frozen=True):
     border: str = ""
     opening: str = ""
     ending: str = ""
+    leaving: tuple[ExitPhase, ...] = ()
 
     @property
     def is_stable(self) -> bool:
@@ -186,16 +204,21 @@ class Machine(Struct, frozen=True):
         """List all states in the order of the model."""
         return [vertex for vertex in self.vertices.values() if vertex.kind == "state"]
 
+    def list_exit_phases(self) -> Iterator[ExitPhase]:
+        """Iterate over the phases of all exit behaviours that take time."""
+        return (phase for vertex in self.vertices.values() for phase in vertex.leaving)
+
     def list_transitions(self) -> list[Transition]:
         """List all transitions, grouped by source."""
         return [transition for group in self.outgoing.values() for transition in group]
 
     def list_blockers(self, transition: Transition) -> list[str]:
-        """List the variables that are true while entry behaviours disable *transition*.
+        """List the variables that are true while entry or exit behaviours disable *transition*.
 
-        These are the entries of its sources, and of the states inside them if it leaves them.
+        These are the entries and exits of its sources, and the entries of the states inside them if
+        it leaves them. The end of an exit enables the second half of its transition.
         """
-        return [
+        openings = [
             state.opening
             for state in self.vertices.values()
             if state.opening
@@ -205,6 +228,73 @@ class Machine(Struct, frozen=True):
                 for source in transition.sources
             )
         ]
+        phases = [phase for id in transition.sources for phase in self.vertices[id].leaving]
+        is_second_half = any(OnInput(phase.end) in transition.occurrences for phase in phases)
+        return openings if is_second_half else openings + [phase.memory for phase in phases]
+
+    def has_simple_exits(self, state: Vertex) -> bool:
+        """Whether transitions from the state, which nothing contains, lead straight to states."""
+        leaving = [move for move in self.list_transitions() if state.id in move.sources]
+        return not self.regions[state.region].state and all(
+            not move.join_partners and self.vertices[move.target].is_stable for move in leaving
+        )
+
+    # -- behaviours that take time -----------------------------------------------------------------
+
+    def with_openings(self, states: Iterable[str]) -> "Machine":
+        """Return the machine with variables that are true while the entries of *states* run."""
+        openings = {id: f"opening of {id}" for id in states}
+        vertices = dict(self.vertices)
+        for id, name in openings.items():
+            vertices[id] = replace(vertices[id], opening=name)
+        inputs = (_make_input(name, id) for id, name in openings.items())
+        return replace(self, vertices=vertices, variables=(*self.variables, *inputs))
+
+    def with_exit_phases(self, states: Collection[str]) -> "Machine":
+        """Return the machine in which the exits of *states* take time.
+
+        A transition that leaves such a state has two halves: the first reacts to the trigger, and
+        the second leaves the state when the exit behaviour ends.
+        """
+        vertices, outgoing = dict(self.vertices), dict(self.outgoing)
+        memories: list[Variable] = []
+        ends: list[Variable] = []
+        for id in states:
+            halves = list(map(_split_transition, self.outgoing.get(id, ())))
+            outgoing[id] = tuple(half for group, _ in halves for half in group)
+            phases = tuple(phase for _, phase in halves if phase is not None)
+            vertices[id] = replace(vertices[id], leaving=phases)
+            for phase in phases:
+                origin = element_id(phase.transition)
+                memory = Variable(phase.memory, Owner.SYSTEM, BooleanDomain(), origin)
+                memories.append(replace(memory, is_auxiliary=True))
+                ends.append(_make_input(phase.end, phase.transition))
+        names = [memory.name for memory in memories]
+        return replace(
+            self,
+            vertices=vertices,
+            outgoing=outgoing,
+            variables=(*self.variables, *memories, *ends),
+            assigned=(*self.assigned, *names),
+            initial={**self.initial, **dict.fromkeys(names, False)},
+        )
+
+    def with_late_values(self, features: Iterable[str]) -> "Machine":
+        """Return the machine with variables for the values and ends of do behaviours.
+
+        *features* are those that the do behaviours may assign.
+        """
+        late = {name: f"late {name}" for name in features}
+        vertices = {
+            id: replace(vertex, ending=f"ending of {id}" * bool(vertex.done))
+            for id, vertex in self.vertices.items()
+        }
+        values = [replace(self.find_variable(name), name=late[name]) for name in late]
+        ends = [_make_input(state.ending, state.id) for state in vertices.values() if state.ending]
+        variables = (*self.variables, *values, *ends)
+        return replace(self, vertices=vertices, variables=variables, late=late)
+
+    # -- places ------------------------------------------------------------------------------------
 
     def list_enclosing_states(self, vertex: str) -> list[str]:
         """List the states that contain *vertex*, innermost first.
@@ -279,3 +369,29 @@ class Machine(Struct, frozen=True):
         if transition.kind == "local" and self.contains(transition.source, transition.target):
             return next(region for region in target_regions if region in start.regions)
         return next((region for region in source_regions if region in target_regions), None)
+
+
+def _make_input(name: str, vertex: str) -> Variable:
+    return Variable(name, Owner.ENVIRONMENT, BooleanDomain(), element_id(vertex))
+
+
+def _split_transition(transition: Transition) -> tuple[tuple[Transition, ...], ExitPhase | None]:
+    """Return the halves of a transition and the phase between them.
+
+    An internal transition does not leave its state and remains whole.
+    """
+    if transition.kind == "internal":
+        return (transition,), None
+    id = transition.id
+    phase = ExitPhase(id, f"leaving by {id}", f"exit ends before {id}")
+    sets = Assign(phase.memory, LiteralExpression(True), element_id(id))
+    resets = Assign(phase.memory, LiteralExpression(False), element_id(id))
+    first = replace(transition, kind="internal", effect=(sets,))
+    second = replace(
+        transition,
+        id=submachine_id(f"end of {id}", element_id(id)),
+        occurrences=(OnInput(phase.end),),
+        guard=None,
+        effect=(*transition.effect, resets),
+    )
+    return (first, second), phase
