@@ -177,7 +177,8 @@ class Runs:
         while True:
             shrunk = result
             for goal in self.goals:
-                shrunk = shrunk & self.predecessors(self.states_reaching(shrunk, shrunk & goal))
+                reaching = self.states_reaching(shrunk, shrunk & goal)
+                shrunk = self.predecessors_by(reaching, shrunk)
             if shrunk == result:
                 return result
             result = shrunk
@@ -192,7 +193,7 @@ class Runs:
         """Return the states from which steps inside *within* lead to *target*."""
         reached = frontier = target
         while frontier != self.manager.false:
-            frontier = within & self.predecessors(frontier) & ~reached
+            frontier = self.predecessors_by(frontier, within) & ~reached
             reached = reached | frontier
         return reached
 
@@ -204,7 +205,7 @@ class Runs:
         layers = [target]
         reached = target
         while True:
-            layer = within & self.predecessors(layers[-1]) & ~reached
+            layer = self.predecessors_by(layers[-1], within) & ~reached
             if layer == self.manager.false:
                 return layers
             layers.append(layer)
