@@ -164,6 +164,8 @@ def _open_if_possible(formulas: StepFormulas, condition: Formula) -> Formula:
     if not inside or not names - inside <= inputs.keys():
         return condition
     free = sorted(names - inside)
+    if not free:
+        return f.TRUE
     choices = [[f.const(value) for value in values(inputs[name].domain)] for name in free]
     if prod(map(len, choices)) > _MAX_CHOICES:
         return f.TRUE
