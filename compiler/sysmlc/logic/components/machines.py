@@ -1,12 +1,13 @@
 """State machines of the objects of a component: moves, writes of features, and do behaviours."""
 
+from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 
 from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.diagnostics import Sink
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic import formula as f
 from sysmlc.logic.components.objects import (
     ComponentError,
@@ -17,7 +18,7 @@ from sysmlc.logic.components.objects import (
 )
 from sysmlc.logic.composition.naming import rename_variables
 from sysmlc.logic.contract import Class, Conjunct, EnumerationDomain, Owner, Variable
-from sysmlc.logic.feature_writes import WriterIndex
+from sysmlc.logic.feature_writes import WriterIndex, iter_writes
 from sysmlc.logic.formula import Const, Formula, Literal
 from sysmlc.logic.identifiers import identifier
 from sysmlc.logic.machines.derivation import (
@@ -267,7 +268,7 @@ def place_machine(
     if machine is None:
         return None
     machine = machine.with_openings(list_long(machine, Edge.ENTRY))
-    written = frozenset(_list_written_ids(machine))
+    written = frozenset(_list_written_ids(tree.graph, machine))
     machine = machine.with_exit_phases(list(list_long(machine, Edge.EXIT)))
     variables: dict[str, str] = {EVENT: event}
     for name, words in _list_phase_names(tree, machine):
@@ -358,18 +359,15 @@ def _find_slot(
     return slot
 
 
-def _list_written_ids(machine: Machine) -> Iterator[str]:
-    actions = [
-        action
-        for state in machine.vertices.values()
-        for group in (state.entry, state.exit)
-        for action in group
+def _list_written_ids(graph: Graph, machine: Machine) -> Iterator[str]:
+    """Yield the ids of the texts of which the machine has all assignments."""
+    groups = [group for state in machine.vertices.values() for group in (state.entry, state.exit)]
+    for transition in machine.list_transitions():
+        groups += (segment.effect for segment in (transition, *transition.join_partners))
+    described = [
+        Counter(action.origin for action in group if isinstance(action, Assign)) for group in groups
     ]
-    actions += [action for move in machine.list_transitions() for action in move.effect]
-    actions += [
-        action
-        for move in machine.list_transitions()
-        for partner in move.join_partners
-        for action in partner.effect
-    ]
-    return (action.origin for action in actions if isinstance(action, Assign))
+    for id in dict.fromkeys(id for counts in described for id in counts):
+        count = sum(1 for _ in iter_writes(graph, graph[id]))
+        if all(counts[id] in (0, count) for counts in described):
+            yield id
