@@ -140,13 +140,20 @@ def _iter_assignments(action: Element) -> Iterator[FeatureWrite]:
 
 def takes_one_step(action: Element) -> bool:
     """Whether the body of an action consists of assignments alone."""
+    return bool(read_assignments(action))
+
+
+def read_assignments(action: Element) -> tuple[Assignment, ...]:
+    """Return the assignments in the body of an action; none if the body has other statements."""
     body = action.attrs.get("body")
     if not isinstance(body, str) or ":=" not in body:
-        return False
+        return ()
     try:
-        return all(isinstance(statement, Assignment) for statement in parse_effect(body))
+        statements = parse_effect(body)
     except ExpressionError:
-        return False
+        return ()
+    assignments = tuple(item for item in statements if isinstance(item, Assignment))
+    return assignments if len(assignments) == len(statements) else ()
 
 
 def _read_write_action(graph: Graph, action: Element) -> Iterator[FeatureWrite]:
@@ -376,7 +383,7 @@ class Sharing(Struct, frozen=True):
     writers: WriterIndex | None = None
     """The writers of each feature; None if only the machine itself is considered."""
     classifier: Element | None = None
-    """The classifier in which names are resolved; None for the nearest one around the machine."""
+    """The classifier in which names are resolved; None if no classifier is around the machine."""
 
     def find_other_writer(self, feature: Element) -> Element | None:
         """Return a behaviour outside the machine that writes *feature*."""

@@ -1,6 +1,10 @@
 """Queries of passes and back ends to a graph; none of them changes it."""
 
-from sysmlc.ir.query.activities import is_performed, is_referential
+from sysmlc.ir.query.activities import (
+    is_performed,
+    is_referential,
+    list_chained_actions,
+)
 from sysmlc.ir.query.classifiers import (
     BEHAVIORS,
     CLASSIFIERS,
@@ -87,6 +91,7 @@ __all__ = [
     "is_referential",
     "is_requirement",
     "lineage",
+    "list_chained_actions",
     "opposite",
     "opposite_end",
     "outgoing",

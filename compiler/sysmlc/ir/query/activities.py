@@ -1,4 +1,4 @@
-"""Activities: whether concurrent branches are joined, and UML's features for pins."""
+"""Activities: chains of actions, whether concurrent branches are joined, and UML's pins."""
 
 from collections.abc import Iterable, Mapping
 
@@ -31,6 +31,57 @@ def is_performed(graph: Graph, node: Element) -> bool:
     ends = (node, *(member for member in graph.owned(node) if member.kind is Kind.PIN))
     edges = (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)
     return any(True for end in ends for edge in edges for _ in graph.sources(end, edge))
+
+
+def list_chained_actions(graph: Graph, activity: Element) -> tuple[Element, ...]:
+    """Return the actions of an activity that performs one after another and does nothing else.
+
+    Control flows without guards and weights join them. The first may follow an initial node, and a
+    final node the last. The result is empty for any other activity, such as one with parameters,
+    attributes or pins, and one that specialises another activity.
+    """
+    members = [member for member in graph.owned(activity) if member.kind is not Kind.COMMENT]
+    nodes = [member for member in members if member.kind in (Kind.ACTION, Kind.CONTROL)]
+    flows = [member for member in members if _is_plain_flow(member)]
+    is_special = any(
+        graph.targets(activity, edge) for edge in (Edge.SPECIALIZES, Edge.REDEFINES, Edge.SUBSETS)
+    )
+    if is_special or len(nodes) + len(flows) < len(members) or len(flows) != len(nodes) - 1:
+        return ()
+    targets = {node.id for flow in flows for node in graph.targets(flow, Edge.FLOW_TARGET)}
+    node = next((node for node in nodes if node.id not in targets), None)
+    chain: list[Element] = []
+    while node is not None and len(chain) < len(nodes):
+        chain.append(node)
+        leaving = graph.sources(node, Edge.FLOW_SOURCE)
+        node = graph.target(leaving[0], Edge.FLOW_TARGET) if leaving else None
+    first, last = chain[:1], chain[1:][-1:]
+    first = [node for node in first if node.subkind == "initial"]
+    last = [node for node in last if node.subkind in ("final", "flow-final")]
+    actions = chain[len(first) : len(chain) - len(last)]
+    is_chain = {node.id for node in chain} == {node.id for node in nodes}
+    is_plain = all(_is_plain_action(graph, action) for action in actions)
+    return tuple(actions) if is_chain and is_plain and not _may_branch(graph, nodes) else ()
+
+
+def _may_branch(graph: Graph, nodes: Iterable[Element]) -> bool:
+    """Whether several flows lead to one of the nodes or leave it."""
+    ends = (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)
+    return any(len(graph.sources(node, edge)) > 1 for node in nodes for edge in ends)
+
+
+def _is_plain_flow(member: Element) -> bool:
+    """Whether a member of an activity is a control flow that passes each token."""
+    guard, weight = member.attrs.get("guard", "true"), member.attrs.get("weight", "1")
+    is_open = str(guard).lower() == "true" and str(weight) == "1"
+    return member.kind is Kind.CONTROL_FLOW and is_open and "interrupts" not in member.attrs
+
+
+def _is_plain_action(graph: Graph, node: Element) -> bool:
+    """Whether a node is an opaque action without pins, which the activity itself performs."""
+    has_members = any(member.kind is not Kind.COMMENT for member in graph.owned(node))
+    is_opaque = node.kind is Kind.ACTION and node.subkind == "opaque"
+    return is_opaque and not has_members and not is_referential(node)
 
 
 def is_joined(graph: Graph, end: Element) -> bool:

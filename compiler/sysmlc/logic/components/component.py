@@ -14,6 +14,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
 from sysmlc.logic.components.arguments import Arguments
 from sysmlc.logic.components.machines import PlacedMachine, find_machines, place_machine
+from sysmlc.logic.components.names import finish_variable
 from sysmlc.logic.components.objects import ComponentError, ComponentObject, ObjectTree
 from sysmlc.logic.components.performances import ActionPath, Caller, Performances
 from sysmlc.logic.components.signals import check_signal_names
@@ -27,6 +28,7 @@ from sysmlc.logic.formula import Formula
 from sysmlc.logic.identifiers import Names, identifier
 from sysmlc.logic.machines.machine import Machine, Vertex, element_id
 from sysmlc.logic.machines.reader import MachineOptions, find_context_classifier
+from sysmlc.logic.machines.supported_constructs import find_instant_steps
 
 _LONG_LIMITS = {
     Edge.ENTRY: " beside substates or a time-out",
@@ -94,6 +96,8 @@ class Component:
         """Whether a do behaviour has ended, or ends, by the machine's variables for its end."""
         self.released: set[str] = set()
         """Ids of writers whose writes are not described everywhere."""
+        self.instant: dict[str, tuple[Element, ...]] = {}
+        """The steps of activities that machines perform within a step, by the activity."""
         self.obstacle = ""
         """Why the steps of the component are not described, although its objects are; or empty."""
         self.end_aliases: dict[str, str] = {}
@@ -172,7 +176,11 @@ class Component:
 
     def _takes_time(self, activity: Element) -> bool:
         tokens = self.performances.find_tokens(activity)
-        return self.performances.has_steps(activity) if tokens is None else tokens.takes_time
+        if tokens is None:
+            return self.performances.has_steps(activity) and not find_instant_steps(
+                self.graph, activity, None
+            )
+        return tokens.takes_time
 
     def _add_transient(
         self, machine: PlacedMachine, state: Vertex, prefix: str, role: Edge, run: str
@@ -237,18 +245,20 @@ class Component:
     def _release_instant_behaviours(self, machine: PlacedMachine) -> None:
         """Record the writers in activities that entries, exits and effects perform.
 
-        The machine performs them within its step, which is not described. What takes time is an
-        obstacle, apart from the entries and exits that are performances of their own, and so is
-        what they send to other objects.
+        The machine performs them within its step, which is not described unless it has all their
+        assignments. What takes time is an obstacle, apart from the entries and exits that are
+        performances of their own, and so is what they send to other objects.
         """
         described = {
             (element_id(root.state.id), root.role) for root in self.roots if root.state is not None
         }
-        for element in self._iter_machine_elements(machine):
+        for element in self.iter_machine_elements(machine):
             for edge in (Edge.ENTRY, Edge.EXIT, Edge.EFFECT):
                 if (element.id, edge) in described:
                     continue
                 for behaviour in self.graph.targets(element, edge):
+                    if self._is_within_step(machine, behaviour):
+                        continue
                     performed = self._find_performed(machine.owner, behaviour)
                     if performed is None:
                         continue
@@ -263,7 +273,17 @@ class Component:
                         self.obstacle += _LONG_LIMITS.get(edge, "")
                     self.released.update(action.id for action in inner)
 
-    def _iter_machine_elements(self, machine: PlacedMachine) -> Iterator[Element]:
+    def _is_within_step(self, machine: PlacedMachine, behaviour: Element) -> bool:
+        """Whether a machine has all assignments of a behaviour; record what it performs."""
+        steps = find_instant_steps(self.graph, behaviour, machine.owner.type_)
+        activity = self.graph.owner(steps[0]) if steps else None
+        if activity is None or not machine.written.issuperset(step.id for step in steps):
+            return False
+        self.instant[activity.id] = steps
+        self.performances.performed.add((machine.owner.path, activity.id))
+        return True
+
+    def iter_machine_elements(self, machine: PlacedMachine) -> Iterator[Element]:
         """Yield the states and transitions of a machine, those of its submachines included."""
         yield from self.graph.subtree(machine.element)
         for id in machine.machine.vertices:
@@ -304,18 +324,7 @@ class Component:
             path = name_of(parse_expression(str(behaviour.attrs.get("body", "")))) or ""
         except ExpressionError:
             return None
-        *parts, name = path.split(".")
-        holder: ComponentObject | None = object_
-        if parts:
-            holder = self.tree.find_object(".".join(filter(None, (object_.path, *parts))))
-        while holder is not None:
-            scopes = (*holder.list_family(self.graph), *self.graph.ancestors(holder.type_))
-            for scope in scopes:
-                for activity in self.graph.owned(scope):
-                    if activity.kind is Kind.ACTIVITY and activity.name == name and name:
-                        return holder, activity
-            holder = None if parts else holder.owner
-        return None
+        return self.tree.find_named_activity(object_, path)
 
     def _add_own_activities(self, object_: ComponentObject) -> None:
         for classifier in object_.list_family(self.graph)[::-1]:
@@ -408,16 +417,6 @@ class Component:
     def add(self, formula: Formula, class_: Class, origin: str) -> None:
         """Add a fact about all runs."""
         self.conjuncts.append(Conjunct(formula, class_, origin, source=Source.DERIVED))
-
-
-def finish_name(id: str) -> str:
-    """Return the name that stands for the end of a performance until all are placed."""
-    return f"finished {id}"
-
-
-def finish_variable(id: str) -> Formula:
-    """Return the placeholder for the end of the performance with a node."""
-    return f.var(finish_name(id))
 
 
 def _join_names(*names: str) -> str:

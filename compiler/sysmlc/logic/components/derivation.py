@@ -5,6 +5,7 @@ the next (synchronous composition). A feature has one next-state relation with a
 it gets the value of one of those that write in the step, or else keeps its value.
 """
 
+from collections import Counter
 from collections.abc import Iterator, Mapping
 
 from msgspec import Struct
@@ -15,10 +16,10 @@ from sysmlc.logic.activities.assumptions import derive_assumptions
 from sysmlc.logic.activities.derivation import derive_run_update, derive_token_updates
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
 from sysmlc.logic.activities.token_graph import TokenGraph
-from sysmlc.logic.components.component import Component, finish_name
+from sysmlc.logic.components.component import Component
 from sysmlc.logic.components.late_reads import LateValues
 from sysmlc.logic.components.machines import MachineWrite, find_unread_features
-from sysmlc.logic.components.names import Atom, iter_atoms
+from sysmlc.logic.components.names import Atom, finish_name, iter_atoms
 from sysmlc.logic.components.objects import ComponentError, Slot
 from sysmlc.logic.components.places import PlaceInBehaviour, iter_places
 from sysmlc.logic.components.signals import derive_events
@@ -33,8 +34,9 @@ from sysmlc.logic.contract import (
     Variable,
     equals,
 )
-from sysmlc.logic.feature_writes import find_label
+from sysmlc.logic.feature_writes import find_label, iter_writes
 from sysmlc.logic.formula import Const, Formula
+from sysmlc.logic.machines.supported_constructs import has_unknown_performer
 from sysmlc.logic.simplification import substitute
 
 
@@ -307,7 +309,7 @@ class _Description:
         index = self.component.writers
         described = self._arguments.origins | {write.origin for write in self.performances.writes}
         described |= {id for machine in self.machines for id in machine.written}
-        described -= self.component.released
+        described -= self.component.released.union(*self._iter_open_steps())
         gaps = find_unread_features(self.tree, self.machines, self.component.writers)
         for slot, feature in self.tree.used_slots.items():
             name = feature.variable.name
@@ -341,6 +343,25 @@ class _Description:
                 text = f"'{name}' keeps its value unless it is assigned."
                 self._add(f.either(*values, keeps), Class.SAFETY, feature.variable.origin, text)
         return gaps
+
+    def _iter_open_steps(self) -> Iterator[set[str]]:
+        """Yield the ids of steps within a machine's step that something else may perform, too.
+
+        A performance of the same activity is known if it writes all that the steps assign.
+        """
+        machines = {e.id for m in self.machines for e in self.component.iter_machine_elements(m)}
+        counts = Counter((write.root, write.origin) for write in self.performances.writes)
+        for id, steps in self.component.instant.items():
+            copies = [c.root for c in self.performances.copies.values() if c.activity.id == id]
+            is_written = all(
+                counts[root, step.id] >= len({w.name for w in iter_writes(self.graph, step)})
+                for root in copies
+                for step in steps
+            )
+            activity = self.graph[id]
+            is_written = is_written and self.performances.find_tokens(activity) is not None
+            if not is_written or has_unknown_performer(self.graph, activity, machines):
+                yield {step.id for step in steps}
 
     def _list_variables(
         self, formulas: PerformanceFormulas, events: list[Variable]

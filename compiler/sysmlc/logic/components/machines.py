@@ -312,9 +312,12 @@ def _list_phase_names(tree: ObjectTree, machine: Machine) -> Iterator[tuple[str,
 def _has_other_writer(
     tree: ObjectTree, slot: Slot, writers: WriterIndex, written: Collection[str]
 ) -> bool:
-    """Whether anything but the effects, entries and exits in *written* may assign a feature."""
+    """Whether anything but the effects, entries and exits in *written* may assign a feature.
+
+    A step of an activity counts, because a do behaviour may perform the activity, too.
+    """
     return any(
-        writer.id not in written
+        writer.id not in written or writer.kind is Kind.ACTION
         for element in tree.read_slot(slot).elements
         for writer in (*writers.iter_writers(element), *writers.iter_unclear_writers(element))
     )

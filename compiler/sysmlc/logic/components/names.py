@@ -29,6 +29,16 @@ _ACTION = re.compile(r"(?:([\w.]+)\.)?(running|finished)\(\s*([\w.]+)\s*\)")
 """``running(load.grip)``, or with the path of a part in front: ``robot.running(grip)``."""
 
 
+def finish_name(id: str) -> str:
+    """Return the name that stands for the end of a performance until all are placed."""
+    return f"finished {id}"
+
+
+def finish_variable(id: str) -> Formula:
+    """Return the placeholder for the end of the performance with a node."""
+    return f.var(finish_name(id))
+
+
 class Meaning(Struct, frozen=True):
     """What a name denotes: a formula about a step, with its values."""
 

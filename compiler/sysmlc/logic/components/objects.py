@@ -158,6 +158,26 @@ class ObjectTree:
             object_ = object_.owner
         return holders[0] if len(holders) == 1 else None
 
+    def find_named_activity(
+        self, start: ComponentObject, path: str
+    ) -> tuple[ComponentObject, Element] | None:
+        """Return the activity that the text of a behaviour names, and the object that performs it.
+
+        The object is *start*, one around it, or the part to which the path leads.
+        """
+        *parts, name = path.split(".")
+        holder: ComponentObject | None = start
+        if parts:
+            holder = self.find_object(".".join(filter(None, (start.path, *parts))))
+        while holder is not None:
+            scopes = (*holder.list_family(self.graph), *self.graph.ancestors(holder.type_))
+            for scope in scopes:
+                for activity in self.graph.owned(scope):
+                    if activity.kind is Kind.ACTIVITY and activity.name == name and name:
+                        return holder, activity
+            holder = None if parts else holder.owner
+        return None
+
     def context(self, object_: ComponentObject) -> Context:
         """Return what names mean inside an object."""
         if object_.path not in self._contexts:

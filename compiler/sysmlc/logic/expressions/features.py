@@ -1,4 +1,4 @@
-"""Features as variables: the domain that the model declares, and the initial value."""
+"""Features as variables: the domain that the model declares, its values, and the initial one."""
 
 from collections.abc import Mapping
 
@@ -7,13 +7,15 @@ from msgspec.structs import replace
 
 from sysmlc.ir import AttrValue, Element, Graph, Kind, query
 from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, IntegerDomain
-from sysmlc.logic.domains import contains
+from sysmlc.logic.domains import contains, describe
+from sysmlc.logic.expressions.elaboration import ElaborationError, Fault
 from sysmlc.logic.expressions.expression import (
     Expression,
     ExpressionError,
     Name,
     last_name,
     name_of,
+    print_expression,
 )
 from sysmlc.logic.expressions.expression import Literal as LiteralExpression
 from sysmlc.logic.expressions.named_elements import literals_of
@@ -123,6 +125,22 @@ def _assume_domain(
     if isinstance(default, int) and not isinstance(default, bool):
         low, high = min(low, default), max(high, default)
     return IntegerDomain(low, high)
+
+
+def check_assignable(value_domain: Domain, target_domain: Domain, value: Expression) -> None:
+    """Raise ElaborationError if no value of the first domain belongs to the second."""
+    text = print_expression(value)
+    if type(value_domain) is not type(target_domain):
+        message = f"'{text}' is {describe(value_domain)}, not {describe(target_domain)}"
+        raise ElaborationError(Fault.TYPE, message, text, value.offset)
+    if isinstance(value_domain, EnumerationDomain) and value_domain != target_domain:
+        message = f"'{text}' is one of {describe(value_domain)}, not of {describe(target_domain)}"
+        raise ElaborationError(Fault.TYPE, message, text, value.offset)
+    lower_bounds = getattr(value_domain, "low", 0), getattr(target_domain, "low", 0)
+    upper_bounds = getattr(value_domain, "high", 0), getattr(target_domain, "high", 0)
+    if lower_bounds[0] > upper_bounds[1] or upper_bounds[0] < lower_bounds[1]:
+        message = f"{text} is outside {describe(target_domain)}"
+        raise ElaborationError(Fault.OUTSIDE, message, text, value.offset)
 
 
 # -- strings -----------------------------------------------------------------------------------

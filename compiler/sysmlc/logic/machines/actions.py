@@ -6,8 +6,7 @@ from typing import NamedTuple
 from sysmlc.diagnostics import Rule, Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph
 from sysmlc.logic import formula as f
-from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, Owner, Variable
-from sysmlc.logic.domains import describe
+from sysmlc.logic.contract import BooleanDomain, Domain, Owner, Variable
 from sysmlc.logic.expressions.context import Context, find_literal, make_symbol, report_range
 from sysmlc.logic.expressions.elaboration import (
     ELSEWHERE_ADVICE,
@@ -32,12 +31,13 @@ from sysmlc.logic.expressions.expression import (
     print_statement,
     walk_expression,
 )
-from sysmlc.logic.expressions.features import Feature
+from sysmlc.logic.expressions.features import Feature, check_assignable
 from sysmlc.logic.expressions.named_elements import describe_feature_elsewhere
 from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
-from sysmlc.logic.feature_writes import SHARED, Sharing, find_label
+from sysmlc.logic.feature_writes import SHARED, Sharing, find_label, read_assignments
 from sysmlc.logic.identifiers import Names
 from sysmlc.logic.machines.machine import Action, Assign, Raise
+from sysmlc.logic.machines.supported_constructs import find_instant_steps, find_target
 from sysmlc.support.suggestions import find_similar
 
 NOT_UNDERSTOOD = rule(
@@ -257,17 +257,33 @@ def _read_behaviour(reading: ReadingContext, behaviour: Element, edge: Edge) -> 
     body = behaviour.attrs.get("body")
     if not isinstance(body, str) or not body.strip():
         name = behaviour.name or f"{edge}_{(reading.graph.owner(behaviour) or behaviour).name}"
-        return [
-            Raise(reading.output_for(f"behaviour {behaviour.id}", name, behaviour.id), behaviour.id)
-        ]
+        output = reading.output_for(f"behaviour {behaviour.id}", name, behaviour.id)
+        return [Raise(output, behaviour.id), *_read_steps(reading, behaviour)]
     try:
         statements = parse_effect(body)
     except ExpressionError:
         reason = "it is not an assignment, call or send"
         return [_read_opaque_effect(reading, body, behaviour, reason)]
     texts = [body] if len(statements) == 1 else map(print_statement, statements)
-    pairs = zip(statements, texts, strict=True)
-    return [_read_statement(reading, statement, text, behaviour) for statement, text in pairs]
+    actions = [
+        _read_statement(reading, *pair, behaviour) for pair in zip(statements, texts, strict=True)
+    ]
+    return [*actions, *_read_steps(reading, behaviour)]
+
+
+def _read_steps(reading: ReadingContext, behaviour: Element) -> list[Action]:
+    """Return the assignments of an activity within the step, if formulas describe all of them."""
+    graph, features = reading.graph, reading.context.features
+    steps = find_instant_steps(graph, behaviour, reading.sharing.classifier)
+    pairs = [(assignment, step) for step in steps for assignment in read_assignments(step)]
+    for assignment, step in pairs:
+        name = find_target(graph, assignment, step, features, reading.find_symbol)
+        if not name or reading.sharing.find_other_writer(features[name].element) is not None:
+            return []
+    return [
+        _read_assignment(reading, assignment, print_statement(assignment), step)
+        for assignment, step in pairs
+    ]
 
 
 def _read_opaque_effect(
@@ -382,19 +398,3 @@ def _report_target(
         advice=fault.advice,
     )
     return Raise(output, behaviour.id)
-
-
-def check_assignable(value_domain: Domain, target_domain: Domain, value: Expression) -> None:
-    """Raise ElaborationError if no value of the first domain belongs to the second."""
-    text = print_expression(value)
-    if type(value_domain) is not type(target_domain):
-        message = f"'{text}' is {describe(value_domain)}, not {describe(target_domain)}"
-        raise ElaborationError(Fault.TYPE, message, text, value.offset)
-    if isinstance(value_domain, EnumerationDomain) and value_domain != target_domain:
-        message = f"'{text}' is one of {describe(value_domain)}, not of {describe(target_domain)}"
-        raise ElaborationError(Fault.TYPE, message, text, value.offset)
-    lower_bounds = getattr(value_domain, "low", 0), getattr(target_domain, "low", 0)
-    upper_bounds = getattr(value_domain, "high", 0), getattr(target_domain, "high", 0)
-    if lower_bounds[0] > upper_bounds[1] or upper_bounds[0] < lower_bounds[1]:
-        message = f"{text} is outside {describe(target_domain)}"
-        raise ElaborationError(Fault.OUTSIDE, message, text, value.offset)

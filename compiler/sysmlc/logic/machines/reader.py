@@ -89,6 +89,7 @@ def read_machine(
     """
     if not is_supported(graph, machine, sink):
         return None
+    classifier = classifier or find_context_classifier(graph, machine)
     sharing = Sharing(graph, machine, writers, classifier)
     draft = _start_draft(graph, sharing, sink, options or MachineOptions())
     top = read_regions(draft, machine, "", machine)
@@ -127,8 +128,7 @@ def _start_draft(
     graph: Graph, sharing: Sharing, sink: Sink, options: MachineOptions
 ) -> MachineDraft:
     machine = sharing.machine
-    classifier = sharing.classifier or find_context_classifier(graph, machine)
-    context = context_of(graph, classifier, options.assumed_range, machine)
+    context = context_of(graph, sharing.classifier, options.assumed_range, machine)
     reserved = [*context.variables.values(), *context.features]
     # No auxiliary variable may have the name of a property, which ``find_symbol`` finds first.
     names = Names("event", NO_EVENT, *reserved)

@@ -1,10 +1,24 @@
 """Check that contracts can be derived from all constructs of a state machine.
 
 The check runs before the machine is read, so that a diagnostic names every unsupported construct.
+The module also finds the activities of assignments that a machine performs within a step.
 """
 
+import re
+from collections.abc import Collection, Iterator, Mapping
+
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.ir import Edge, Element, Graph, Kind, list_items
+from sysmlc.ir import Edge, Element, Graph, Kind, list_items, query
+from sysmlc.logic.expressions.elaboration import ElaborationError, Scope, elaborate_value
+from sysmlc.logic.expressions.expression import (
+    Assignment,
+    ExpressionError,
+    name_of,
+    walk_expression,
+)
+from sysmlc.logic.expressions.features import Feature, check_assignable
+from sysmlc.logic.expressions.parsing import parse_expression
+from sysmlc.logic.feature_writes import WriterIndex, read_assignments, takes_one_step
 
 NOT_DERIVED = rule(
     "SM420",
@@ -234,3 +248,134 @@ def find_initial(graph: Graph, region: Element) -> Element | None:
     """Return the first initial pseudostate of *region*."""
     owned = graph.owned(region)
     return next((vertex for vertex in owned if vertex.subkind == "initial"), None)
+
+
+# -- activities within a step --------------------------------------------------------------------
+
+_INSTANT = (Edge.ENTRY, Edge.EXIT, Edge.EFFECT)
+_UNSEEN = (Edge.CALLS, Edge.METHOD, Edge.SPECIALIZES, Edge.REDEFINES, Edge.SUBSETS)
+"""Edges from what may perform an activity in a way that no state or transition names."""
+_WORD = re.compile(r"[^\W\d]\w*")
+
+
+def find_instant_steps(
+    graph: Graph, behaviour: Element, classifier: Element | None
+) -> tuple[Element, ...]:
+    """Return the actions that an entry, exit or effect performs within the step, in their order.
+
+    The behaviour is drawn as a chain of assignments, or its text names such an activity of
+    *classifier*, the type of the object that has the machine. The result is empty for others.
+    """
+    activity = behaviour if graph.owned(behaviour) else None
+    if activity is None and classifier is not None:
+        activity = _find_named_activity(graph, behaviour, classifier)
+    if activity is None or activity.kind is not Kind.ACTIVITY or activity.attrs.get("body"):
+        return ()
+    actions = query.list_chained_actions(graph, activity)
+    is_instant = all(takes_one_step(a) and _shares_names(graph, a, behaviour) for a in actions)
+    return actions if is_instant else ()
+
+
+def _shares_names(graph: Graph, step: Element, behaviour: Element) -> bool:
+    """Whether the features that a step names are the same for a behaviour of the machine."""
+    index = WriterIndex(graph)
+    paths = {
+        ".".join(names[:end])
+        for assignment in read_assignments(step)
+        for names in (name.split(".") for name in _list_names(assignment))
+        for end in range(1, len(names) + 1)
+    }
+    return all(
+        _is_same_feature(
+            graph, index.resolve_target(step, path), index.resolve_target(behaviour, path)
+        )
+        for path in paths
+    )
+
+
+def _is_same_feature(graph: Graph, element: Element | None, special: Element | None) -> bool:
+    """Whether two features are one, or the second redefines the first; or neither exists."""
+    redefined = [] if special is None else query.redefined_features(graph, special)
+    return element == special or element in redefined
+
+
+def _list_names(assignment: Assignment) -> list[str]:
+    """Return the names in an assignment, the target first."""
+    parts = (assignment.target, *walk_expression(assignment.value))
+    return [name_of(part) or "" for part in parts]
+
+
+def _find_named_activity(graph: Graph, behaviour: Element, classifier: Element) -> Element | None:
+    """Return the only element of the name that is the text of a behaviour, if it is an activity.
+
+    The scopes are those around the behaviour, from the inside out, and the classifier with its
+    generals.
+    """
+    try:
+        name = name_of(parse_expression(str(behaviour.attrs.get("body", ""))))
+    except ExpressionError:
+        return None
+    family = (classifier, *query.generals(graph, classifier))
+    for scope in graph.ancestors(behaviour):
+        owners = family if scope in family else (scope,)
+        members = [m for owner in owners for m in graph.owned(owner) if m.name == name]
+        if members or scope in family:
+            is_only = len(members) == 1 and members[0].kind is Kind.ACTIVITY
+            return members[0] if is_only and name else None
+    return None
+
+
+def find_target(
+    graph: Graph,
+    assignment: Assignment,
+    step: Element,
+    features: Mapping[str, Feature],
+    scope: Scope,
+) -> str:
+    """Return the name of the feature that a step assigns, or "" if no formula describes it.
+
+    *features* and *scope* are the names of the machine, which must mean the same in the step.
+    """
+    target = name_of(assignment.target) or ""
+    feature = features.get(target)
+    if feature is None or feature.domain is None or feature.is_constant:
+        return ""
+    try:
+        value = elaborate_value(assignment.value, scope, feature.domain)
+        check_assignable(value.domain, feature.domain, assignment.value)
+    except ElaborationError:
+        return ""
+    index = WriterIndex(graph)
+    is_same = all(
+        _is_same_feature(graph, index.resolve_target(step, name), features[name].element)
+        for name in _list_names(assignment)
+        if name in features
+    )
+    return target if is_same else ""
+
+
+def has_unknown_performer(graph: Graph, activity: Element, machines: Collection[str]) -> bool:
+    """Whether something may perform an activity that is not the owner or of a known kind.
+
+    Known are states and transitions with an id in *machines*, and all behaviours whose text is the
+    name of the activity.
+    """
+    owners = graph.sources(activity, Edge.CLASSIFIER_BEHAVIOR)
+    users = [user for edge in (*_INSTANT, Edge.DO) for user in graph.sources(activity, edge)]
+    return (
+        any(graph.sources(activity, edge) for edge in _UNSEEN)
+        or any(owner != graph.owner(activity) for owner in owners)
+        or any(user.id not in machines for user in users)
+        or any(
+            activity.name in _WORD.findall(body) and (is_action or body != activity.name)
+            for body, is_action in _iter_bodies(graph)
+        )
+    )
+
+
+def _iter_bodies(graph: Graph) -> Iterator[tuple[str, bool]]:
+    """Yield the texts of behaviours and actions, each with whether it is the text of an action."""
+    for element in graph.of_kind(Kind.ACTIVITY, Kind.ACTION):
+        body = element.attrs.get("body")
+        if isinstance(body, str):
+            yield body.strip(), element.kind is Kind.ACTION

@@ -15,14 +15,13 @@ from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.expressions.context import describe_missing_range
 from sysmlc.logic.expressions.elaboration import ElaborationError, Fault
 from sysmlc.logic.expressions.expression import Expression
-from sysmlc.logic.expressions.features import Feature
+from sysmlc.logic.expressions.features import Feature, check_assignable
 from sysmlc.logic.expressions.named_elements import find_named_values
 from sysmlc.logic.feature_writes import FeatureWrite, WriterIndex, find_label, iter_writes
 from sysmlc.logic.machines.actions import (
     IS_CONSTANT,
     NOT_ASSIGNABLE,
     RULE_OF_FAULT,
-    check_assignable,
 )
 from sysmlc.logic.machines.moves import SATURATES
 from sysmlc.passes.activities.inputs import Scope

@@ -28,12 +28,11 @@ from sysmlc.logic.expressions.elaboration import (
     elaborate_value,
 )
 from sysmlc.logic.expressions.expression import Expression, ExpressionError
-from sysmlc.logic.expressions.features import Feature
+from sysmlc.logic.expressions.features import Feature, check_assignable
 from sysmlc.logic.expressions.named_elements import describe_feature_elsewhere
 from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.formula import Formula, const, var, variables
 from sysmlc.logic.identifiers import Names, identifier, make_unique
-from sysmlc.logic.machines.actions import check_assignable
 from sysmlc.passes.activities import rules
 
 _CLASSIFIERS = (Kind.CLASS, Kind.COMPONENT, Kind.DATA_TYPE, Kind.INTERFACE, Kind.ACTOR)

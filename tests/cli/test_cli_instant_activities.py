@@ -1,0 +1,178 @@
+"""Entries, exits and effects perform an activity of assignments within the step of the machine."""
+
+import json
+
+import pytest
+
+HEAD = """package P {
+  private import ScalarValues::*;
+  item def Go;
+  %s
+  part def B %s
+    attribute n : Integer := 0;
+    assert constraint { n >= 0 and n <= 3 }
+    %s
+  }
+  requirement def R { subject it : B; %s }
+}
+"""
+FLAGS = "attribute a : Boolean := false; attribute b : Boolean := false;"
+INIT = """action init {
+    first start; then action one assign a := true; then action two assign b := true; then done; }"""
+CHAIN = "action { first start; then assign a := %s; then assign b := %s; then done; }"
+MACHINE = """exhibit state M { entry; then S; state S; state T { %s }
+    transition first S accept Go %s then T; transition first T accept Go then S; }"""
+
+
+@pytest.fixture
+def check(workspace, all_passes):
+    """Return a function from a block and formulas to verdicts about them, and codes of findings."""
+
+    def run(block, *formulas, others="", general=""):
+        head = ":> A {" if general else f"{{ {FLAGS}"
+        texts = (f'require constraint {{ language "ltl" /* {text} */ }}' for text in formulas)
+        workspace.write("model.sysml", HEAD % (others + general, head, block, " ".join(texts)))
+        result = workspace.sysmlc("contracts", "check", "--format", "json", "model.sysml")
+        verdicts = [entry["verdict"] for entry in json.loads(result.stdout)["requirements"]]
+        text = workspace.sysmlc("contracts", "check", "model.sysml").stderr
+        return verdicts, {code for code in ("SM558", "SM562") if code in text}
+
+    return run
+
+
+def test_entries_perform_chains_of_assignments(check):
+    block = f"""{INIT} exhibit state M {{
+        entry; then S; state S; state T {{ entry init; }}
+        state Q {{ entry action {{ assign a := false; then assign b := true; }} }}
+        state Z {{ entry {CHAIN % ("false", "false")} }}
+        transition first S accept Go then T; transition first T accept Go then Q;
+        transition first Q accept Go then Z; transition first Z accept Go then S; }}"""
+    formulas = ("G (state=T -> a & b)", "G (state=Q -> !a & b)", "G (state=Z -> !a & !b)")
+    assert check(block, *formulas) == (["holds"] * 3, set())
+
+
+@pytest.mark.parametrize("behaviour", ["init", CHAIN % ("true", "true")])
+@pytest.mark.parametrize(
+    ("place", "formula"),
+    [("entry", "G (state=T -> a & b)"), ("exit", "G (state=T & event=Go -> X (a & b))")],
+)
+def test_a_behaviour_of_a_state_is_described(check, behaviour, place, formula):
+    block = INIT + MACHINE % (f"{place} {behaviour}" + ";" * (behaviour == "init"), "")
+    assert check(block, formula, "G !a") == (["holds", "broken"], set())
+
+
+@pytest.mark.parametrize("behaviour", ["init", CHAIN % ("true", "true")])
+def test_an_effect_is_described(check, behaviour):
+    block = INIT * (behaviour == "init") + MACHINE % ("", f"do {behaviour}")
+    formulas = ("G (state=T -> a & b)", "G (state=S & event=none -> X (a <-> b))", "G !a")
+    assert check(block, *formulas) == (["holds", "holds", "broken"], set())
+
+
+def test_the_entry_of_the_first_state_is_described(check):
+    block = (
+        INIT + f"exhibit state M {{ entry; then S; state S {{ entry {CHAIN % ('true', 'a')} }} }}"
+    )
+    assert check(block, "a", "G b") == (["holds", "holds"], set())
+
+
+def test_the_later_of_two_assignments_wins(check):
+    chain = "action { first start; then assign n := 1; then assign n := n + 1; then done; }"
+    block = MACHINE % (f"entry {chain}", "do assign n := 3")
+    assert check(block, "G (state=T -> n = 2)") == (["holds"], set())
+
+
+GENERAL = """part def A { attribute a : Boolean := false; attribute b : Boolean := false;
+    %s } """
+
+
+@pytest.mark.parametrize("features", ["", "attribute :>> a;"])
+def test_an_inherited_activity_assigns_the_features_of_the_object(check, features):
+    block = features + MACHINE % ("entry init;", "")
+    verdicts = check(block, "G (state=T -> a)", "G (state=T -> b)", general=GENERAL % INIT)
+    assert verdicts == (["holds", "holds"], set())
+
+
+def test_a_redefined_activity_is_not_described(check):
+    block = "action :>> init { first start; then assign a := false; then done; }"
+    block += MACHINE % ("entry init;", "")
+    verdicts, _ = check(block, "G !a", "G (state=T -> a)", general=GENERAL % INIT)
+    assert "holds" not in verdicts
+
+
+def test_a_do_behaviour_may_perform_the_activity_too(check):
+    """Its steps take time, so that the second assignment is seen when the state is left."""
+    clear = "action { assign a := false; then assign b := false; }"
+    block = f"""{INIT} exhibit state M {{
+        entry; then S; state S {{ entry {clear} }} state T {{ entry init; exit {clear} }}
+        state D {{ do init; exit action {{ assign n := 1; }} }}
+        transition first S accept Go then T; transition first T accept Go then D;
+        transition first D then S; }}"""
+    formulas = (
+        "G (state=T -> a)",
+        "G (state=T -> b)",
+        "G (finished(one) -> X a)",
+        "G (state=D -> !b)",
+        "G (running(one) -> !a)",
+        "G (state=D -> !a)",
+    )
+    assert check(block, *formulas) == (["holds"] * 5 + ["broken"], set())
+
+
+def test_the_owner_may_perform_the_activity_too(check):
+    block = f"perform init; {INIT} {MACHINE % ('entry init;', 'do assign a := false')}"
+    verdicts, _ = check(block, "G (state=T & !running(init) -> a)", "G (state=S -> !b)", "F b")
+    assert verdicts == ["holds", "broken", "holds"]
+
+
+CELL = """part def Cell { attribute a : Boolean := false;
+    action init { first start; then action set assign a := true; then done; } }"""
+
+
+def test_an_activity_of_a_part_is_not_described(check):
+    block = "part c : Cell;" + MACHINE % ("entry c.init;", "")
+    assert check(block, "G !(c.a)", others=CELL) == (["not-decided"], {"SM562"})
+
+
+def test_an_activity_of_the_owner_is_not_described_for_a_part(check):
+    cell = f"part def Cell {{ {MACHINE % ('entry init;', '')} }}"
+    assert check(f"part c : Cell; {INIT}", "G !a", others=cell) == (["not-decided"], {"SM562"})
+
+
+@pytest.mark.parametrize(
+    "steps",
+    [
+        "action x assign a := true; action y assign a := false; first x then y; first y then x;",
+        "action x assign a := true; action y assign a := false;",
+        "first start; then fork f; then action x assign a := true; first f then y; "
+        "action y assign a := false;",
+        "first start; then assign a := true; then assign b := r > 1.5; then done;",
+    ],
+)
+def test_another_activity_is_not_described(check, steps):
+    block = "attribute r : Real;" + MACHINE % (f"entry action {{ {steps} }}", "")
+    verdicts, _ = check(block, "G !a", "G (state=T -> a)")
+    assert "holds" not in verdicts
+
+
+def test_an_attribute_of_the_activity_hides_that_of_the_object(check):
+    steps = "attribute a : Boolean := false; first start; then assign a := true; then done;"
+    block = MACHINE % (f"entry action {{ {steps} }}", "")
+    assert check(block, "G !a", "G !b")[0] == ["holds", "holds"]
+
+
+def test_an_attribute_of_the_machine_hides_that_of_the_object(check):
+    machine = MACHINE.replace("entry;", "attribute a : Boolean := false; entry;", 1)
+    verdicts, _ = check(INIT + machine % ("entry init;", ""), "G (state=T -> b)", "G !b")
+    assert "holds" not in verdicts
+
+
+def test_a_text_with_an_undescribed_assignment_is_not_decided(check):
+    text = "entry action { assign a := true; then assign b := r > 1.5; }"
+    block = "attribute r : Real;" + MACHINE % (text, "")
+    assert check(block, "G !b")[0] == ["not-decided"]
+
+
+def test_an_action_that_calls_the_activity_makes_it_undecided(check):
+    call = "perform action work { first start; then action x; then perform init; then done; }"
+    block = INIT + call + MACHINE % ("entry init;", "")
+    assert check(block, "G (!a | !b)")[0] == ["not-decided"]
