@@ -186,7 +186,7 @@ SET_Y = "action set { first start then s; action s assign y := true; then done; 
 
 def test_what_an_entry_performs_may_change_the_initial_value(decide):
     block = FLAGS + SET_Y + "exhibit state M { entry; then S; state S { entry set; } }"
-    assert decide(block, "!y", "G (x -> X x)") == ["not-decided", "holds"]
+    assert decide(block, "!y", "y", "G (x -> X x)") == ["broken", "holds", "holds"]
 
 
 WAIT_SET = "action set { first start; then action w; then action s assign y := true; then done; }"

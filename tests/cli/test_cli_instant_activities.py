@@ -124,6 +124,13 @@ def test_the_owner_may_perform_the_activity_too(check):
     assert verdicts == ["holds", "broken", "holds"]
 
 
+def test_another_block_may_have_an_activity_of_the_same_name(check):
+    other = f"part def Other {{ {FLAGS} {INIT} {MACHINE % ('entry init;', '')} }}"
+    block = INIT + MACHINE % ("entry init;", "")
+    formulas = ("G (state=T -> a)", "G (state=S & event=none & !a -> X !a)")
+    assert check(block, *formulas, others=other) == (["holds", "holds"], set())
+
+
 CELL = """part def Cell { attribute a : Boolean := false;
     action init { first start; then action set assign a := true; then done; } }"""
 
@@ -176,3 +183,62 @@ def test_an_action_that_calls_the_activity_makes_it_undecided(check):
     call = "perform action work { first start; then action x; then perform init; then done; }"
     block = INIT + call + MACHINE % ("entry init;", "")
     assert check(block, "G (!a | !b)")[0] == ["not-decided"]
+
+
+UML = """<?xml version="1.0" encoding="UTF-8"?>
+<xmi:XMI xmi:version="20131001" xmlns:xmi="http://www.omg.org/spec/XMI/20131001"
+    xmlns:uml="http://www.eclipse.org/uml2/5.0.0/UML"
+    xmlns:sysml="http://www.eclipse.org/papyrus/sysml/1.6/SysML/Requirements">
+<uml:Model xmi:id="m" name="P">
+  <packagedElement xmi:type="uml:Signal" xmi:id="go" name="Go"/>
+  <packagedElement xmi:type="uml:SignalEvent" xmi:id="event" name="GoEvent" signal="go"/>
+  <packagedElement xmi:type="uml:Class" xmi:id="block" name="B" classifierBehavior="machine">
+    <ownedAttribute xmi:type="uml:Property" xmi:id="a" name="a">
+      <type xmi:type="uml:PrimitiveType"
+        href="pathmap://UML_LIBRARIES/UMLPrimitiveTypes.library.uml#Boolean"/>
+      <defaultValue xmi:type="uml:LiteralBoolean" xmi:id="default" value="false"/>
+    </ownedAttribute>
+    <ownedBehavior xmi:type="uml:StateMachine" xmi:id="machine" name="M">
+      <region xmi:type="uml:Region" xmi:id="region" name="r">
+        <subvertex xmi:type="uml:Pseudostate" xmi:id="initial"/>
+        <subvertex xmi:type="uml:State" xmi:id="S" name="S"/>
+        <subvertex xmi:type="uml:State" xmi:id="T" name="T">
+          <entry xmi:type="uml:Activity" xmi:id="setup" name="setup">
+            <edge xmi:type="uml:ControlFlow" xmi:id="f0" source="n0" target="n1">
+              <guard xmi:type="uml:LiteralBoolean" xmi:id="guard" value="true"/>
+              <weight xmi:type="uml:LiteralInteger" xmi:id="weight" value="WEIGHT"/>
+            </edge>
+            <edge xmi:type="uml:ControlFlow" xmi:id="f1" source="n1" target="n2"/>
+            <node xmi:type="uml:InitialNode" xmi:id="n0"/>
+            <node xmi:type="uml:OpaqueAction" xmi:id="n1" name="one"><body>a := true</body></node>
+            <node xmi:type="uml:ActivityFinalNode" xmi:id="n2"/>
+          </entry>
+        </subvertex>
+        <transition xmi:type="uml:Transition" xmi:id="t0" source="initial" target="S"/>
+        <transition xmi:type="uml:Transition" xmi:id="t1" source="S" target="T">
+          <trigger xmi:type="uml:Trigger" xmi:id="trigger" event="event"/>
+        </transition>
+      </region>
+    </ownedBehavior>
+  </packagedElement>
+  <packagedElement xmi:type="uml:Class" xmi:id="required" name="R">
+    <ownedRule xmi:type="uml:Constraint" xmi:id="rule">
+      <specification xmi:type="uml:OpaqueExpression" xmi:id="formula">
+        <language>LTL</language><body>G (state=T -> a)</body>
+      </specification>
+    </ownedRule>
+  </packagedElement>
+  <packagedElement xmi:type="uml:Abstraction" xmi:id="link" client="block" supplier="required"/>
+</uml:Model>
+<sysml:Requirement xmi:id="requirement" base_Class="required" id="1" text="x"/>
+<sysml:Satisfy xmi:id="satisfy" base_Abstraction="link"/>
+</xmi:XMI>
+"""
+
+
+@pytest.mark.parametrize(("weight", "verdict"), [("1", "holds"), ("2", "not-decided")])
+def test_an_activity_of_opaque_actions_in_xmi_is_described(workspace, all_passes, weight, verdict):
+    workspace.write("model.uml", UML.replace("WEIGHT", weight))
+    result = workspace.sysmlc("contracts", "check", "--format", "json", "model.uml")
+    (requirement,) = json.loads(result.stdout)["requirements"]
+    assert requirement["verdict"] == verdict

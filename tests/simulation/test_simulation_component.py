@@ -273,8 +273,56 @@ MODELS = list_models()
 @pytest.mark.skipif(not MODELS, reason="SYSMLC_CORPUS names no folder")
 @pytest.mark.parametrize("model", MODELS, ids=lambda model: model.path.stem)
 def test_every_step_of_the_player_is_a_step_of_the_derived_relation(model):
-    graph = compile_model(model.path).graph
-    block = next(element for element in graph if graph.qualified_name(element) == model.component)
+    assert_steps_agree(model.path, model.component)
+
+
+WITHIN_STEP = """package P {
+private import ScalarValues::*;
+item def Go;
+part def Cell {
+    attribute a : Boolean := false;
+    attribute b : Boolean := false;
+    action init { first start; then action one assign a := not b; then action two assign b := a; }
+    exhibit state M {
+        entry; then Clear;
+        state Clear { entry action { first start; then assign a := false; then assign b := a; } }
+        state Entry { entry init; exit init; }
+        state Do { do init; }
+        transition first Clear accept Go then Entry;
+        transition first Entry accept Go do init then Do;
+        transition first Do accept Go then Clear;
+    }
+}
+}
+"""
+
+
+def test_the_player_and_the_relation_agree_about_activities_within_a_step(tmp_path):
+    path = tmp_path / "model.sysml"
+    path.write_text(WITHIN_STEP, "utf-8")
+    assert_steps_agree(path, "P::Cell", rounds=40)
+
+
+def test_an_entry_performs_an_activity_within_the_step(play):
+    scenario = """component: P::Cell
+steps:
+  - inputs: {event: Go}
+    expect: {state: Clear, a: false, run_init: false}
+  - expect: {state: Entry, a: true, b: true, run_init: false}
+  - inputs: {event: Go}
+    expect: {state: Entry, a: true, b: true}
+  - expect: {state: Do, a: true, b: true, run_init: true}
+  - expect: {state: Do, a: false, b: true, run_init: true}
+  - expect: {state: Do, a: false, b: false, run_init: false}
+"""
+    assert play(WITHIN_STEP, scenario).passed
+    assert not play(WITHIN_STEP.replace("entry init", "entry"), scenario).passed
+
+
+def assert_steps_agree(path, component, rounds=5):
+    """Play a component at random; its steps have to satisfy the formulas of its behaviour."""
+    graph = compile_model(path).graph
+    block = next(element for element in graph if graph.qualified_name(element) == component)
     player = open_component(graph, block)
     assert player is not None
     random = Random(0)
@@ -300,7 +348,7 @@ def test_every_step_of_the_player_is_a_step_of_the_derived_relation(model):
             for row in rows
         )
 
-    for _ in range(5):
+    for _ in range(rounds):
         now = random.choice(player.initial(draw()))
         assert all(evaluate.is_true(formula, now) for formula in starts)
         for _ in range(12):

@@ -21,14 +21,14 @@ from sysmlc.logic.components.signals import check_signal_names
 from sysmlc.logic.composition.structure import find_drawn_activity
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Owner, Source, Variable
 from sysmlc.logic.expressions.context import context_of
-from sysmlc.logic.expressions.expression import ExpressionError, last_name, name_of
+from sysmlc.logic.expressions.expression import ExpressionError, name_of
 from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.feature_writes import WriterIndex
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.identifiers import Names, identifier
 from sysmlc.logic.machines.machine import Machine, Vertex, element_id
 from sysmlc.logic.machines.reader import MachineOptions, find_context_classifier
-from sysmlc.logic.machines.supported_constructs import find_instant_steps
+from sysmlc.logic.machines.supported_constructs import find_instant_steps, may_name
 
 _LONG_LIMITS = {
     Edge.ENTRY: " beside substates or a time-out",
@@ -383,8 +383,7 @@ class Component:
         """Yield the actions that call an activity, and the bodies of states that name it."""
         yield from self.graph.sources(activity, Edge.CALLS)
         for behaviour in self.graph.of_kind(Kind.ACTIVITY):
-            body = behaviour.attrs.get("body")
-            if isinstance(body, str) and last_name(body) == activity.name:
+            if may_name(self.graph, behaviour, activity):
                 yield behaviour
 
     def _add_offered(

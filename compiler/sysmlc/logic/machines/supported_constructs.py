@@ -5,18 +5,20 @@ The module also finds the activities of assignments that a machine performs with
 """
 
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, list_items, query
-from sysmlc.logic.expressions.elaboration import ElaborationError, Scope, elaborate_value
+from sysmlc.logic.expressions.context import Context, find_literal, make_symbol
+from sysmlc.logic.expressions.elaboration import ElaborationError, Symbol, elaborate_value
 from sysmlc.logic.expressions.expression import (
     Assignment,
     ExpressionError,
+    last_name,
     name_of,
     walk_expression,
 )
-from sysmlc.logic.expressions.features import Feature, check_assignable
+from sysmlc.logic.expressions.features import check_assignable
 from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.feature_writes import WriterIndex, read_assignments, takes_one_step
 
@@ -253,7 +255,8 @@ def find_initial(graph: Graph, region: Element) -> Element | None:
 # -- activities within a step --------------------------------------------------------------------
 
 _INSTANT = (Edge.ENTRY, Edge.EXIT, Edge.EFFECT)
-_UNSEEN = (Edge.CALLS, Edge.METHOD, Edge.SPECIALIZES, Edge.REDEFINES, Edge.SUBSETS)
+_HARMLESS = {Edge.OWNS, Edge.FEATURE, Edge.CLASSIFIER_BEHAVIOR, Edge.ALLOCATED_TO, Edge.SATISFIES}
+_UNSEEN = [edge for edge in Edge if edge not in {*_HARMLESS, *_INSTANT, Edge.DO}]
 """Edges from what may perform an activity in a way that no state or transition names."""
 _WORD = re.compile(r"[^\W\d]\w*")
 
@@ -325,23 +328,33 @@ def _find_named_activity(graph: Graph, behaviour: Element, classifier: Element) 
     return None
 
 
-def find_target(
-    graph: Graph,
-    assignment: Assignment,
-    step: Element,
-    features: Mapping[str, Feature],
-    scope: Scope,
-) -> str:
+def may_name(graph: Graph, behaviour: Element, activity: Element) -> bool:
+    """Whether the text of a behaviour is a path to an activity, or its name where it is visible."""
+    body = str(behaviour.attrs.get("body", ""))
+    owner = graph.owner(activity)
+    if body != activity.name or owner is None or owner.kind not in query.CLASSIFIERS:
+        return bool(body) and last_name(body) == activity.name
+    return bool(body) and any(
+        query.conforms(graph, scope, owner) or query.conforms(graph, owner, scope)
+        for scope in graph.ancestors(behaviour)
+    )
+
+
+def find_target(graph: Graph, assignment: Assignment, step: Element, context: Context) -> str:
     """Return the name of the feature that a step assigns, or "" if no formula describes it.
 
-    *features* and *scope* are the names of the machine, which must mean the same in the step.
+    The names in *context*, that of the machine, must mean the same in the step.
     """
-    target = name_of(assignment.target) or ""
+    features, target = context.features, name_of(assignment.target) or ""
     feature = features.get(target)
     if feature is None or feature.domain is None or feature.is_constant:
         return ""
+
+    def find_symbol(name: str) -> Symbol | None:
+        return make_symbol(features[name]) if name in features else find_literal(context, name)
+
     try:
-        value = elaborate_value(assignment.value, scope, feature.domain)
+        value = elaborate_value(assignment.value, find_symbol, feature.domain)
         check_assignable(value.domain, feature.domain, assignment.value)
     except ElaborationError:
         return ""
