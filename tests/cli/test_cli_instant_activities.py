@@ -4,6 +4,9 @@ import json
 
 import pytest
 
+from sysmlc import compile_model
+from sysmlc.logic.contract import Contract, Owner
+
 HEAD = """package P {
   private import ScalarValues::*;
   item def Go;
@@ -49,6 +52,16 @@ def test_entries_perform_chains_of_assignments(check):
         transition first Q accept Go then Z; transition first Z accept Go then S; }}"""
     formulas = ("G (state=T -> a & b)", "G (state=Q -> !a & b)", "G (state=Z -> !a & !b)")
     assert check(block, *formulas) == (["holds"] * 3, set())
+
+
+def test_the_contract_of_the_machine_has_the_assignments_drawn_in_it(tmp_path):
+    path = tmp_path / "model.sysml"
+    block = f"{FLAGS} {MACHINE % ('entry ' + CHAIN % ('true', 'a'), '')}"
+    path.write_text(HEAD % ("", "{", block, ""), "utf-8")
+    graph = compile_model(path).graph
+    (contract,) = (item for item in graph.derived(Contract) if item.component == "P::B")
+    owners = {variable.name: variable.owner for variable in contract.variables}
+    assert owners["a"] is owners["b"] is owners["entry_T"] is Owner.SYSTEM
 
 
 @pytest.mark.parametrize("behaviour", ["init", CHAIN % ("true", "true")])
