@@ -25,7 +25,8 @@ from sysmlc.logic.activities import interpreter as token_game
 from sysmlc.logic.activities.interpreter import BranchPlan
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.activities.token_step import State
-from sysmlc.logic.components.component import Component, Root
+from sysmlc.logic.components.component import Component
+from sysmlc.logic.components.copies import Root
 from sysmlc.logic.components.derivation import ComponentBehaviour, describe_component
 from sysmlc.logic.components.machines import EVENT, PlacedMachine
 from sysmlc.logic.components.objects import ComponentError

@@ -15,8 +15,9 @@ from sysmlc.ir import Element, Kind
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
 from sysmlc.logic.activities.token_nodes import Store
+from sysmlc.logic.components.copies import Copy, element_of_copy
 from sysmlc.logic.components.objects import ComponentError, ComponentObject, ObjectTree, Slot
-from sysmlc.logic.components.performances import Copy, Performances, element_of_copy
+from sysmlc.logic.components.performances import Performances
 from sysmlc.logic.composition.structure import find_drawn_activity
 from sysmlc.logic.contract import (
     BooleanDomain,
@@ -31,11 +32,7 @@ from sysmlc.logic.contract import (
     equals,
 )
 from sysmlc.logic.expressions.context import find_literal
-from sysmlc.logic.expressions.elaboration import (
-    ElaborationError,
-    Symbol,
-    elaborate_value,
-)
+from sysmlc.logic.expressions.elaboration import ElaborationError, Symbol, elaborate_value
 from sysmlc.logic.expressions.expression import ExpressionError, name_of
 from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.feature_writes import WriterIndex, find_bound_name

@@ -6,17 +6,17 @@ start an activity that nothing in the component performs.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property, partial
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
 from sysmlc.logic.components.arguments import Arguments
+from sysmlc.logic.components.copies import ActionPath, Caller, Root
 from sysmlc.logic.components.machines import PlacedMachine, find_machines, place_machine
 from sysmlc.logic.components.names import finish_variable
 from sysmlc.logic.components.objects import ComponentError, ComponentObject, ObjectTree
-from sysmlc.logic.components.performances import ActionPath, Caller, Performances
+from sysmlc.logic.components.performances import Performances
 from sysmlc.logic.components.signals import check_signal_names
 from sysmlc.logic.composition.structure import find_drawn_activity
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Owner, Source, Variable
@@ -36,27 +36,6 @@ _LONG_LIMITS = {
 }
 """Where entries and exits that take time are not described."""
 _SENDING = ("send", "broadcast", "call-operation")  # sub-kinds of actions
-
-
-@dataclass(slots=True)
-class Root:
-    """A performance: its node, when it starts and stops, and whether it runs in the first step."""
-
-    id: str
-    start: Formula
-    stop: Formula
-    first: Formula
-    machine: PlacedMachine | None = None
-    state: Vertex | None = None
-    """The state whose entry or do behaviour it is."""
-    after: str = ""
-    """The entry behaviour after which it starts, if that takes time."""
-    service: str = ""
-    """The input with which the environment starts it."""
-    role: Edge = Edge.DO
-    """Whether it is the entry, do or exit behaviour of its state."""
-    over: str = ""
-    """The variable that its state uses to remember its end."""
 
 
 class Component:
@@ -252,7 +231,7 @@ class Component:
         described = {
             (element_id(root.state.id), root.role) for root in self.roots if root.state is not None
         }
-        for element in self.iter_machine_elements(machine):
+        for element in machine.iter_elements(self.graph):
             for edge in (Edge.ENTRY, Edge.EXIT, Edge.EFFECT):
                 if (element.id, edge) in described:
                     continue
@@ -282,15 +261,6 @@ class Component:
         self.instant[activity.id] = steps
         self.performances.performed.add((machine.owner.path, activity.id))
         return True
-
-    def iter_machine_elements(self, machine: PlacedMachine) -> Iterator[Element]:
-        """Yield the states and transitions of a machine, those of its submachines included."""
-        yield from self.graph.subtree(machine.element)
-        for id in machine.machine.vertices:
-            yield self.graph[element_id(id)]
-        for transition in machine.machine.list_transitions():
-            for segment in (transition, *transition.join_partners):
-                yield self.graph[element_id(segment.id)]
 
     def _remember_end(
         self, machine: PlacedMachine, state: Vertex, id: str, entered: Formula, left: Formula

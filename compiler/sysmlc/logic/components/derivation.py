@@ -349,7 +349,7 @@ class _Description:
 
         A performance of the same activity is known if it writes all that the steps assign.
         """
-        machines = {e.id for m in self.machines for e in self.component.iter_machine_elements(m)}
+        machines = {e.id for m in self.machines for e in m.iter_elements(self.graph)}
         counts = Counter((write.root, write.origin) for write in self.performances.writes)
         for id, steps in self.component.instant.items():
             copies = [c.root for c in self.performances.copies.values() if c.activity.id == id]

@@ -215,6 +215,15 @@ class PlacedMachine(Struct, frozen=True):
         )
         return self.rename(f.either(*passes))
 
+    def iter_elements(self, graph: Graph) -> Iterator[Element]:
+        """Yield the states and transitions of the machine, those of its submachines included."""
+        yield from graph.subtree(self.element)
+        for id in self.machine.vertices:
+            yield graph[element_id(id)]
+        for transition in self.machine.list_transitions():
+            for segment in (transition, *transition.join_partners):
+                yield graph[element_id(segment.id)]
+
     def list_do_states(self, tree: ObjectTree) -> Iterator[tuple[Vertex, list[Element]]]:
         """Yield the states with do behaviours."""
         for state in self.machine.list_states():

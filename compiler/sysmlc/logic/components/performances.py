@@ -7,9 +7,7 @@ creates an execution for each call). All performances of a component are one tok
 """
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
 
-from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.ir import Edge, Element, Graph, Kind
@@ -18,17 +16,22 @@ from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.activities.token_nodes import (
     ACTIVITY_REGION,
     Duration,
-    Guard,
     Interruptible,
     NodeKind,
     Store,
     TokenEdge,
     TokenNode,
-    Write,
+)
+from sysmlc.logic.components.copies import (
+    COPY_SEPARATOR,
+    ActionPath,
+    Caller,
+    Copy,
+    PlacedWrite,
+    element_of_copy,
 )
 from sysmlc.logic.components.objects import (
     ComponentError,
-    ComponentObject,
     ObjectTree,
     Slot,
     is_value,
@@ -36,57 +39,7 @@ from sysmlc.logic.components.objects import (
 from sysmlc.logic.composition.naming import rename_variables
 from sysmlc.logic.composition.structure import find_drawn_activity
 from sysmlc.logic.contract import BooleanDomain, Owner, Variable
-from sysmlc.logic.formula import Formula
 from sysmlc.logic.identifiers import identifier
-
-_COPY_SEPARATOR = "\x1e"
-"""Separates the id of a copy from the id of an element in it."""
-
-
-class Caller(Struct, frozen=True):
-    """Where an activity is performed: the object, the call action if any, and the names so far."""
-
-    owner: ComponentObject
-    names: tuple[str, ...]
-    prefix: str = ""
-    """Prefix of the variables; empty for the behaviour whose contract the component has."""
-    call: Element | None = None
-    parent: "Copy | None" = None
-
-
-@dataclass(slots=True)
-class Copy:
-    """One copy of an activity in the token graph: its root node, and its names for variables."""
-
-    id: str
-    activity: Element
-    caller: Caller
-    variables: dict[str, str] = field(default_factory=dict)
-    """Variables of the component by the names in the activity's own token graph."""
-    parameters: dict[str, Variable] = field(default_factory=dict)
-    """Variables of the parameters by name."""
-
-    @property
-    def root(self) -> str:
-        """The node of the performance that contains the copy."""
-        return _COPY_SEPARATOR.join(self.id.split(_COPY_SEPARATOR)[:2])
-
-
-class PlacedWrite(Struct, frozen=True):
-    """A write of a slot by a node of a performance; ``root`` is the id of the performance."""
-
-    slot: Slot
-    node: str
-    values: tuple[tuple[Formula, Formula], ...]
-    origin: str
-    root: str
-
-
-class ActionPath(Struct, frozen=True):
-    """An action with the names of the performances around it, outermost first."""
-
-    names: tuple[str, ...]
-    node: str
 
 
 class Performances:
@@ -164,7 +117,7 @@ class Performances:
     # -- names -------------------------------------------------------------------------------------
 
     def _new_id(self, id: str) -> str:
-        return f"{len(self.copies)}.{len(self.nodes)}{_COPY_SEPARATOR}{id}"
+        return f"{len(self.copies)}.{len(self.nodes)}{COPY_SEPARATOR}{id}"
 
     def name_variable(self, name: str, prefix: str) -> str:
         """Return a new name for a variable of a behaviour."""
@@ -189,7 +142,7 @@ class Performances:
         self.copies[root] = copy
         drawn = find_drawn_activity(self._graph, activity)
         self.performed |= {(caller.owner.path, activity.id), (caller.owner.path, drawn.id)}
-        ids = {node.id: f"{root}{_COPY_SEPARATOR}{node.id}" for node in tokens.nodes}
+        ids = {node.id: f"{root}{COPY_SEPARATOR}{node.id}" for node in tokens.nodes}
         regions = {**ids, ACTIVITY_REGION: root}
         self._name_variables(tokens, copy)
         for node in tokens.nodes:
@@ -200,26 +153,26 @@ class Performances:
             self.edges.append(
                 replace(
                     edge,
-                    id=f"{root}{_COPY_SEPARATOR}{edge.id}",
+                    id=f"{root}{COPY_SEPARATOR}{edge.id}",
                     variable=copy.variables[edge.variable],
                     source=ids[edge.source],
                     target=ids[edge.target],
                     region=regions[edge.region],
-                    guard=_rename_guard(edge.guard, copy),
-                    interrupts=f"{root}{_COPY_SEPARATOR}{edge.interrupts}" * bool(edge.interrupts),
-                    listens=f"{root}{_COPY_SEPARATOR}{edge.listens}" * bool(edge.listens),
+                    guard=copy.rename_guard(edge.guard),
+                    interrupts=f"{root}{COPY_SEPARATOR}{edge.interrupts}" * bool(edge.interrupts),
+                    listens=f"{root}{COPY_SEPARATOR}{edge.listens}" * bool(edge.listens),
                 )
             )
         for group in tokens.interruptibles:
             self.interruptibles.append(
                 replace(
                     group,
-                    id=f"{root}{_COPY_SEPARATOR}{group.id}",
+                    id=f"{root}{COPY_SEPARATOR}{group.id}",
                     nodes=tuple(ids[node] for node in group.nodes),
                 )
             )
         self.named_conditions += [
-            (regions.get(id, f"{root}{_COPY_SEPARATOR}{id}"), copy.variables[name])
+            (regions.get(id, f"{root}{COPY_SEPARATOR}{id}"), copy.variables[name])
             for id, name in tokens.named_conditions
         ]
         for store in (*tokens.stores, *tokens.shared):
@@ -283,7 +236,7 @@ class Performances:
         slot: Slot | None = None
         if element is not None:
             slot = self.find_slot(copy, element, store.variable.name)
-        writes = [_rename_write(write, copy, ids) for write in store.writes]
+        writes = [copy.rename_write(write, ids) for write in store.writes]
         if slot is not None and self._tree.read_slot(slot).variable.name == name:
             for write in writes:
                 origin = element_of_copy(write.node)
@@ -374,24 +327,5 @@ class Performances:
         return any(element.kind is Kind.ACTION for element in self._graph.owned(drawn))
 
 
-def element_of_copy(node: str) -> str:
-    """Return the id of the element of which a node of the token graph is a copy."""
-    return node.rpartition(_COPY_SEPARATOR)[2]
-
-
 def _is_call(element: Element) -> bool:
     return element.subkind in ("call-behavior", "call-operation", "")
-
-
-def _rename_guard(guard: Guard | None, copy: Copy) -> Guard | None:
-    if guard is None or guard.condition is None:
-        return guard
-    return replace(guard, condition=rename_variables(guard.condition, copy.variables))
-
-
-def _rename_write(write: Write, copy: Copy, ids: Mapping[str, str]) -> Write:
-    values = tuple(
-        (rename_variables(condition, copy.variables), rename_variables(value, copy.variables))
-        for condition, value in write.values
-    )
-    return replace(write, node=ids[write.node], values=values)
