@@ -186,6 +186,20 @@ def test_an_attribute_of_the_machine_hides_that_of_the_object(check):
     assert "holds" not in verdicts
 
 
+def test_an_activity_of_the_machine_is_not_described(check):
+    """The do behaviour would be taken to perform the activity of the block."""
+    own = "action init { first start; then assign a := true; then done; }"
+    block = (
+        INIT.replace("assign a := true", "assign a := false")
+        + f"""exhibit state M {{ {own}
+        entry; then S; state S; state T {{ entry init; exit assign a := false; }}
+        state D {{ do init; }} transition first S accept Go then T;
+        transition first T accept Go then D; transition first D then S; }}"""
+    )
+    verdicts, _ = check(block, "G (state=T -> a)", "G (state=D -> !a)")
+    assert "holds" not in verdicts
+
+
 def test_a_text_with_an_undescribed_assignment_is_not_decided(check):
     text = "entry action { assign a := true; then assign b := r > 1.5; }"
     block = "attribute r : Real;" + MACHINE % (text, "")

@@ -309,10 +309,9 @@ def _list_names(assignment: Assignment) -> list[str]:
 
 
 def _find_named_activity(graph: Graph, behaviour: Element, classifier: Element) -> Element | None:
-    """Return the only element of the name that is the text of a behaviour, if it is an activity.
+    """Return the activity of a classifier or its generals that the text of a behaviour names.
 
-    The scopes are those around the behaviour, from the inside out, and the classifier with its
-    generals.
+    The result is None if several of their members have the name, or a member of the machine has it.
     """
     try:
         name = name_of(parse_expression(str(behaviour.attrs.get("body", ""))))
@@ -321,10 +320,10 @@ def _find_named_activity(graph: Graph, behaviour: Element, classifier: Element) 
     family = (classifier, *query.generals(graph, classifier))
     for scope in graph.ancestors(behaviour):
         owners = family if scope in family else (scope,)
-        members = [m for owner in owners for m in graph.owned(owner) if m.name == name]
+        members = [m for owner in owners for m in graph.owned(owner) if name and m.name == name]
         if members or scope in family:
             is_only = len(members) == 1 and members[0].kind is Kind.ACTIVITY
-            return members[0] if is_only and name else None
+            return members[0] if is_only and scope in family else None
     return None
 
 
@@ -382,6 +381,7 @@ def has_unknown_performer(graph: Graph, activity: Element, machines: Collection[
         or any(
             activity.name in _WORD.findall(body) and (is_action or body != activity.name)
             for body, is_action in _iter_bodies(graph)
+            if activity.name in body
         )
     )
 
