@@ -26,9 +26,9 @@ from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.feature_writes import WriterIndex
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.identifiers import Names, identifier
+from sysmlc.logic.machines.instant_activities import find_instant_steps, may_name
 from sysmlc.logic.machines.machine import Machine, Vertex, element_id
 from sysmlc.logic.machines.reader import MachineOptions, find_context_classifier
-from sysmlc.logic.machines.supported_constructs import find_instant_steps, may_name
 
 _LONG_LIMITS = {
     Edge.ENTRY: " beside substates or a time-out",

@@ -36,7 +36,7 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.feature_writes import find_label, iter_writes
 from sysmlc.logic.formula import Const, Formula
-from sysmlc.logic.machines.supported_constructs import has_unknown_performer
+from sysmlc.logic.machines.instant_activities import has_unknown_performer
 from sysmlc.logic.simplification import substitute
 
 

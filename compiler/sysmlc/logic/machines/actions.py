@@ -36,8 +36,8 @@ from sysmlc.logic.expressions.named_elements import describe_feature_elsewhere
 from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
 from sysmlc.logic.feature_writes import SHARED, Sharing, find_label, read_assignments
 from sysmlc.logic.identifiers import Names
+from sysmlc.logic.machines.instant_activities import find_instant_steps, find_target
 from sysmlc.logic.machines.machine import Action, Assign, Raise
-from sysmlc.logic.machines.supported_constructs import find_instant_steps, find_target
 from sysmlc.support.suggestions import find_similar
 
 NOT_UNDERSTOOD = rule(
