@@ -177,8 +177,7 @@ class Runs:
         while True:
             shrunk = result
             for goal in self.goals:
-                reaching = self.states_reaching(shrunk, shrunk & goal)
-                shrunk = self.predecessors_by(reaching, shrunk)
+                shrunk = shrunk & self.predecessors(self.states_reaching(shrunk, shrunk & goal))
             if shrunk == result:
                 return result
             result = shrunk
@@ -193,7 +192,7 @@ class Runs:
         """Return the states from which steps inside *within* lead to *target*."""
         reached = frontier = target
         while frontier != self.manager.false:
-            frontier = self.predecessors_by(frontier, within) & ~reached
+            frontier = within & self.predecessors(frontier) & ~reached
             reached = reached | frontier
         return reached
 
@@ -205,7 +204,7 @@ class Runs:
         layers = [target]
         reached = target
         while True:
-            layer = self.predecessors_by(layers[-1], within) & ~reached
+            layer = within & self.predecessors(layers[-1]) & ~reached
             if layer == self.manager.false:
                 return layers
             layers.append(layer)
