@@ -73,8 +73,9 @@ class Universe:
             invariants += tuple(
                 node for node in nodes[Class.SAFETY] if not self.symbols.names(node, primed=True)
             )
-        # Initial values first: few states remain, and conditions on them have small diagrams.
-        init = conjoin(self.manager, (*nodes[Class.INIT], *invariants))
+        # Initial values first, single values before relations among several variables: few states
+        # remain, and conditions on them have small diagrams.
+        init = conjoin(self.manager, (*sorted(nodes[Class.INIT], key=len), *invariants))
         parts = (*self._ranges, *map(self.symbols.prime, invariants), *nodes[Class.SAFETY])
         return FairSystem(self.symbols, init, parts, tuple(nodes[Class.LIVENESS]))
 

@@ -90,6 +90,7 @@ class Manager:
         self._start_time = time.process_time() if start_time is None else start_time
         self._peak = self._nodes = self._ceiling = 0
         self._next_limit_check = 0.0
+        self._is_declaring = False
         self._may_reorder, self._is_reordering = True, False
         self._supports: WeakKeyDictionary[Node, frozenset[str]] = WeakKeyDictionary()
         self._stop_reason: StopReason | None = None
@@ -104,7 +105,11 @@ class Manager:
 
     def declare(self, bits: Collection[str]) -> None:
         """Append bits to the order, below all bits declared before."""
-        self._bdd.declare(*bits)
+        self._is_declaring = True
+        try:
+            self._bdd.declare(*bits)
+        finally:
+            self._is_declaring = False
 
     @property
     def bits(self) -> tuple[str, ...]:
@@ -265,6 +270,9 @@ class Manager:
 
     def should_stop(self) -> bool:
         """Return whether a limit is exceeded or Ctrl-C was pressed; called by CUDD, too."""
+        if self._is_declaring:
+            # CUDD counts nodes through its array of variables, whose new entry is not yet valid.
+            return False
         if self._stop_reason is not None:
             return True
         if self._count_live_nodes is not None:

@@ -162,8 +162,10 @@ class Symbols:
     def _encode_comparison(self, op: Op, left: Formula, right: Formula) -> Node:
         if self._is_boolean(left) or self._is_boolean(right):
             return self._encode_equality(op, self.bdd(left).equiv(self.bdd(right)))
-        literals = self._literals_of(left) or self._literals_of(right)
-        if literals:
+        is_literal = bool(self._literals_of(left)), bool(self._literals_of(right))
+        if any(is_literal):
+            if not all(is_literal):
+                raise SymbolError("a literal is compared with a value that is not a literal")
             return self._encode_equality(op, self._equal_literals(left, right))
         return _COMPARISONS[op](self.manager, self.vector(left), self.vector(right))
 
@@ -175,22 +177,19 @@ class Symbols:
         raise SymbolError(f"{op} compares numbers")
 
     def _equal_literals(self, left: Formula, right: Formula) -> Node:
-        operands = self._encode_by_literal(left), self._encode_by_literal(right)
+        right_literals = frozenset(self._literals_of(right))
         result = self.manager.false
-        for literal, node in operands[0].items():
-            result = result | (node & operands[1].get(literal, self.manager.false))
+        for literal in self._literals_of(left):
+            if literal in right_literals:
+                both = self._equal_literal(left, literal) & self._equal_literal(right, literal)
+                result = result | both
         return result
 
-    def _encode_by_literal(self, formula: Formula) -> dict[str, Node]:
-        """Return for each literal the condition under which *formula* has it as its value."""
-        match formula:
-            case Const(str(literal)):
-                return {literal: self.manager.true}
-            case Var(name, primed) if literals := self._literals_of(formula):
-                codes = {literal: self.code(name, literal, primed) for literal in literals}
-                return {literal: self.manager.cube(code) for literal, code in codes.items()}
-            case _:
-                raise SymbolError("a literal is compared with a value that is not a literal")
+    def _equal_literal(self, formula: Formula, literal: str) -> Node:
+        """Return the condition under which a variable, or a constant literal, is *literal*."""
+        if isinstance(formula, Var):
+            return self.manager.cube(self.code(formula.name, literal, formula.primed))
+        return self.manager.true
 
     def _literals_of(self, formula: Formula) -> tuple[str, ...]:
         match formula:
