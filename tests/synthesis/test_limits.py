@@ -118,6 +118,14 @@ except LimitError as problem:
     assert (process.returncode, process.stdout) == (0, "the limit of 8 GiB of memory was reached\n")
 
 
+def test_many_variables_are_declared_before_limits_apply() -> None:
+    # CUDD asks whether to stop when about 1,000 bits are declared, and counting nodes failed then.
+    lines = [f"sys x{number}: bool" for number in range(600)]
+    contract = parse_contract("\n".join((*lines, "promise recurs x0")))
+
+    assert decide(contract, lambda _: Subject(), Sink(), Options()).is_realizable
+
+
 def test_refinement_obeys_limits() -> None:
     contract = runaway()
     weaker = Contract(contract.component, contract.origin, contract.variables, (), ())
