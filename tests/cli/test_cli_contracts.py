@@ -240,6 +240,30 @@ def test_findings_about_the_behaviour_of_a_component(rule, workspace, all_passes
     assert not check_rule_example(rule, page.right, workspace)
 
 
+@pytest.mark.parametrize(("second", "is_reported"), [("sort", False), ("clear", True)])
+def test_a_guard_that_holds_in_one_of_several_calls_is_not_reported(
+    second, is_reported, workspace, all_passes
+):
+    """The guard never holds in the first call, in which nothing has set the feature."""
+    text = f"""package P {{
+        private import ScalarValues::*;
+        part def B {{
+            attribute full : Boolean := false;
+            action sort {{ first start then d; decide d; if full then store; else reject;
+                action store; then done; action reject; then done; }}
+            action clear assign full := false;
+            perform action work {{ first start then a; perform action a references sort;
+                then load; action load assign full := true;
+                then b; perform action b references {second}; then done; }}
+        }}
+        requirement def Starts {{
+            subject b : B;
+            require constraint {{ language "ltl" /* !full */ }}
+        }}
+    }}"""
+    assert check_rule_example(rules.GUARD_NEVER_HOLDS, text, workspace) == is_reported
+
+
 def test_a_state_that_the_author_requires_to_be_unreachable_is_not_reported(workspace, all_passes):
     text = rules.UNREACHABLE.read_page().wrong
     required = text.replace("/* state=Idle */", "/* G !(state=Service) */")

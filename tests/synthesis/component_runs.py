@@ -2,12 +2,12 @@
 
 A block has two Booleans, a state machine whose states perform activities, and may perform an
 activity by itself. A step of an activity is an elementary action, an assignment, a call of another
-activity, or a fork of two such steps and their join. An activity that only others call may have an
-input ``p`` and an output ``r``.
+activity, a fork of two such steps and their join, or a decision for one or two such steps and their
+merge. An activity that only others call may have an input ``p`` and an output ``r``.
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import chain, combinations, product
 from random import Random
 
@@ -19,7 +19,7 @@ EVENTS = ("E0", "E1")
 
 
 class Step(Struct, frozen=True):
-    """A step of an activity: ``kind`` is elementary, assign, call or fork."""
+    """A step of an activity: ``kind`` is elementary, assign, call, fork or decide."""
 
     kind: str
     name: str
@@ -30,6 +30,8 @@ class Step(Struct, frozen=True):
     branches: tuple["Step", ...] = ()
     argument: tuple[str, str] = ("", "")
     """How the input of a call gets its value (``:=`` or ``=``), and the value."""
+    guards: tuple[str, ...] = ()
+    """The guards of the branches of a decision; at most one of them holds."""
 
 
 class Move(Struct, frozen=True):
@@ -117,14 +119,18 @@ def _make_step(
     random: Random, name: str, others: list[str], signatures: frozenset, *, is_branch: bool = False
 ) -> Step:
     kinds = ["elementary", "assign", *(["call", "call"] if others else [])]
-    kind = random.choice([*kinds, *([] if is_branch else ["fork"])])
-    if kind == "fork":
+    kind = random.choice([*kinds, *([] if is_branch else ["fork", "decide"])])
+    has_parameters = name[:2] in signatures
+    if kind in ("fork", "decide"):
         branches = tuple(
             _make_step(random, f"{name}{letter}", others, signatures, is_branch=True)
             for letter in "xy"
         )
-        return Step(kind, name, branches=branches)
-    has_parameters = name[:2] in signatures
+        if kind == "fork":
+            return Step(kind, name, branches=branches)
+        guard = random.choice(("b0", "b1", "not b0", "not b1", *("pr" if has_parameters else "")))
+        guards = random.choice(((guard,), (guard, "else"), (guard, _negate(guard))))
+        return Step(kind, name, branches=branches[: len(guards)], guards=guards)
     # At most one action sets an output in a step.
     targets = (*FEATURES, *(["r", "r"] if has_parameters and not is_branch else []))
     values = ("true", "false", "b0", "not b1", *(["p", "not p", "r"] if has_parameters else []))
@@ -135,6 +141,10 @@ def _make_step(
         return Step(kind, name, called=called)
     argument = random.choice((":=", "=")), random.choice(values)
     return Step(kind, name, random.choice(("", *targets)), "", called, argument=argument)
+
+
+def _negate(guard: str) -> str:
+    return guard.removeprefix("not ") if guard.startswith("not ") else f"not {guard}"
 
 
 def _make_move(random: Random, states: tuple[str, ...]) -> Move:
@@ -204,8 +214,7 @@ def list_branches(block: Block, move: Move) -> list[tuple[str, str]]:
     if move.choice is None:
         return []
     guard, other = move.choice
-    opposite = guard.removeprefix("not ") if guard.startswith("not ") else f"not {guard}"
-    return [(guard, move.target), (opposite, other)]
+    return [(guard, move.target), (_negate(guard), other)]
 
 
 def _write_steps(steps: tuple[Step, ...]) -> Iterator[str]:
@@ -221,13 +230,22 @@ def _write_steps(steps: tuple[Step, ...]) -> Iterator[str]:
                 yield f"first {_entry_of(step)} then {branch.name};"
                 yield f"first {branch.name} then {join};"
             yield f"first {join} then {following};"
+        elif step.kind == "decide":
+            merge = f"m_{step.name}"
+            yield from map(_write_action, step.branches)
+            yield f"decide {_entry_of(step)};"
+            for guard, branch in zip(step.guards, step.branches, strict=True):
+                yield f"{guard if guard == 'else' else f'if {guard} then'} {branch.name};"
+            yield f"merge {merge};"
+            yield from (f"first {branch.name} then {merge};" for branch in step.branches)
+            yield f"first {merge} then {following};"
         else:
             yield _write_action(step)
             yield f"first {step.name} then {following};"
 
 
 def _entry_of(step: Step) -> str:
-    return f"f_{step.name}" if step.kind == "fork" else step.name
+    return f"{step.kind[0]}_{step.name}" if step.branches else step.name
 
 
 def _write_action(step: Step) -> str:
@@ -250,7 +268,7 @@ def list_actions(block: Block, *, is_elementary: bool = False) -> list[str]:
     while worklist:
         path, step = worklist.pop(0)
         inner = f"{path}.{step.name}"
-        if step.kind == "fork":
+        if step.branches:
             worklist += [(path, branch) for branch in step.branches]
         elif not is_elementary or step.kind == "elementary":
             paths.append(inner)
@@ -266,9 +284,10 @@ class Performance(Struct, frozen=True):
     """A performance of an activity: its marks, and the values of its parameters.
 
     A mark is a position and what is there: the performance of the step ("run", with the performance
-    that a call has started), or a token that waits for the join ("wait"). A position is the index
-    of a step, and of a branch or -1. ``input`` is the value that was taken at the start, or None;
-    it ``is_due`` until the values of the first step are known.
+    that a call has started), or a token that waits for the join ("wait") or at the decision
+    ("decide"). A position is the index of a step, and of a branch or -1. ``input`` is the value
+    that was taken at the start, or None; it ``is_due`` until the values of the first step are
+    known.
     """
 
     marks: frozenset
@@ -291,14 +310,43 @@ def take_inputs(block: Block, name: str, performance: Performance, scope: dict) 
     for mark in performance.marks:
         step = None if mark[2] == "wait" else _step_at(block.activities[name], mark)
         if step is not None and step.kind == "call":
-            (operator, value), inner = step.argument, mark[3]
+            inner = mark[3]
             if inner.is_due:
-                inner = replace(inner, input=evaluate(value, scope), is_due=False)
-            bound = evaluate(value, scope) if operator == "=" else inner.input
-            inner_scope = {**scope, "p": bound, "r": inner.output}
+                value = evaluate(step.argument[1], scope)
+                inner = replace(inner, input=value, is_due=False)
+            inner_scope = _open_scope(step, inner, scope)
             mark = (*mark[:3], take_inputs(block, step.called, inner, inner_scope))
         marks.add(mark)
     return replace(performance, marks=frozenset(marks))
+
+
+def _find_open_guard(guards: tuple[str, ...], scope: dict) -> int | None:
+    """Return the index of the guard that holds; none may."""
+    is_open = [guard != "else" and evaluate(guard, scope) for guard in guards]
+    if guards[-1] == "else":
+        is_open[-1] = not any(is_open)
+    return is_open.index(True) if any(is_open) else None
+
+
+def _open_scope(call: Step, performance: Performance, scope: dict) -> dict:
+    """Return the values of features and parameters inside a performance that a call has started."""
+    operator, value = call.argument
+    bound = evaluate(value, scope) if operator == "=" else performance.input
+    return {**scope, "p": bound, "r": performance.output}
+
+
+def list_decisions(
+    block: Block, name: str, performance: Performance, scope: dict
+) -> Iterator[tuple[str, str]]:
+    """Yield the decisions at which tokens are, each with the guard that holds or ""."""
+    for mark in performance.marks:
+        step = None if mark[2] == "wait" else _step_at(block.activities[name], mark)
+        if mark[2] == "decide":
+            index = _find_open_guard(step.guards, scope)
+            yield step.name, "" if index is None else step.guards[index]
+        elif step is not None and step.kind == "call":
+            inner_scope = _open_scope(step, mark[3], scope)
+            yield from list_decisions(block, step.called, mark[3], inner_scope)
 
 
 def _step_at(steps: tuple[Step, ...], mark: tuple) -> Step:
@@ -330,6 +378,10 @@ def advance(
         if mark[2] == "wait":
             after.add(mark)
             continue
+        if mark[2] == "decide":
+            index = _find_open_guard(_step_at(steps, mark).guards, scope)
+            after |= {mark} if index is None else _enter_branches(block, steps, mark[0], [index])
+            continue
         new_marks, new_writes, new_finished = _perform(block, steps, mark, path, ended, scope)
         after |= new_marks
         writes += new_writes
@@ -350,10 +402,18 @@ def _arrive(block: Block, steps: tuple[Step, ...], position: int) -> set[tuple]:
     if position == len(steps):
         return set()
     step = steps[position]
-    branches = [*enumerate(step.branches)] if step.kind == "fork" else [(-1, step)]
+    if step.kind == "decide":
+        return {(position, -1, "decide", None)}
+    return _enter_branches(block, steps, position, range(len(step.branches)) or [-1])
+
+
+def _enter_branches(
+    block: Block, steps: tuple[Step, ...], position: int, branches: Iterable[int]
+) -> set[tuple]:
+    """Return the marks when tokens reach branches of a step, or the step itself (-1)."""
     marks = set()
-    for index, action in branches:
-        content = None
+    for index in branches:
+        action, content = _step_at(steps, (position, index)), None
         if action.kind == "call":
             content = start(block, action.called, is_due=action.argument[0] == ":=")
         marks.add((position, index, "run", content))
@@ -372,9 +432,7 @@ def _perform(
     if step.kind == "assign":
         writes.append((step.feature, evaluate(step.value, scope)))
     if step.kind == "call":
-        operator, value = step.argument
-        bound = evaluate(value, scope) if operator == "=" else inner.input
-        own_scope = {**scope, "p": bound, "r": inner.output}
+        own_scope = _open_scope(step, inner, scope)
         content, is_done, writes, finished = advance(
             block, step.called, inner, own_path, ended, own_scope
         )
@@ -382,9 +440,9 @@ def _perform(
         writes += [(step.feature, content.output)] if is_done and step.feature else []
     if not is_done:
         return {(position, branch, "run", content)}, writes, finished
-    is_branch = branch >= 0
+    is_forked = steps[position].kind == "fork"
     waiting = {(position, branch, "wait", None)}
-    following = waiting if is_branch else _arrive(block, steps, position + 1)
+    following = waiting if is_forked else _arrive(block, steps, position + 1)
     return following, writes, finished | {own_path}
 
 
@@ -476,6 +534,14 @@ def observe(block: Block, state: State, event: str, ended: frozenset) -> frozens
             facts.add(f"running({'.'.join(path)})")
         facts |= {f"finished({'.'.join(path)})" for path in finished}
     return frozenset(facts)
+
+
+def observe_decisions(block: Block, state: State) -> set[tuple[str, str]]:
+    """Return the decisions at which tokens are in a step, each with the guard that holds or ""."""
+    values = dict(zip(FEATURES, state.values, strict=True))
+    performances = _list_performances(block, state)
+    decisions = (list_decisions(block, *performance, values) for performance in performances)
+    return set(chain.from_iterable(decisions))
 
 
 def list_successors(block: Block, state: State, event: str, ended: frozenset) -> set[State]:

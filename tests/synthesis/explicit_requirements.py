@@ -19,6 +19,7 @@ from component_runs import (
     list_reactions,
     name_choice,
     observe,
+    observe_decisions,
 )
 from spot import buddy
 
@@ -100,8 +101,8 @@ class ExploredBlock:
     """The runs of a block as an automaton whose edges say what is observed in a step.
 
     ``observed`` are all facts that some step shows, ``taken`` the transitions that some step takes,
-    with the states to which they lead,
-    and ``changed`` the features that some step changes.
+    with the states to which they lead, ``passed`` the names of decisions that tokens reach, with
+    the guards that hold then or "", and ``changed`` the features that some step changes.
     """
 
     def __init__(self, block: Block, limit: int) -> None:
@@ -110,6 +111,7 @@ class ExploredBlock:
         self._block = block
         self.observed: set[str] = set()
         self.taken: set[tuple[Move, str]] = set()
+        self.passed: set[tuple[str, str]] = set()
         self.changed: set[str] = set()
         self._actions = list_actions(block, is_elementary=True)
         self._dictionary = spot.make_bdd_dict()
@@ -132,6 +134,7 @@ class ExploredBlock:
         worklist = [first_state(block)]
         while worklist:
             state = worklist.pop()
+            self.passed |= observe_decisions(block, state)
             for event, ended in list_inputs(block, state):
                 facts = observe(block, state, event, ended)
                 self.observed |= facts
@@ -173,9 +176,19 @@ class ExploredBlock:
                 for guard, end in branches
                 if move in taken and (move, end) not in self.taken
             ]
+        reached = {decision for decision, _ in self.passed}
+        never_true = [
+            guard
+            for steps in block.activities.values()
+            for step in steps
+            for guard in step.guards
+            # ``else`` has no condition that could be wrong: its action is unreachable.
+            if guard != "else" and step.name in reached and (step.name, guard) not in self.passed
+        ]
         return {
             "unreachable": sorted(states + actions),
             "never_taken": sorted(never_taken),
+            "never_true": sorted(never_true),
             "never_changed": [name for name in FEATURES if name not in self.changed],
         }
 

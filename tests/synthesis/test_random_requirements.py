@@ -1,7 +1,7 @@
 """Random requirements of random blocks: ``contracts check`` and an exploration agree.
 
-They agree on the verdicts and on the states, actions, transitions and features that no run reaches
-or changes.
+They agree on the verdicts and on the states, actions, transitions, guards of decisions and features
+that no run reaches, satisfies or changes.
 """
 
 import json
@@ -55,7 +55,7 @@ def check(path):
     document = json.loads(result.stdout)
     for entry in document["requirements"]:
         verdicts.setdefault(entry["requirement"], []).append(entry["verdict"])
-    members = "unreachable", "never_taken", "never_changed"
+    members = "unreachable", "never_taken", "never_true", "never_changed"
     unreached = None
     for behaviour in document["behaviours"]:
         unreached = {member: sorted(behaviour[member]) for member in members}

@@ -83,20 +83,22 @@ def iter_places(
             text = f"the event of action '{'.'.join(path)}'"
             accepts = f.both(running, node.done)
             yield PlaceInBehaviour(text, node.origin, accepts, PlaceKind.EVENT, running)
-    for edge in formulas.graph.edges:
-        if edge.guard is not None and edge.guard.condition is not None:
-            yield PlaceInBehaviour(
-                edge.guard.text,
-                edge.origin,
-                formulas.present_formula(edge),
-                PlaceKind.GUARD,
-                formulas.waiting_formula(formulas.graph.node(edge.source)),
-            )
+    yield from _merge_copies(_iter_guard_places(formulas))
     for name, variable in assigned:
         value = f.var(variable.name)
         is_boolean = isinstance(variable.domain, BooleanDomain)
         stays = f.iff(f.prime(value), value) if is_boolean else f.eq(f.prime(value), value)
         yield PlaceInBehaviour(name, variable.origin, f.negate(stays), PlaceKind.FEATURE)
+
+
+def _iter_guard_places(formulas: StepFormulas) -> Iterator[PlaceInBehaviour]:
+    """Yield the guards of decisions, once for each copy of an activity. ``else`` is no guard."""
+    for edge in formulas.graph.edges:
+        if edge.guard is not None and edge.guard.condition is not None:
+            is_open = formulas.present_formula(edge)
+            is_reached = formulas.waiting_formula(formulas.graph.node(edge.source))
+            text, origin = edge.guard.text, edge.origin
+            yield PlaceInBehaviour(text, origin, is_open, PlaceKind.GUARD, is_reached)
 
 
 def _iter_machine_places(
@@ -143,9 +145,9 @@ def _iter_events(
 
 
 def _merge_copies(places: Iterable[PlaceInBehaviour]) -> Iterator[PlaceInBehaviour]:
-    """Yield one place for each element: states that use one submachine have copies of its content.
+    """Yield one place for each element, which is reached if a copy of it is.
 
-    It is reached if a copy is.
+    States that use one submachine have copies of its content, calls copies of their activity.
     """
     copies: dict[tuple[PlaceKind, str], list[PlaceInBehaviour]] = {}
     for place in places:
