@@ -2,13 +2,13 @@
 
 A block has two Booleans, a state machine whose states perform activities, and may perform an
 activity by itself. A step of an activity is an elementary action, an assignment, a call of another
-activity, a fork of two such steps and their join, or a decision for one or two such steps and their
-merge. An activity that only others call may have an input ``p`` and an output ``r``.
+activity, a fork of two such steps and their join, or a decision before one or two such steps and
+their merge. An activity that only others call may have an input ``p`` and an output ``r``.
 """
 
 import re
 from collections.abc import Iterable, Iterator
-from itertools import chain, combinations, product
+from itertools import chain, combinations, product, zip_longest
 from random import Random
 
 from msgspec import Struct
@@ -31,7 +31,8 @@ class Step(Struct, frozen=True):
     argument: tuple[str, str] = ("", "")
     """How the input of a call gets its value (``:=`` or ``=``), and the value."""
     guards: tuple[str, ...] = ()
-    """The guards of the branches of a decision; at most one of them holds."""
+    """The guards behind a decision, of which at most one holds. Those after the last branch lead to
+    the merge."""
 
 
 class Move(Struct, frozen=True):
@@ -130,7 +131,8 @@ def _make_step(
             return Step(kind, name, branches=branches)
         guard = random.choice(("b0", "b1", "not b0", "not b1", *("pr" if has_parameters else "")))
         guards = random.choice(((guard,), (guard, "else"), (guard, _negate(guard))))
-        return Step(kind, name, branches=branches[: len(guards)], guards=guards)
+        count = random.randint(1, len(guards))
+        return Step(kind, name, branches=branches[:count], guards=guards)
     # At most one action sets an output in a step.
     targets = (*FEATURES, *(["r", "r"] if has_parameters and not is_branch else []))
     values = ("true", "false", "b0", "not b1", *(["p", "not p", "r"] if has_parameters else []))
@@ -234,8 +236,9 @@ def _write_steps(steps: tuple[Step, ...]) -> Iterator[str]:
             merge = f"m_{step.name}"
             yield from map(_write_action, step.branches)
             yield f"decide {_entry_of(step)};"
-            for guard, branch in zip(step.guards, step.branches, strict=True):
-                yield f"{guard if guard == 'else' else f'if {guard} then'} {branch.name};"
+            for guard, branch in zip_longest(step.guards, step.branches):
+                target = branch.name if branch else merge
+                yield f"{guard if guard == 'else' else f'if {guard} then'} {target};"
             yield f"merge {merge};"
             yield from (f"first {branch.name} then {merge};" for branch in step.branches)
             yield f"first {merge} then {following};"
@@ -380,7 +383,12 @@ def advance(
             continue
         if mark[2] == "decide":
             index = _find_open_guard(_step_at(steps, mark).guards, scope)
-            after |= {mark} if index is None else _enter_branches(block, steps, mark[0], [index])
+            if index is None:
+                after.add(mark)
+            elif index < len(_step_at(steps, mark).branches):
+                after |= _enter_branches(block, steps, mark[0], [index])
+            else:
+                after |= _arrive(block, steps, mark[0] + 1)
             continue
         new_marks, new_writes, new_finished = _perform(block, steps, mark, path, ended, scope)
         after |= new_marks
