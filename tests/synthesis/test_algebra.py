@@ -14,7 +14,13 @@ from sysmlc.logic.evaluate import evaluate_on_lasso
 from sysmlc.logic.formats import read
 from sysmlc.logic.printing import print_formula
 from sysmlc.synthesis import Manager
-from sysmlc.synthesis.algebra.fair_systems import DomainError, Universe, build_lasso, pick_state
+from sysmlc.synthesis.algebra.fair_systems import (
+    DomainError,
+    Runs,
+    Universe,
+    build_lasso,
+    pick_state,
+)
 from sysmlc.synthesis.algebra.refinement import (
     Entailment,
     find_environment_run,
@@ -221,3 +227,24 @@ def test_a_conjunct_outside_gr1_is_decided_by_a_tableau():
     stable = "promise F G on"
     ((_, failure),) = find_failures("sys on: bool", f"sys on: bool\n{stable}")
     assert not all(step["on"] for step in failure.trace.steps[failure.trace.loop :])
+
+
+def test_predecessors_among_reachable_states_ignore_steps_from_other_states():
+    """The parts of the relation are larger than the set of reachable states."""
+    contract = parse_contract("""
+        env go: bool
+        sys a: 0..15
+        sys b: 0..15
+        promise at first a=0 & b=0
+        promise always a'=(a*b+a+b) mod 16
+        promise always b'=(a*a+b*b) mod 16
+        promise always go -> b<9
+    """)
+    universe = Universe((contract,), Manager())
+    runs = Runs(universe.system(contract.guarantees))
+    reachable = runs.reachable
+    assert max(map(len, runs.system.parts)) > len(reachable)
+    for states in (reachable, runs.system.init, universe.symbols.encode({"go": True})):
+        before = runs.predecessors_among_reachable(states)
+        assert reachable & before == reachable & runs.predecessors(states) != runs.manager.false
+    assert runs.predecessors_among_reachable(reachable) != runs.predecessors(reachable)

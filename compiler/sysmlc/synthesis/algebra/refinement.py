@@ -93,7 +93,7 @@ def _begin_steps(runs: Runs, violation: Node) -> Node:
         return violation
     # All successors of reachable states are reachable.
     targets = runs.manager.true if runs.fair == runs.reachable else runs.fair
-    return runs.predecessors_by(targets, violation)
+    return runs.predecessors_among_reachable(targets, violation)
 
 
 def _build_initial_violation(runs: Runs, states: Node, _: Node) -> Trace:
