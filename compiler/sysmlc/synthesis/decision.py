@@ -160,6 +160,8 @@ def _solve_contract(
             with manager.without_reordering():
                 encoded = eliminate_determined_variables(game)
                 arena = eliminate_commands(encoded)
+            # The first layer of a large game may take all the time, and reports nothing before.
+            progress("solving the game")
             return game, encoded, solve_arena(arena, is_complete=False)
 
     reduced = reduce_contract(contract).contract
