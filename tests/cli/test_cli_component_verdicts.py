@@ -671,3 +671,29 @@ def test_requirements_on_a_state_machine_without_contract_are_not_decided(worksp
     result = workspace.sysmlc("contracts", "check", "model.sysml")
     line = "P::R: not decided: state machine 'Main' has no contract (see 'sysmlc check')"
     assert line in result.stdout
+
+
+ENDLESS = """action bad { first start then f; fork f; then a; then b; action a; then m;
+    action b; then m; merge m; then c; action c; then m; }"""
+"""Two tokens in one cycle, so that the activity has no token graph (SM454); it never ends."""
+
+
+def test_an_activity_without_token_graph_is_not_assumed_to_end(decide):
+    states = """exhibit state M { entry; then Idle; state Idle;
+        transition first Idle accept Go then Busy;
+        state Busy { do bad; } transition first Busy then Idle; }"""
+    formulas = "G (state=Busy -> F state=Idle)", "F state=Busy", "G (state=Idle -> !running(bad))"
+    verdicts = ["not-decided", "broken", "holds"]
+    assert decide(ENDLESS + states, *formulas) == verdicts
+    called = """perform action job { first start then x; perform action x references bad;
+        then y; action y; then done; }"""
+    assert decide(ENDLESS + called, "F running(y)") == ["not-decided"]
+    performed = ENDLESS.replace("action bad", "perform action bad")
+    formulas = "F finished(bad)", "G !finished(bad)"
+    assert decide(performed, *formulas) == ["not-decided", "not-decided"]
+
+
+def test_the_first_formula_about_an_accept_action_may_read_the_event(decide):
+    block = "perform action w { first start then a; action a accept Go; then done; }"
+    formula = "G (running(a) & event=Go -> finished(a))"
+    assert decide(block, formula) == ["holds"]

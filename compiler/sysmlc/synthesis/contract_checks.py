@@ -218,7 +218,7 @@ def _complete(
         *requirements.variables,
         *(variable for variable in behaviour.contract.variables if variable.name in read - names),
     )
-    features = behaviour.gaps.keys() - behaviour.ends
+    features = behaviour.gaps.keys() - behaviour.undescribed
     return replace(
         _without(requirements, irreducible),
         variables=tuple(

@@ -124,7 +124,12 @@ class BehaviourCheck:
         stated = tuple(conjunct for conjunct in contract.guarantees if not conjunct.is_derived)
         self._facts = (*definitions, *(() if undischarged else stated))
         self._unproven = (*undischarged, *stated) if undischarged else ()
-        self._endings = tuple(conjunct for conjunct in contract.assumptions if conjunct.is_derived)
+        # An action whose steps are not described may go on for ever.
+        self._endings = tuple(
+            conjunct
+            for conjunct in contract.assumptions
+            if conjunct.is_derived and behaviour.undescribed.isdisjoint(_names_of((conjunct,)))
+        )
         self._search = RunSearch((contract, requirements), manager_factory(options))
 
     def decide_requirements(self) -> Iterator[RequirementVerdict]:
@@ -241,9 +246,9 @@ class BehaviourCheck:
         gap = self._find_gap(conjunct)
         waits: tuple[Conjunct, ...] = ()
         if gap is not None:
-            if gap not in self._behaviour.ends or not is_safety(as_ltl(conjunct)):
+            if gap not in self._behaviour.undescribed:
                 return RequirementVerdict(conjunct, Answer.NOT_DECIDED, self._explain_gap(gap))
-            # A prefix of a run in which no such action has ended yet is a prefix of the model.
+            # A run in which no such action ever runs is a run of the model.
             waits = tuple(
                 Conjunct(f.negate(f.var(name)), Class.SAFETY, "")
                 for name in sorted(self._behaviour.gaps)
@@ -258,7 +263,7 @@ class BehaviourCheck:
     def _find_gap(self, conjunct: Conjunct) -> str | None:
         """Return a variable that the model restricts more than the behaviour does, if any.
 
-        Gaps other than the ends of actions come first, because these prevent any refutation.
+        Actions that are not described come last, because other gaps prevent any refutation.
         """
         own_names = {variable.name for variable in self._behaviour.contract.variables}
         free_names = {
@@ -269,7 +274,7 @@ class BehaviourCheck:
         }
         unknown = sorted(_names_of((conjunct,)) - own_names - free_names)
         gaps = self._behaviour.gaps
-        features = [name for name in gaps if name not in self._behaviour.ends]
+        features = [name for name in gaps if name not in self._behaviour.undescribed]
         return next(iter((*unknown, *features, *gaps)), None)
 
     def _is_history_bit(self, variable: Variable) -> bool:

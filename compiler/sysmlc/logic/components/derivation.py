@@ -53,8 +53,8 @@ class ComponentBehaviour(Struct, frozen=True):
 
     ``contract`` has its runs: guarantees that the compiler derives, and the assumptions that
     actions end. A variable in ``gaps`` is restricted by the model, but not here; the value is the
-    reason in words. Variables in ``ends`` are gaps too: they tell when an action ends that may take
-    as long as the environment wants. ``writers`` are the writers of the features with several.
+    reason in words. Variables in ``undescribed`` are gaps too: they tell whether an action runs and
+    ends whose steps are not described. ``writers`` are the writers of the features with several.
     ``places`` are its states and actions, ``atoms`` what authors write about its steps.
     ``constituents`` are ids: of the types of its parts, and of the activities it performs.
     ``is_of_parts``: no contract describes a behaviour of its own.
@@ -62,7 +62,7 @@ class ComponentBehaviour(Struct, frozen=True):
 
     contract: Contract
     gaps: Mapping[str, str] = {}
-    ends: frozenset[str] = frozenset()
+    undescribed: frozenset[str] = frozenset()
     writers: Mapping[str, tuple[Writer, ...]] = {}
     places: tuple[PlaceInBehaviour, ...] = ()
     atoms: tuple[Atom, ...] = ()
@@ -154,14 +154,14 @@ class _Description:
             place.replace_variables(ends)
             for place in iter_places(self.component, formulas, assigned)
         )
-        long_ends = self.performances.long_ends
+        undescribed = self.performances.undescribed
         atoms = tuple(
             replace(atom, meaning=substitute(atom.meaning, ends))
             for atom in iter_atoms(self.component, formulas, contract.variables, wiring.accepted)
         )
         inner = self.component.list_constituents()
         return ComponentBehaviour(
-            contract, gaps | long_ends, frozenset(long_ends), shared, places, atoms, inner
+            contract, gaps | undescribed, frozenset(undescribed), shared, places, atoms, inner
         )
 
     def _make_formulas(self, name: str) -> PerformanceFormulas:

@@ -113,8 +113,10 @@ class ComponentNames:
         )
 
     def _find_event(self, path: str) -> Meaning | None:
+        # An object without state machine gets the variable of its event here.
+        events = derive_events(self._component).variables
         name = self._component.events.get(path)
-        for event in derive_events(self._component).variables:
+        for event in events:
             if event.name == name:
                 return Meaning(f.var(name), event.domain)
         return None

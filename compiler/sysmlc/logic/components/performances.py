@@ -41,6 +41,8 @@ from sysmlc.logic.composition.structure import find_drawn_activity
 from sysmlc.logic.contract import BooleanDomain, Owner, Variable
 from sysmlc.logic.identifiers import identifier
 
+_UNKNOWN_END = "the check does not know when {} ends, which has steps of its own"
+
 
 class Performances:
     """Collects the performances of a component as one token graph."""
@@ -65,7 +67,8 @@ class Performances:
         self.aliases: dict[str, str] = {}
         """Nodes by the inputs that would end them if nothing in the model did."""
         self.gaps: dict[str, str] = {}
-        self.long_ends: dict[str, str] = {}
+        self.undescribed: dict[str, str] = {}
+        """Why the steps of an action are not described, by the variables of its run and end."""
 
     def find_tokens(self, activity: Element) -> TokenGraph | None:
         """Return the token game of an activity, its own or that of the activity it is drawn as."""
@@ -75,8 +78,8 @@ class Performances:
     def add(self, activity: Element, caller: Caller, run: str) -> str:
         """Add the performance of an activity and return the id of its node.
 
-        *run* is the variable that is true while the performance runs. An activity without steps
-        ends when the environment ends it.
+        *run* is the variable that is true while the performance runs. The environment ends an
+        activity without steps. What has steps, but no token graph, is not described.
         """
         id = self._new_id(activity.id)
         tokens = self.find_tokens(activity)
@@ -84,7 +87,11 @@ class Performances:
         done = None
         kind = NodeKind.ACTION if tokens is None else NodeKind.STRUCTURED
         if tokens is None:
-            done = f.var(self._declare_input(f"done_{name or 'do'}", caller.prefix, activity.id))
+            end = self.name_variable(f"done_{name or 'do'}", caller.prefix)
+            self.inputs[end] = Variable(end, Owner.ENVIRONMENT, BooleanDomain(), activity.id)
+            done = f.var(end)
+            if self.has_steps(activity):
+                self.undescribed[run] = self.undescribed[end] = _UNKNOWN_END.format(label)
         self.nodes.append(TokenNode(id, kind, label, activity.id, run=run, done=done))
         self.paths.append(ActionPath(caller.names, id))
         if tokens is not None:
@@ -122,11 +129,6 @@ class Performances:
     def name_variable(self, name: str, prefix: str) -> str:
         """Return a new name for a variable of a behaviour."""
         return self._tree.names.new(f"{prefix}_{name}" if prefix else name)
-
-    def _declare_input(self, name: str, prefix: str, origin: str) -> str:
-        variable = self.name_variable(name, prefix)
-        self.inputs[variable] = Variable(variable, Owner.ENVIRONMENT, BooleanDomain(), origin)
-        return variable
 
     # -- copies ------------------------------------------------------------------------------------
 
@@ -290,14 +292,13 @@ class Performances:
         elif object_ is None and tokens is not None:
             reason = f"it is not known which part performs what {node.label} calls"
         elif activity is None or tokens is None or object_ is None:
-            reason = f"the check does not know when {node.label} ends, which has steps of its own"
+            reason = _UNKNOWN_END.format(node.label)
         elif activity.id in around:
             raise ComponentError(f"'{activity.name}' calls itself")
         if reason:
             if has_steps:
-                self.gaps[node.run] = reason
-                for variable in f.variables(node.done) if node.done is not None else ():
-                    self.long_ends[variable.name] = reason
+                ends = f.variable_names(node.done) if node.done is not None else ()
+                self.undescribed |= dict.fromkeys((node.run, *ends), reason)
             return node
         assert activity is not None
         assert tokens is not None
