@@ -80,3 +80,47 @@ def test_a_decision_takes_one_step_and_reads_what_the_action_before_has_written(
 def test_the_end_of_an_action_with_steps_is_no_valid_formula(decide):
     assert decide("G (finished(work) -> finished(work))")["vacuous"]
     assert not decide("G (finished(work) -> ok)")["vacuous"]
+
+
+CHOICE = """package P {
+private import ScalarValues::*;
+item def Go; item def Stop;
+part def Cell {
+    in attribute x : Boolean;
+    in attribute y : Boolean;
+    action work {
+        first start then a;
+        action a;
+        then decide d;
+        if x then b;
+        if y then c;
+        action b; then done;
+        action c; then done;
+    }
+    exhibit state M {
+        entry; then Idle;
+        state Idle;
+        transition first Idle accept Go then Busy;
+        state Busy { do work; }
+        transition first Busy then Idle;
+        transition first Busy accept Stop then Idle;
+    }
+    requirement r {
+        subject c : Cell;
+        require constraint {
+            language "ltl" /* G (finished(a) & event!=Stop -> X !(x & event=Stop)) */
+        }
+    }
+}
+}
+"""
+
+
+def test_a_state_is_left_in_the_step_in_which_its_do_behaviour_chooses_a_branch(
+    workspace, all_passes
+):
+    """The token could not be on a branch and be removed: such runs were lost (a wrong 'holds')."""
+    workspace.write("model.sysml", CHOICE)
+    result = workspace.sysmlc("contracts", "check", "--format", "json", "model.sysml")
+    (entry,) = json.loads(result.stdout)["requirements"]
+    assert entry["verdict"] == "broken"

@@ -293,14 +293,15 @@ class StepFormulas:
 
     def removed_formula(self, region: str, members: set[str]) -> Formula:
         """The activity is abandoned, or an interruption removes the tokens of *members*."""
-        return f.either(self.stop_formula(), *self.interruption_formulas(region, members))
+        return f.either(self.stop_formula(region), *self.interruption_formulas(region, members))
 
     def ended_formula(self, region: str) -> Formula:
         """The region, or a region around it, ends or is stopped."""
-        return f.either(self._completed_formula(region), self.stop_formula())
+        return f.either(self._completed_formula(region), self.stop_formula(region))
 
-    def stop_formula(self) -> Formula:
-        """The activity is abandoned in this step."""
+    def stop_formula(self, region: str = ACTIVITY_REGION) -> Formula:
+        """The activity is abandoned in this step, with the tokens of the region."""
+        del region
         handshake = self.graph.handshake
         return f.var(handshake.stop) if handshake is not None and handshake.stop else f.FALSE
 
@@ -380,11 +381,10 @@ class PerformanceFormulas(StepFormulas):
         """The region starts in the next step."""
         return self._starts[region] if region in self._starts else super().begin_formula(region)
 
-    def removed_formula(self, region: str, members: set[str]) -> Formula:
-        """An interruption or the stop of the performance removes the tokens of *members*."""
+    def stop_formula(self, region: str = ACTIVITY_REGION) -> Formula:
+        """The performance that contains the region is stopped in this step."""
         outermost = [node.id for node in self.graph.regions_around(region)][-1:]
-        stops = (self._stops.get(id, f.FALSE) for id in (*outermost, *members))
-        return f.either(super().removed_formula(region, members), *stops)
+        return f.either(*(self._stops.get(id, f.FALSE) for id in outermost))
 
     def run_formula(self, root: TokenNode) -> Formula:
         """The performance of an outermost node runs in the next step."""
