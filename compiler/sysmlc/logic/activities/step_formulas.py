@@ -127,7 +127,7 @@ class StepFormulas:
         return f.either(at_final, f.both(*map(f.negate, merge_terms(remaining))))
 
     def _final_formula(self, region: str) -> Formula:
-        """A token reaches a final node of the region."""
+        """A token at a final node ends the region."""
         return f.either(*map(self.present_formula, self.graph.ends(region)))
 
     def _remaining_formulas(self, node: TokenNode) -> Iterator[Formula]:
@@ -250,15 +250,13 @@ class StepFormulas:
             return f.FALSE
         target = self.graph.node(edge.target)
         arrivals = (
-            f.both(self.present_formula(edge_around), self.taken_formula(edge_around))
-            for edge_around in self.graph.entering(edge.listens)
+            f.both(self.present_formula(entering), self.taken_formula(entering))
+            for entering in self.graph.entering(edge.listens)
         )
         rests = token_at(edge) if self.graph.can_hold(edge) else f.FALSE
         is_idle = f.both(f.negate(rests), f.negate(f.var(target.run)))
         regions = self.graph.regions_around(edge.region)
-        return f.both(
-            f.either(*arrivals), is_idle, *(f.var(edge_around.run) for edge_around in regions)
-        )
+        return f.both(f.either(*arrivals), is_idle, *(f.var(node.run) for node in regions))
 
     def kept_formula(self, edge: TokenEdge) -> Formula:
         """The edge holds a token that stays on it."""

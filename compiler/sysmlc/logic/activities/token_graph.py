@@ -161,9 +161,9 @@ class TokenGraph(Struct, frozen=True, dict=True):
 
     @property
     def takes_time(self) -> bool:
-        """Whether an action lasts until something else ends it: the environment, or what it calls.
+        """Whether the environment, or a called behaviour, decides when an action of it ends.
 
-        The others assign, send and compute.
+        The actions of other activities only assign, send and compute.
         """
         return any(
             node.kind is NodeKind.ACTION and node.duration is Duration.TIMED
@@ -240,10 +240,10 @@ class TokenGraph(Struct, frozen=True, dict=True):
 
     @property
     def passing_edges(self) -> list[TokenEdge]:
-        """The edges from nodes that pass tokens on in the step in which they get them.
+        """The edges that leave nodes which pass tokens on in the step in which they get them.
 
-        Each comes after those that bring the tokens, and those in nested regions come first, so
-        that no recursion along the flows is deep.
+        An edge comes after the edges that bring its tokens, and after those in nested regions, so
+        that a computation that follows the flows back, in this order, needs no deep recursion.
         """
         return self._passing[1]
 
@@ -266,7 +266,7 @@ class TokenGraph(Struct, frozen=True, dict=True):
         opened: set[str] = set()
         closed: dict[str, None] = {}
         for node in self.nodes:
-            path = [(node.id, self._iter_steps(node, edges))] if node.id not in closed else []
+            path = [(node.id, self._iter_passing(node, edges))] if node.id not in closed else []
             opened |= {id for id, _ in path}
             while path:
                 id, following = path[-1]
@@ -279,16 +279,16 @@ class TokenGraph(Struct, frozen=True, dict=True):
                     edges.add(edge.id)
                 elif edge.target not in closed:
                     opened.add(edge.target)
-                    path.append((edge.target, self._iter_steps(self._nodes[edge.target], edges)))
+                    path.append((edge.target, self._iter_passing(self._nodes[edge.target], edges)))
         ordered = sorted(map(self.node, reversed(closed)), key=self._nesting_depth, reverse=True)
         return frozenset(edges), [
-            edge for node in ordered for edge in self._iter_steps(node, frozenset())
+            edge for node in ordered for edge in self._iter_passing(node, frozenset())
         ]
 
     def _nesting_depth(self, node: TokenNode) -> int:
         return sum(1 for _ in self.regions_around(node.region))
 
-    def _iter_steps(self, node: TokenNode, delaying: Container[str]) -> Iterator[TokenEdge]:
+    def _iter_passing(self, node: TokenNode, delaying: Container[str]) -> Iterator[TokenEdge]:
         """Iterate over the edges on which a token leaves the node in the step in which it comes."""
         passes = node.firing in (Firing.ANY, Firing.ALL)
         edges = self._outgoing[node.id] if passes else []
@@ -298,7 +298,8 @@ class TokenGraph(Struct, frozen=True, dict=True):
         """List the edges that prevent the end of a region in the step in which they get a token.
 
         On those inside the region the token moves on after this step; those that leave the region
-        interrupt it. The branches of a decision that chooses are not meant: it prevents the end.
+        interrupt it. The branches of a decision that can choose are omitted, because the decision
+        itself prevents the end.
         """
         return self._delays.get(region, [])
 
@@ -321,10 +322,11 @@ class TokenGraph(Struct, frozen=True, dict=True):
     def _holding(self) -> frozenset[str]:
         resting = {id for region in self.regions() for id in self.start(region).tokens}
         return frozenset(
-            edge.id for edge in self.edges if edge.id in resting or self._makes_wait(edge)
+            edge.id for edge in self.edges if edge.id in resting or self._can_wait(edge)
         )
 
-    def _makes_wait(self, edge: TokenEdge) -> bool:
+    def _can_wait(self, edge: TokenEdge) -> bool:
+        """Whether the target may leave a token on the edge, or takes it in a later step."""
         target = self._nodes[edge.target]
         waits = target.queues or len(self._incoming[target.id]) > 1
         is_synchronous = target.firing in (Firing.ALL, Firing.WORK)

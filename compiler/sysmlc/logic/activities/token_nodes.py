@@ -31,7 +31,7 @@ class Firing(StrEnum):
     """How a node moves tokens in one step."""
 
     NEVER = "never"
-    """It only names where tokens are at the start of its region."""
+    """It moves no tokens: it marks the edges that have a token when its region starts."""
     ALL = "all"
     """It takes a token from every incoming edge and gives one to every outgoing edge."""
     ANY = "any"
@@ -185,7 +185,7 @@ class Store(Struct, frozen=True):
 
 
 class Handshake(Struct, frozen=True):
-    """Variables with which an activity is started and abandoned, and tells that it runs and ends.
+    """Variables that start and abandon an activity, and that report that it runs and ends.
 
     ``start`` and ``stop`` are inputs: an activity without the first is never started from outside,
     one without the second always runs to its end. An activity that ``is_started`` runs in the first

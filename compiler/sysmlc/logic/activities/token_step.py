@@ -79,7 +79,7 @@ def restarted_state(graph: TokenGraph, state_before: State) -> State:
 class TokenStep:
     """One step of all nodes at once.
 
-    ``finished`` are the nodes that are done, ``begun`` those that run newly from the next step on.
+    ``finished`` are the nodes that are done, ``begun`` those that start to run in the next step.
     """
 
     def __init__(
@@ -327,7 +327,7 @@ class TokenStep:
         return self._complete[region]
 
     def reaches_final(self, region: str) -> bool:
-        """Whether a token reaches a final node of the region."""
+        """Whether a token at a final node ends the region."""
         return any(map(self.is_present, self.graph.ends(region)))
 
     def _remains(self, node: TokenNode) -> bool:

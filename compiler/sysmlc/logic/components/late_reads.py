@@ -16,11 +16,11 @@ from sysmlc.logic.formula import Formula
 
 
 class LateValues:
-    """The variables for these values, and what they are in each step.
+    """The variables for these values, and the conjuncts that define them.
 
     In a step in which no do behaviour assigns a feature, the variable has the feature's value. If
-    several actions assign it, the variable has one of their values, so that all that is read in the
-    step agrees. It has any value if not all assignments of the feature are described.
+    several actions assign it, the variable has one of their values, so that all that read it in the
+    step read the same. It has any value if not all assignments of the feature are described.
     """
 
     def __init__(self, tree: ObjectTree, gaps: Collection[str]) -> None:
