@@ -697,3 +697,13 @@ def test_the_first_formula_about_an_accept_action_may_read_the_event(decide):
     block = "perform action w { first start then a; action a accept Go; then done; }"
     formula = "G (running(a) & event=Go -> finished(a))"
     assert decide(block, formula) == ["holds"]
+
+
+def test_a_formula_reads_an_event_that_only_an_action_of_a_state_accepts(decide):
+    """The state machine alone receives fewer events than the block."""
+    block = """action w { first start then a; action a accept Stop; then done; }
+        exhibit state M { entry; then S; state S; transition first S accept Go then T;
+        state T { do w; } transition first T then S; }"""
+    formulas = "G (running(a) & event=Stop -> finished(a))", "G (event=Stop -> X state=S)"
+    verdicts = decide(block, *formulas, others="item def Stop;")
+    assert verdicts == ["holds", "holds"]

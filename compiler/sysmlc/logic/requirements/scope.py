@@ -148,7 +148,10 @@ class Scope(Struct, frozen=True):
             if feature is None:
                 raise FormulaError(self._describe_unknown(name), match.start())
             return feature.variable.ljust(len(name))
-        if is_plain and (name in self.variables or isinstance(meaning.formula, Const)):
+        # The component may receive more events than its state machine alone.
+        own = self.variables.get(name)
+        is_own = own is not None and own.domain == meaning.domain
+        if is_plain and (is_own or isinstance(meaning.formula, Const)):
             return name
         variable = f"__{len(meanings)}"
         meanings[variable] = replace(meaning, name=name)
