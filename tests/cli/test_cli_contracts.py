@@ -363,8 +363,8 @@ GRIPS_IN_BUSY = "G (!gripped & X gripped -> state=Busy)"
         ("do", "done", CALLER, "broken"),
         # It calls itself, so that there is no finite number of copies.
         ("do", "perform pick", "", "not-decided"),
-        # An entry performs it within the step, which is not described.
-        ("entry", "done", "", "not-decided"),
+        # An entry performs it within the step that enters the state.
+        ("entry", "done", "", "broken"),
     ],
 )
 def test_no_performance_of_an_activity_is_forgotten(

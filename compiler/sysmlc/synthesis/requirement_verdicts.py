@@ -125,11 +125,9 @@ class BehaviourCheck:
         self._facts = (*definitions, *(() if undischarged else stated))
         self._unproven = (*undischarged, *stated) if undischarged else ()
         # An action whose steps are not described may go on for ever.
-        self._endings = tuple(
-            conjunct
-            for conjunct in contract.assumptions
-            if conjunct.is_derived and behaviour.undescribed.isdisjoint(_names_of((conjunct,)))
-        )
+        derived = [conjunct for conjunct in contract.assumptions if conjunct.is_derived]
+        is_described = behaviour.undescribed.isdisjoint
+        self._endings = tuple(c for c in derived if is_described(_names_of((c,))))
         self._search = RunSearch((contract, requirements), manager_factory(options))
 
     def decide_requirements(self) -> Iterator[RequirementVerdict]:
