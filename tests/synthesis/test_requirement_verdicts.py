@@ -90,7 +90,7 @@ def test_a_variable_that_the_model_restricts_further_refutes_nothing():
 
 
 def test_an_action_that_has_not_ended_yet_may_refute_safety():
-    gaps = ComponentBehaviour(FILLING, gaps={"done": "unknown"}, ends=frozenset({"done"}))
+    gaps = ComponentBehaviour(FILLING, gaps={"done": "unknown"}, undescribed=frozenset({"done"}))
     assert decide("G !run", gaps).answer == "broken"
     assert decide("G !full", gaps).answer == "not-decided"
 
