@@ -376,10 +376,11 @@ def _list_written_ids(graph: Graph, machine: Machine) -> Iterator[str]:
     groups = [group for state in machine.vertices.values() for group in (state.entry, state.exit)]
     for transition in machine.list_transitions():
         groups += (segment.effect for segment in (transition, *transition.join_partners))
-    described = [
-        Counter(action.origin for action in group if isinstance(action, Assign)) for group in groups
-    ]
-    for id in dict.fromkeys(id for counts in described for id in counts):
-        count = sum(1 for _ in iter_writes(graph, graph[id]))
-        if all(counts[id] in (0, count) for counts in described):
+    counts: dict[str, set[int]] = {}
+    for group in groups:
+        origins = Counter(action.origin for action in group if isinstance(action, Assign))
+        for id, count in origins.items():
+            counts.setdefault(id, set()).add(count)
+    for id in counts:
+        if counts[id] == {sum(1 for _ in iter_writes(graph, graph[id]))}:
             yield id
