@@ -146,11 +146,10 @@ class Component:
         for state in machine.list_states():
             behaviours = self.graph.targets(self.graph[element_id(state.id)], role)
             performed = [self._find_performed(object_, behaviour) for behaviour in behaviours]
-            takes_time = any(pair and self._takes_time(pair[1]) for pair in performed)
+            if len(performed) != 1 or performed[0] is None or not self._takes_time(performed[0][1]):
+                continue
             is_plain = not state.regions and not state.timer
-            if role is Edge.EXIT:
-                is_plain = is_plain and machine.has_simple_exits(state)
-            if takes_time and len(behaviours) == 1 and is_plain:
+            if is_plain and (role is Edge.ENTRY or machine.has_simple_exits(state)):
                 yield state.id
 
     def _takes_time(self, activity: Element) -> bool:
