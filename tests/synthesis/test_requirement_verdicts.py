@@ -2,6 +2,7 @@
 
 import pytest
 
+from sysmlc.logic.classification import is_safety
 from sysmlc.logic.components.derivation import ComponentBehaviour
 from sysmlc.logic.contract import (
     BooleanDomain,
@@ -13,8 +14,10 @@ from sysmlc.logic.contract import (
     Variable,
 )
 from sysmlc.logic.infix import parse_formula
+from sysmlc.synthesis.algebra.refinement import RunSearch
+from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.decision import Options
-from sysmlc.synthesis.requirement_verdicts import BehaviourCheck, is_safety
+from sysmlc.synthesis.requirement_verdicts import BehaviourCheck
 
 NAMES = {"run": Owner.SYSTEM, "full": Owner.SYSTEM, "done": Owner.ENVIRONMENT}
 DOMAINS = {name: BooleanDomain() for name in NAMES}
@@ -73,6 +76,20 @@ def test_each_operator_has_its_meaning(formula, answer):
 def test_a_derived_assumption_is_named_where_it_is_needed():
     assert decide("F full").reason == "!run | done"
     assert decide("G (full -> G full)").reason == ""
+
+
+def test_a_limit_in_the_search_for_a_minimal_set_does_not_hide_the_proof(monkeypatch):
+    entails, questions = RunSearch.entails, []
+
+    def entails_but_for_one(search, facts, conjunct):
+        questions.append(conjunct)
+        if len(questions) == 3:
+            raise LimitError("of CPU time", "10 s")
+        return entails(search, facts, conjunct)
+
+    monkeypatch.setattr(RunSearch, "entails", entails_but_for_one)
+    verdict = decide("F full")
+    assert (verdict.answer, verdict.reason) == ("holds-if-actions-end", "!run | done")
 
 
 def test_a_broken_requirement_has_a_run_and_no_auxiliary_variables():

@@ -94,3 +94,22 @@ def _apply(op: Op, args: tuple[Formula, ...]) -> Formula:
             return f.either(*args)
         case _:
             return Apply(op, args)
+
+
+def is_safety(formula: Formula, is_positive: bool = True) -> bool:
+    """Whether each violation of the formula has a finite prefix, judged by its operators alone."""
+    if not isinstance(formula, Apply):
+        return True
+    if formula.op in (_EVENTUAL_OPERATORS if is_positive else _PERPETUAL_OPERATORS):
+        return False
+    args = formula.args
+    if formula.op is Op.IFF:
+        return all(is_safety(arg, sign) for arg in args for sign in (True, False))
+    negated = args[:1] if formula.op in (Op.NOT, Op.IMPLIES) else ()
+    return all(is_safety(arg, not is_positive) for arg in negated) and all(
+        is_safety(arg, is_positive) for arg in args[len(negated) :]
+    )
+
+
+_EVENTUAL_OPERATORS = (Op.EVENTUALLY, Op.UNTIL)
+_PERPETUAL_OPERATORS = (Op.ALWAYS, Op.RELEASE, Op.WEAK_UNTIL)

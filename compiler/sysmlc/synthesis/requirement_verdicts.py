@@ -14,6 +14,7 @@ from msgspec.structs import replace
 
 from sysmlc.diagnostics import Sink
 from sysmlc.logic import formula as f
+from sysmlc.logic.classification import is_safety
 from sysmlc.logic.components.derivation import ComponentBehaviour
 from sysmlc.logic.components.places import PlaceInBehaviour, PlaceKind
 from sysmlc.logic.contract import (
@@ -171,7 +172,10 @@ class BehaviourCheck:
         return self._entails((), conjunct)
 
     def decide(self, conjunct: Conjunct) -> RequirementVerdict:
-        """Return the verdict about a conjunct, within the time limit of one question."""
+        """Return the verdict about a conjunct.
+
+        The answer, the needed assumptions and the vacuity are questions with a time limit each.
+        """
         self._search.restart_clocks()
         if not self._search.has_runs(self._list_facts((), conjunct)):
             reason = "no run of the behaviour satisfies the assumptions of the requirement"
@@ -192,12 +196,19 @@ class BehaviourCheck:
         return self._refute(conjunct, endings)
 
     def _minimise(self, endings: tuple[Conjunct, ...], conjunct: Conjunct) -> tuple[Conjunct, ...]:
-        """Return a minimal subset of the derived assumptions that still proves the conjunct."""
+        """Return a subset of the derived assumptions that still proves the conjunct.
+
+        It is minimal, unless the limits of one question are reached first.
+        """
+        self._search.restart_clocks()
         needed = endings
         for ending in endings:
             without_ending = tuple(candidate for candidate in needed if candidate != ending)
-            if self._entails(without_ending, conjunct):
-                needed = without_ending
+            try:
+                if self._entails(without_ending, conjunct):
+                    needed = without_ending
+            except LimitError:
+                break
         return needed
 
     def _explain_vacuity(self, conjunct: Conjunct, endings: tuple[Conjunct, ...]) -> str:
@@ -206,6 +217,7 @@ class BehaviourCheck:
         It is valid, or the right-hand side of an implication could be false (Beer, Ben-David,
         Eisner and Rodeh 1997).
         """
+        self._search.restart_clocks()
         if self._is_valid(conjunct):
             return "it holds whatever the behaviour does"
         strengthened = list(iter_strengthened(conjunct.formula))
@@ -371,25 +383,6 @@ def iter_strengthened(
         for condition, stronger in iter_strengthened(arg, is_positive is not is_negated):
             args = (*formula.args[:position], stronger, *formula.args[position + 1 :])
             yield condition, Apply(formula.op, args)
-
-
-def is_safety(formula: Formula, is_positive: bool = True) -> bool:
-    """Whether each violation of the formula has a finite prefix, judged by its operators alone."""
-    if not isinstance(formula, Apply):
-        return True
-    if formula.op in (_EVENTUAL_OPERATORS if is_positive else _PERPETUAL_OPERATORS):
-        return False
-    args = formula.args
-    if formula.op is Op.IFF:
-        return all(is_safety(arg, sign) for arg in args for sign in (True, False))
-    negated = args[:1] if formula.op in (Op.NOT, Op.IMPLIES) else ()
-    return all(is_safety(arg, not is_positive) for arg in negated) and all(
-        is_safety(arg, is_positive) for arg in args[len(negated) :]
-    )
-
-
-_EVENTUAL_OPERATORS = (Op.EVENTUALLY, Op.UNTIL)
-_PERPETUAL_OPERATORS = (Op.ALWAYS, Op.RELEASE, Op.WEAK_UNTIL)
 
 
 def iter_negations(formula: Formula) -> Iterator[Formula]:

@@ -7,6 +7,7 @@ A contract denotes a set of environments (those that satisfy its assumptions) an
 fair runs of the others, so a failure names the conjunct and shows a run that violates it.
 """
 
+import time
 from collections.abc import Iterable, Iterator
 
 from msgspec import Struct
@@ -134,11 +135,16 @@ class RunSearch:
         self._new_manager = new_manager
         self._names = tuple(variable.name for variable in merge_variables(self._contracts))
         self._entailments: dict[tuple[Conjunct, ...], Entailment] = {}
+        self._start_time: float | None = None
 
     def restart_clocks(self) -> None:
-        """Let the time limit count from now, for a new question that may use earlier answers."""
+        """Let the time limit count from now, for a new question that may use earlier answers.
+
+        All explorations until the next call share the limit.
+        """
+        self._start_time = time.process_time()
         for entailment in self._entailments.values():
-            entailment.manager.restart_clock()
+            entailment.manager.restart_clock(self._start_time)
 
     def has_runs(self, facts: tuple[Conjunct, ...]) -> bool:
         """Whether some run satisfies the facts. Raises the errors of ``find_violation``."""
@@ -181,6 +187,8 @@ class RunSearch:
             variables, conjuncts = encode_conjuncts(facts, self._names)
             predictions = Contract("", "", variables, (), ())
             manager = self._new_manager()
+            if self._start_time is not None:
+                manager.restart_clock(self._start_time)
             with manager.guard():
                 universe = Universe((*self._contracts, predictions), manager, conjuncts)
                 self._entailments[facts] = Entailment(universe, universe.system(conjuncts))

@@ -244,12 +244,12 @@ class Manager:
         with self.guard():
             self._bdd.reorder()
 
-    def restart_clock(self) -> None:
-        """Let the CPU time of the limits count from now, for a new question about the same bits.
+    def restart_clock(self, start_time: float) -> None:
+        """Let the CPU time of the limits count from *start_time*, for a new question.
 
         A manager that a limit has stopped remains stopped.
         """
-        self._start_time = time.process_time()
+        self._start_time = start_time
 
     def usage(self) -> Usage:
         """Return the live nodes, their peak and the CPU seconds."""
