@@ -158,10 +158,7 @@ class Runs:
     @cached_property
     def _backward_among_reachable(self) -> Product:
         # Steps from unreachable states can take most of the nodes: of a block with 60 reachable
-        # states, the parts had 1,000,000 nodes, and have 20,000 without these steps. With a large
-        # set of reachable states and small parts, restricting takes longer than all products.
-        if all(len(part) <= len(self.reachable) for part in self.system.parts):
-            return self._backward
+        # states, the parts had 1,000,000 nodes, and have 20,000 without these steps.
         parts = (self.manager.restrict(part, self.reachable) for part in self.system.parts)
         return Product(self.manager, parts, self.next_bits)
 
