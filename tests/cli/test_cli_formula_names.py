@@ -73,3 +73,19 @@ def test_the_path_of_a_part_may_precede_its_actions(workspace, all_passes, subje
     result = workspace.sysmlc("contracts", "check", "line.sysml", "--format", "json")
     verdicts = [item["verdict"] for item in json.loads(result.stdout)["requirements"]]
     assert [result.exit_code, verdicts] == [0, ["holds"]]
+
+
+def test_an_action_of_several_states_is_named_with_one_of_them(workspace, all_passes):
+    states = "".join(f"state S{number} {{ exit wait; }} " for number in range(5))
+    text = f"""package P {{ part def B {{
+      action wait {{ first start then rest; action rest; then done; }}
+      exhibit state M {{ entry; then S0; {states} transition first S0 then S1; }} }}
+    requirement R {{ subject b : B; require constraint {{ language "LTL" /* F running(wait) */ }} }}
+    }}"""
+    workspace.write("model.sysml", text)
+    result = workspace.sysmlc("contracts", "check", "model.sysml")
+    advice = "'wait' is performed in several places: write S0.wait or S1.wait or S2.wait..."
+    assert advice in result.stderr
+    workspace.write("model.sysml", text.replace("running(wait)", "running(S0.wait)"))
+    result = workspace.sysmlc("contracts", "check", "model.sysml")
+    assert [result.exit_code, result.stderr.count("SM522")] == [0, 0]

@@ -29,6 +29,10 @@ _ACTION = re.compile(r"(?:([\w.]+)\.)?(running|finished)\(\s*([\w.]+)\s*\)")
 """``running(load.grip)``, or with the path of a part in front: ``robot.running(grip)``."""
 
 
+_LISTED_PATHS = 3
+"""Paths of an action that a message lists as alternatives of an ambiguous name."""
+
+
 def finish_name(id: str) -> str:
     """Return the name that stands for the end of a performance until all are placed."""
     return f"finished {id}"
@@ -170,8 +174,10 @@ class ComponentNames:
         if not candidates:
             return None
         if len(candidates) > 1:
-            texts = " or ".join(sorted({".".join(action.names) for action in actions}))
-            raise ComponentError(f"'{path}' is performed in several places: write {texts}")
+            texts = sorted({".".join(action.names) for action in actions} - {path})
+            more = "..." * (len(texts) > _LISTED_PATHS)
+            listed = " or ".join(texts[:_LISTED_PATHS])
+            raise ComponentError(f"'{path}' is performed in several places: write {listed}{more}")
         formulas = self._component.formulas
         node = formulas.graph.node(candidates[0])
         running: Formula = f.var(node.run)
