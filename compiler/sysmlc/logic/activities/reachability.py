@@ -21,8 +21,9 @@ from sysmlc.logic.activities.token_nodes import (
 )
 from sysmlc.logic.activities.token_step import Choose, NotSafeError, State, TokenStep
 
-_MAX_EXAMINED_NODES = 1_000_000
-"""Limit of nodes and edges that all steps examine together, which takes about two seconds."""
+_EXAMINED_PER_STATE = 50
+"""Limit of nodes and edges that steps examine for each allowed state: the search takes about two
+seconds for 20,000 allowed states."""
 
 
 @dataclass(slots=True)
@@ -53,7 +54,7 @@ def explore_states(graph: TokenGraph, limit: int) -> ReachabilityResult:
     start = graph.start_all(ACTIVITY_REGION)
     first = State(start.tokens, start.running)
     visited, worklist, steps = {first}, [first], 0
-    max_steps = _MAX_EXAMINED_NODES // (1 + len(graph.nodes) + len(graph.edges))
+    max_steps = limit * _EXAMINED_PER_STATE // (1 + len(graph.nodes) + len(graph.edges))
     reached.fired |= start.moved
     try:
         for state in worklist:
