@@ -308,6 +308,22 @@ def test_an_action_with_another_text_is_ended_by_the_environment(decide):
     assert decide(block, "F (state=T)", "F y") == ["holds-if-actions-end", "broken"]
 
 
+def test_the_environment_does_not_open_a_guard_about_an_argument(decide):
+    """The call waits at the decision for ever if its argument is false."""
+    block = (
+        FLAGS
+        + """action look { in attribute p : Boolean; first start then d; decide d;
+        if p then s; action s; then done; }
+        perform action work { first start then l;
+        perform action l references look { in attribute :>> p := VALUE; }
+        then t; action t assign y := true; then done; }"""
+    )
+    assert decide(block.replace("VALUE", "false"), "F y", "G !y") == ["broken", "holds"]
+    formulas = ("F y", "G (running(s) -> F finished(s))")
+    expected = ["holds-if-actions-end", "holds-if-actions-end"]
+    assert decide(block.replace("VALUE", "true"), *formulas) == expected
+
+
 def test_an_action_that_only_assigns_can_be_called(decide):
     block = FLAGS + "action set { assign y := true; } perform action work { first start then s; "
     block += "perform action s references set; then t; action t; then done; }"
@@ -415,6 +431,23 @@ def test_a_part_does_not_receive_what_it_sends(decide):
     block = SOURCE + RELAY + SINK.format("c") + CHAIN
     formulas = ("G !(m.state=Over)", "G (m.state=Full -> F m.state=Over)", "G !(c.state=Full)")
     assert decide(block, *formulas, others=PIECES) == ["holds", "broken", "broken"]
+
+
+WAITING = """part w { port inlet : ~Chute; attribute got : Boolean := false; perform action work {
+    first start then a; action a accept Piece via inlet; then s; action s assign got := true;
+    then done; } }"""
+
+
+def test_only_what_a_part_sends_ends_the_accept_action_of_another(decide):
+    """The environment is assumed to send only what it can send."""
+    wired = PIECES + WAITING.replace("part w", "part def W")
+    block = SOURCE.replace("accept Go do send", "accept Go if false do send") + WAITING
+    block += "connect a.outlet to w.inlet;"
+    assert decide(block, "F w.got", "G !w.got", others=PIECES) == ["broken", "holds"]
+    block = SOURCE + WAITING + "connect a.outlet to w.inlet;"
+    formulas = ("F w.got", "F a.state=Sent -> F w.got")
+    assert decide(block, *formulas, others=PIECES) == ["broken", "holds"]
+    assert decide("", "F b.got", others=wired, generals=":> W") == ["holds-if-actions-end"]
 
 
 def test_a_part_that_is_connected_with_itself_receives_what_it_sends(decide):

@@ -126,13 +126,18 @@ class _Description:
         self._conjuncts += wiring.conjuncts
         gaps |= wiring.gaps
         ends = {**self._define_ends(formulas), **late.unassigned}
+        # The environment is not assumed to decide what the model does, known or not.
+        fixed = {*gaps, *wiring.list_internal()}
+        endings = [
+            ending
+            for ending in derive_assumptions(formulas)
+            if fixed.isdisjoint(f.variable_names(ending.formula))
+        ]
         contract = Contract(
             name,
             self.component.subject.id,
             (*self._list_variables(formulas, wiring.variables).values(), *late.variables),
-            tuple(
-                replace(ending, source=Source.DERIVED) for ending in derive_assumptions(formulas)
-            ),
+            tuple(replace(ending, source=Source.DERIVED) for ending in endings),
             tuple(
                 replace(conjunct, formula=substitute(conjunct.formula, ends), source=Source.DERIVED)
                 for conjunct in self._conjuncts
@@ -168,6 +173,7 @@ class _Description:
         """Return the formulas about the steps of all performances."""
         slots = self.tree.used_slots
         decided = [slots[slot].variable for slot in slots if self._is_decided(slot)]
+        decided += self._arguments.variables
         given = [slots[slot].variable for slot in slots if not self._is_decided(slot)]
         tokens = self.performances.build(name, self.component.subject.id, decided, given)
         starts = {root.id: root.start for root in self._roots}

@@ -71,6 +71,11 @@ class Wiring(Struct, frozen=True):
     accepted: Mapping[str, tuple[str, str]]
     deliveries: list[Delivery]
 
+    def list_internal(self) -> set[str]:
+        """Return the variables of the acceptances that only parts of the component can end."""
+        sent = {(item.event, item.message) for item in self.deliveries if not item.is_open}
+        return {variable for variable, receipt in self.accepted.items() if receipt in sent}
+
 
 def derive_events(component: "Component") -> Wiring:
     """Return the events of all objects and how they follow from what others send."""
