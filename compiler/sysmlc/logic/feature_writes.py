@@ -7,6 +7,7 @@ to a feature (SysML 2.0, 7.16: ``out x = level``).
 
 import re
 from collections.abc import Iterable, Iterator
+from functools import cached_property
 
 from msgspec import Struct
 
@@ -375,7 +376,7 @@ SHARED = rule(
 )
 
 
-class Sharing(Struct, frozen=True):
+class Sharing(Struct, frozen=True, dict=True):
     """Finds further writers of the features that a state machine writes."""
 
     graph: Graph
@@ -384,6 +385,11 @@ class Sharing(Struct, frozen=True):
     """The writers of each feature; None if only the machine itself is considered."""
     classifier: Element | None = None
     """The classifier in which names are resolved; None if no classifier is around the machine."""
+
+    @cached_property
+    def index(self) -> WriterIndex:
+        """The index in which names are looked up: that of the writers, if there is one."""
+        return self.writers or WriterIndex(self.graph)
 
     def find_other_writer(self, feature: Element) -> Element | None:
         """Return a behaviour outside the machine that writes *feature*."""

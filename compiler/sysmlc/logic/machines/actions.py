@@ -273,12 +273,12 @@ def _read_behaviour(reading: ReadingContext, behaviour: Element, edge: Edge) -> 
 
 def _read_steps(reading: ReadingContext, behaviour: Element) -> list[Action]:
     """Return the assignments of an activity within the step, if formulas describe all of them."""
-    graph, context = reading.graph, reading.context
-    steps = find_instant_steps(graph, behaviour, reading.sharing.classifier)
+    graph, context, sharing = reading.graph, reading.context, reading.sharing
+    steps = find_instant_steps(graph, behaviour, sharing.classifier, sharing.index)
     pairs = [(assignment, step) for step in steps for assignment in read_assignments(step)]
     for assignment, step in pairs:
-        name = find_target(graph, assignment, step, context)
-        if not name or reading.sharing.find_other_writer(context.features[name].element):
+        name = find_target(graph, assignment, step, context, sharing.index)
+        if not name or sharing.find_other_writer(context.features[name].element):
             return []
     return [
         _read_assignment(reading, assignment, print_statement(assignment), step)

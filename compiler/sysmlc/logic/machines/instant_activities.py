@@ -29,12 +29,13 @@ _WORD = re.compile(r"[^\W\d]\w*")
 
 
 def find_instant_steps(
-    graph: Graph, behaviour: Element, classifier: Element | None
+    graph: Graph, behaviour: Element, classifier: Element | None, index: WriterIndex
 ) -> tuple[Element, ...]:
     """Return the actions that an entry, exit or effect performs within the step, in their order.
 
     The behaviour is drawn as a chain of assignments, or its text names such an activity of
     *classifier*, the type of the object that has the machine. The result is empty for others.
+    Names are looked up in *index*.
     """
     activity = behaviour if graph.owned(behaviour) else None
     if activity is None and classifier is not None:
@@ -42,13 +43,15 @@ def find_instant_steps(
     if activity is None or activity.kind is not Kind.ACTIVITY or activity.attrs.get("body"):
         return ()
     actions = query.list_chained_actions(graph, activity)
-    is_instant = all(takes_one_step(a) and _shares_names(graph, a, behaviour) for a in actions)
+    is_instant = all(
+        takes_one_step(action) and _shares_names(graph, action, behaviour, index)
+        for action in actions
+    )
     return actions if is_instant else ()
 
 
-def _shares_names(graph: Graph, step: Element, behaviour: Element) -> bool:
+def _shares_names(graph: Graph, step: Element, behaviour: Element, index: WriterIndex) -> bool:
     """Whether the features that a step names are the same for a behaviour of the machine."""
-    index = WriterIndex(graph)
     paths = {
         ".".join(names[:end])
         for assignment in read_assignments(step)
@@ -106,7 +109,9 @@ def may_name(graph: Graph, behaviour: Element, activity: Element) -> bool:
     )
 
 
-def find_target(graph: Graph, assignment: Assignment, step: Element, context: Context) -> str:
+def find_target(
+    graph: Graph, assignment: Assignment, step: Element, context: Context, index: WriterIndex
+) -> str:
     """Return the name of the feature that a step assigns, or "" if no formula describes it.
 
     The names in *context*, that of the machine, must mean the same in the step.
@@ -124,7 +129,6 @@ def find_target(graph: Graph, assignment: Assignment, step: Element, context: Co
         check_assignable(value.domain, feature.domain, assignment.value)
     except ElaborationError:
         return ""
-    index = WriterIndex(graph)
     is_same = all(
         _is_same_feature(graph, index.resolve_target(step, name), features[name].element)
         for name in _list_names(assignment)
@@ -145,11 +149,16 @@ def has_unknown_performer(graph: Graph, activity: Element, machines: Collection[
         any(graph.sources(activity, edge) for edge in _UNSEEN)
         or any(owner != graph.owner(activity) for owner in owners)
         or any(user.id not in machines for user in users)
-        or any(
-            activity.name in _WORD.findall(body) and (is_action or body != activity.name)
-            for body, is_action in _iter_bodies(graph)
-            if activity.name in body
-        )
+        or (bool(activity.name) and _is_mentioned(graph, activity.name))
+    )
+
+
+def _is_mentioned(graph: Graph, name: str) -> bool:
+    """Whether a text has the name of an activity, other than a behaviour whose text is the name."""
+    return any(
+        name in _WORD.findall(body) and (is_action or body != name)
+        for body, is_action in _iter_bodies(graph)
+        if name in body
     )
 
 
