@@ -137,8 +137,17 @@ def _is_decided_outside(graph: TokenGraph, edge: TokenEdge) -> bool:
     return not conditions or not all(map(graph.is_decided_inside, conditions))
 
 
-def derive_assumptions(formulas: StepFormulas) -> Iterator[Conjunct]:
-    """Yield the assumptions that actions end, that decisions open a branch, and that loops end."""
+def derive_assumptions(formulas: StepFormulas, decided: Collection[str] = ()) -> Iterator[Conjunct]:
+    """Yield the assumptions that actions end, that decisions open a branch, and that loops end.
+
+    Nothing is assumed about variables in *decided*, because the model decides them.
+    """
+    for assumption in _iter_assumptions(formulas):
+        if f.variable_names(assumption.formula).isdisjoint(decided):
+            yield assumption
+
+
+def _iter_assumptions(formulas: StepFormulas) -> Iterator[Conjunct]:
     for node in formulas.graph.workers():
         if node.kind is NodeKind.ACTION and node.duration is Duration.TIMED and node.done:
             # The contract cannot assume anything of variables that the activity itself assigns.

@@ -126,35 +126,20 @@ class _Description:
         self._conjuncts += wiring.conjuncts
         gaps |= wiring.gaps
         ends = {**self._define_ends(formulas), **late.unassigned}
-        # The environment is not assumed to decide what the model does, known or not.
-        fixed = {*gaps, *wiring.list_internal()}
-        endings = [
-            ending
-            for ending in derive_assumptions(formulas)
-            if fixed.isdisjoint(f.variable_names(ending.formula))
-        ]
         contract = Contract(
             name,
             self.component.subject.id,
             (*self._list_variables(formulas, wiring.variables).values(), *late.variables),
-            tuple(replace(ending, source=Source.DERIVED) for ending in endings),
+            tuple(
+                replace(assumption, source=Source.DERIVED)
+                for assumption in derive_assumptions(formulas, {*gaps, *wiring.list_internal()})
+            ),
             tuple(
                 replace(conjunct, formula=substitute(conjunct.formula, ends), source=Source.DERIVED)
                 for conjunct in self._conjuncts
             ),
         )
-        shared = {
-            self.tree.read_slot(slot).variable.name: tuple(
-                replace(
-                    writer,
-                    condition=substitute(writer.condition, ends),
-                    value=substitute(writer.value, ends),
-                )
-                for writer in group
-            )
-            for slot, group in writers.items()
-            if len(group) > 1
-        }
+        shared = self._list_shared_writers(writers, ends)
         places = tuple(
             place.replace_variables(ends)
             for place in iter_places(self.component, formulas, assigned)
@@ -168,6 +153,23 @@ class _Description:
         return ComponentBehaviour(
             contract, gaps | undescribed, frozenset(undescribed), shared, places, atoms, inner
         )
+
+    def _list_shared_writers(
+        self, writers: Mapping[Slot, list[Writer]], ends: Mapping[str, Formula]
+    ) -> dict[str, tuple[Writer, ...]]:
+        """Return the writers of the features with several; *ends* replaces placeholders."""
+        return {
+            self.tree.read_slot(slot).variable.name: tuple(
+                replace(
+                    writer,
+                    condition=substitute(writer.condition, ends),
+                    value=substitute(writer.value, ends),
+                )
+                for writer in group
+            )
+            for slot, group in writers.items()
+            if len(group) > 1
+        }
 
     def _make_formulas(self, name: str) -> PerformanceFormulas:
         """Return the formulas about the steps of all performances."""
