@@ -46,7 +46,10 @@ class ReachabilityResult:
 
 
 def explore_states(graph: TokenGraph, limit: int) -> ReachabilityResult:
-    """Search all reachable states, at most *limit* of them; in a large graph, fewer."""
+    """Search all reachable states, at most *limit* of them.
+
+    The steps of a large graph take longer, so that the search may give up with fewer states.
+    """
     # Which actions get tokens while they run is a result of the search.
     nodes = tuple(replace(node, queues=True) for node in graph.nodes)
     graph = replace(graph, nodes=nodes, stores=(), named_conditions=(), handshake=None)

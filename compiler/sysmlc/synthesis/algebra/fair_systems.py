@@ -143,9 +143,10 @@ class Runs:
         return self._backward(self.system.symbols.prime(states) & step)
 
     def predecessors_among_reachable(self, states: Node, step: Node | None = None) -> Node:
-        """Return the reachable states from which one step that satisfies *step* leads to *states*.
+        """Return states from which one step that satisfies *step* leads to *states*.
 
-        The result may contain any unreachable states, too.
+        All such reachable states are in the result. Unreachable states in it mean nothing, so that
+        the caller intersects it with reachable ones.
         """
         targets = self.system.symbols.prime(states)
         product = self._backward if self._reachable is None else self._backward_among_reachable
