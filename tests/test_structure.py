@@ -16,8 +16,8 @@ import draw_packages
 ROOT = Path(sysmlc.__file__).parent
 PATHS = sorted(ROOT.rglob("*.py"))
 GENERATED = {"sysmlc.ir.kinds"}
-LARGEST = 400
-"""Lines of a module."""
+LARGEST = 600
+"""Lines of a module: a longer one probably has a second subject."""
 
 PARTICLES = set(
     """told said made kept found known given done seen held left meant written taken drawn shown
@@ -112,7 +112,7 @@ def test_no_function_is_named_by_a_participle_or_a_particle():
     assert names == []
 
 
-def test_modules_have_at_most_400_lines():
+def test_modules_have_at_most_600_lines():
     lengths = {name_module(path): path.read_text(encoding="utf-8").count("\n") for path in PATHS}
     too_long = {
         module: length
