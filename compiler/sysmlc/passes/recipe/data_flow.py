@@ -10,6 +10,7 @@ from msgspec import Struct
 from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.ir.query.classifiers import name_value_unit
 from sysmlc.logic.expressions.expression import Expression, Literal
+from sysmlc.logic.feature_writes import find_bound_name
 from sysmlc.passes.recipe.context import Context, is_inlined
 from sysmlc.passes.recipe.expressions import (
     build_parameter,
@@ -25,6 +26,7 @@ from sysmlc.recipe.model import Parameter
 
 _DOTTED = re.compile(r"[^\W\d]\w*\.[^\W\d]\w*")
 """A name ``action.pin`` or ``parameter.feature`` in an expression."""
+_OUT = ("out", "inout")
 
 
 class DataFlow(Struct, frozen=True, dict=True):
@@ -64,7 +66,8 @@ class DataFlow(Struct, frozen=True, dict=True):
     def bind_inputs(self, node: Element) -> tuple[tuple[str, Expression], ...]:
         """Return the names of input pins with the expressions of their values, sorted."""
         values = {
-            self.context.label(pin): self._find_value(pin) for pin in self._list_pins(node, "in")
+            self.context.label(pin): self._find_value(pin)
+            for pin in self._list_pins(node, "in", "inout")
         }
         return tuple(
             (name, value) for name in sorted(values) if (value := values[name]) is not None
@@ -75,26 +78,48 @@ class DataFlow(Struct, frozen=True, dict=True):
         return tuple(
             sorted(
                 (self.context.label(pin), self.variable_of(pin))
-                for pin in self._list_pins(node, "out")
+                for pin in self._list_pins(node, *_OUT)
             )
         )
 
     def read(self, text: str) -> Expression:
-        """Return the expression of a text; names of output pins become their variables."""
-        expression = resolve_literals(self.context, self.activity, read_expression(text))
+        """Return the expression of a text, with ``rename_variables`` applied."""
+        return self.rename_variables(
+            resolve_literals(self.context, self.activity, read_expression(text))
+        )
+
+    def rename_variables(self, expression: Expression) -> Expression:
+        """Replace names of output pins, and of attributes bound to them, by their variables."""
         return _rename_variables(expression, self._variables) if self.dotted else expression
 
     @cached_property
     def _variables(self) -> dict[str, str]:
-        """The variables that output pins assign, by the names ``action.pin`` of the pins."""
-        return {self._dotted_name(pin): self.variable_of(pin) for pin in self.outputs}
+        """The variables of output pins, by ``action.pin`` and by attributes bound to the pins."""
+        variables = {self._dotted_name(pin): self.variable_of(pin) for pin in self.outputs}
+        bound = dict(self._iter_bound_attributes())
+        while new := [name for name, path in bound.items() if path in variables]:
+            variables |= {name: variables[bound.pop(name)] for name in new}
+        return variables
+
+    def _iter_bound_attributes(self) -> Iterator[tuple[str, str]]:
+        """Yield the attributes with a binding ``= path``, and the path."""
+        for element in self.context.contents(self.activity):
+            text = element.attrs.get("default")
+            is_bound = element.attrs.get("default_kind") == "bound" and isinstance(text, str)
+            if element.kind is Kind.PROPERTY and is_bound and "default_language" in element.attrs:
+                yield self.context.label(element), str(text)
 
     def variable_of(self, pin: Element) -> str:
-        """Return the variable that an output pin assigns."""
+        """Return the variable that an output pin assigns: its bound feature, or its own name."""
         for flow in query.outgoing(self.context.graph, pin):
             target = query.flow_target(self.context.graph, flow)
             if target is not None and target.kind is Kind.ACTIVITY_PARAMETER:
                 return self._parameter_name(target)
+            if target is not None and target.kind is Kind.PROPERTY:
+                return self.context.label(target)
+        bound = find_bound_feature(self.context, pin)
+        if bound:
+            return bound
         name, dotted_name = self.context.label(pin), self._dotted_name(pin)
         return dotted_name if name in self.shared or dotted_name in self.dotted else name
 
@@ -155,7 +180,9 @@ class DataFlow(Struct, frozen=True, dict=True):
         attributes = [
             element
             for element in elements
-            if element.kind is Kind.PROPERTY and is_data(self.context, element)
+            if element.kind is Kind.PROPERTY
+            and is_data(self.context, element)
+            and not (self.dotted and self.context.label(element) in self._variables)
         ]
         by_name = {
             self.context.label(element): build_parameter(self.context, element)
@@ -173,9 +200,9 @@ class DataFlow(Struct, frozen=True, dict=True):
                 by_name.setdefault(name, Parameter(name, parameter.type, parameter.unit))
         return tuple(by_name[name] for name in sorted(by_name))
 
-    def _list_pins(self, node: Element, direction: str) -> Iterator[Element]:
+    def _list_pins(self, node: Element, *directions: str) -> Iterator[Element]:
         for pin in self.context.graph.owned(node):
-            fits = pin.kind is Kind.PIN and pin.attrs.get("direction") == direction
+            fits = pin.kind is Kind.PIN and pin.attrs.get("direction") in directions
             if fits and is_input(self.context, pin):
                 yield pin
 
@@ -230,9 +257,18 @@ def list_data_parameters(
     )
 
 
+def find_bound_feature(context: Context, pin: Element) -> str:
+    """Return the path of the feature to which the model binds an output pin, or ''."""
+    action = context.graph.owner(pin)
+    is_text = isinstance(pin.attrs.get("value"), str) and "value_instance" not in pin.attrs
+    if action is None or not is_text:
+        return ""
+    return (find_bound_name(context.graph, action, pin) or "").removeprefix("self.")
+
+
 def _list_output_pins(context: Context, activity: Element) -> Iterator[Element]:
     for node in context.contents(activity):
         if node.kind is Kind.ACTION:
             for pin in context.graph.owned(node):
-                if pin.kind is Kind.PIN and pin.attrs.get("direction") == "out":
+                if pin.kind is Kind.PIN and pin.attrs.get("direction") in _OUT:
                     yield pin

@@ -148,8 +148,13 @@ def _build_call(context: Context, node: Element, base: Node, data: DataFlow) -> 
 def _build_assignments(context: Context, node: Element, base: Node, data: DataFlow) -> list[Node]:
     body = str(node.attrs.get("body", ""))
     return [
-        _change(base, id=f"{base.id}#{number}" if number > 1 else base.id, variable=v, expression=e)
-        for number, (v, e) in enumerate(read_assignments(body) or (), 1)
+        _change(
+            base,
+            id=f"{base.id}#{number}" if number > 1 else base.id,
+            variable=variable,
+            expression=data.rename_variables(value),
+        )
+        for number, (variable, value) in enumerate(read_assignments(body) or (), 1)
     ]
 
 

@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Kind
 from sysmlc.passes.recipe.context import Context
+from sysmlc.passes.recipe.data_flow import DataFlow, find_bound_feature
 from sysmlc.passes.recipe.graphs import refine
 from sysmlc.passes.recipe.profile import NAMESPACE, Tags
 from sysmlc.passes.recipe.tasks import list_steps
@@ -81,6 +82,14 @@ CHOICE_OF_TASKS = rule(
     "'{decision}' chooses between tasks, but all tasks of recipe '{recipe}' are scheduled",
     help="move the choice into a task, or make two recipes",
 )
+OUTPUT_VALUE = rule(
+    "SM645",
+    "recipe-output-bound-to-value",
+    Severity.WARNING,
+    "output '{pin}' of '{action}' is bound to '{value}', which is not a variable; "
+    "the recipe assigns it to '{variable}' only",
+    help="bind the output to an attribute, and compare the attribute with the value in a guard",
+)
 SAME_NAME = rule(
     "SM619",
     "recipe-same-name",
@@ -94,16 +103,37 @@ def report_decisions(context: Context, model: Model, sink: Sink) -> None:
     """Report decisions of the pass that the model does not state.
 
     These are levels that follow from the position of a call (SM614), omitted content (SM615),
-    choices between tasks (SM617), and unrefined tasks with the name of an activity (SM619).
+    choices between tasks (SM617), unrefined tasks with the name of an activity (SM619), and
+    outputs that are bound to values (SM645).
     """
     recipe = context.graph[model.recipe.element]
     _report_tasks(context, recipe, sink)
+    _report_outputs(context, recipe, sink)
     graphs = [(flow_graph, "task") for flow_graph in model.service_graphs]
     graphs += [(flow_graph, "service") for flow_graph in model.function_graphs]
     for graph, activity_level in graphs:
         activity = context.graph[graph.element]
+        _report_outputs(context, activity, sink)
         for id, level in refine(context, activity, activity_level).decisions:
             _report_step(context, activity, context.graph[id], level, sink)
+
+
+def _report_outputs(context: Context, activity: Element, sink: Sink) -> None:
+    """Report the outputs of steps that are bound to another expression than a path of names."""
+    data = DataFlow.build(context, activity)
+    for pin in data.outputs:
+        action = context.graph.owner(pin)
+        is_bound = "value" in pin.attrs and context.definition(action or pin) is not None
+        if action is not None and is_bound and not find_bound_feature(context, pin):
+            value = pin.attrs["value"]
+            sink.report(
+                OUTPUT_VALUE,
+                context.graph.subject(pin),
+                pin=context.label(pin),
+                action=context.name(action),
+                value=str(value).lower() if isinstance(value, bool) else str(value),
+                variable=data.variable_of(pin),
+            )
 
 
 def _report_tasks(context: Context, recipe: Element, sink: Sink) -> None:
