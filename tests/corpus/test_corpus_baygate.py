@@ -73,10 +73,10 @@ def test_the_diagrams_of_baygate_are_those_of_the_thesis(name, compilations):
     """Table 3.1; the value types of CAEX 3.0 (section 6) have a diagram of their own."""
     diagrams = {artefact.path.removesuffix(".puml") for artefact in compilations[name].artefacts}
     assert diagrams - {"diagrams/Quantities.bdd"} == {
-        "diagrams/BayGate%20Breakdown.bdd",
+        "diagrams/BayGate_Breakdown.bdd",
         "diagrams/SysML-RCL.bdd",
-        "diagrams/Interface%20Lib.bdd",
-        "diagrams/BayGate%20System.BayGate.ibd",
+        "diagrams/Interface_Lib.bdd",
+        "diagrams/BayGate_System.BayGate.ibd",
     }
 
 

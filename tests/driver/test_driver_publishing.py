@@ -2,6 +2,8 @@
 
 import json
 import os
+import subprocess
+import sys
 
 import pytest
 from driver_helpers import FAULTY, PLANT, OutlineBackend, compile_files
@@ -171,3 +173,40 @@ def test_trace_maps_files_to_elements_and_elements_to_lines(tmp_path):
         "qualified_name": "Plant::Gate",
         "source": {"file": "plant.ir", "line": None, "column": None},
     }
+
+
+SCRIPTS = """
+Package p "装置"
+  Class band "Förder band"
+    Port band.in "in"
+"""
+
+
+def test_file_names_have_letters_of_all_scripts_and_the_manifest_the_full_names(tmp_path):
+    (tmp_path / "plant.ir").write_text(SCRIPTS)
+    arguments = [sys.executable, "-m", "sysmlc", "build", "plant.ir", "--emit", "plantuml,graph"]
+    result = subprocess.run(arguments, cwd=tmp_path, capture_output=True)
+    assert result.returncode == 0
+    path = "diagrams/装置.bdd.puml"
+    assert path in list_files(tmp_path)
+    manifest = json.loads((tmp_path / "out/manifest.json").read_text())
+    names = {file["path"]: file.get("name") for file in manifest["files"]}
+    assert names[path] == "装置"
+    assert names["graph.json"] is None
+    assert subprocess.run([*arguments, "--check"], cwd=tmp_path).returncode == 0
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems name files in Unicode")
+@pytest.mark.parametrize(("option", "answer"), [([], b"SM912"), (["--check"], b"cannot use")])
+def test_a_locale_without_the_letters_is_answered_in_a_sentence(tmp_path, option, answer):
+    (tmp_path / "plant.ir").write_text(SCRIPTS)
+    result = subprocess.run(
+        [sys.executable, "-m", "sysmlc", "build", "plant.ir", "--emit", "plantuml", *option],
+        cwd=tmp_path,
+        capture_output=True,
+        env={"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0", "HOME": str(tmp_path)},
+    )
+    assert result.returncode == 2
+    assert answer in result.stderr
+    assert b"set PYTHONUTF8=1" in result.stderr
+    assert list_files(tmp_path) == []

@@ -75,8 +75,9 @@ class ContractFormatBackend(Struct, frozen=True):
                     continue
                 texts = self.split(text) if self.split else {suffix: text}
                 for file_suffix, file_text in texts.items():
-                    path = f"contracts/{names[contract.component]}{file_suffix}"
-                    output.add(path, notes + file_text, trace, self.name)
+                    component = contract.component
+                    path = f"contracts/{names[component]}{file_suffix}"
+                    output.add(path, notes + file_text, trace, self.name, name=component)
 
     def _print_gap(self, reason: str) -> str:
         text = _NOT_IN_COMMENTS.sub(

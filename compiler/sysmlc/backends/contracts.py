@@ -46,8 +46,9 @@ class ContractsBackend(Struct, frozen=True):
         names = assign_file_names(contract.component for contract in contracts)
         with Templates(self.name, options.templates) as templates:
             for contract in contracts:
-                path = f"contracts/{names[contract.component]}"
-                writer = _Writer(graph, output, sink, templates, path)
+                component = contract.component
+                path = f"contracts/{names[component]}"
+                writer = _Writer(graph, output, sink, templates, path, component)
                 writer.write_contract(rename_ambiguous_literals(contract))
 
 
@@ -60,6 +61,7 @@ class _Writer(Struct, frozen=True):
     templates: Templates
     path: str
     """Path of the files without suffix."""
+    component: str
 
     def write_contract(self, contract: Contract) -> None:
         trace = tuple(list_traced_elements(self.graph, contract))
@@ -68,7 +70,8 @@ class _Writer(Struct, frozen=True):
         self._add_page(contract, trace)
 
     def _add(self, suffix: str, content: str, trace: tuple[str, ...]) -> None:
-        self.output.add(f"{self.path}{suffix}", content, trace, "contracts")
+        path = f"{self.path}{suffix}"
+        self.output.add(path, content, trace, "contracts", name=self.component)
 
     def _add_spin(self, contract: Contract, trace: tuple[str, ...]) -> None:
         try:

@@ -62,7 +62,8 @@ class MonitorBackend(Struct, frozen=True):
                 page = _build_page(graph, monitor, prefix)
                 for suffix in (".h", ".c", ".py"):
                     text = templates.render(f"monitor{suffix}.j2", page=page)
-                    output.add(f"monitors/{prefix}_monitor{suffix}", text, trace, self.name)
+                    path = f"monitors/{prefix}_monitor{suffix}"
+                    output.add(path, text, trace, self.name, name=contract.component)
 
 
 class _Variable(Struct, frozen=True):

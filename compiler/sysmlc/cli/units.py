@@ -267,10 +267,12 @@ def _open_nested(project: Path, settings: "Settings", root: Path) -> Iterator[Un
 
 def _give_unique_names(units: Sequence[Unit]) -> list[Unit]:
     """Number names that differ in case only, because some file systems ignore case."""
+    from sysmlc.support.output import fold_path
+
     counts: dict[str, int] = {}
     named: list[Unit] = []
     for unit in units:
-        key = unit.name.lower()
+        key = fold_path(unit.name)
         counts[key] = count = counts.get(key, 0) + 1
         named.append(unit if count == 1 else replace(unit, name=f"{unit.name}~{count}"))
     return named

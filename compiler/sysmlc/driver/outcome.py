@@ -76,11 +76,15 @@ def _describe_source(
 
 
 class OutputFile(Struct, frozen=True):
-    """A file of the output folder, and the back end that generated it."""
+    """A file of the output folder, and the back end that generated it.
+
+    ``name`` is the full name of the element after which the file is named, if there is one.
+    """
 
     path: str
     backend: str
     sha256: str
+    name: str = ""
 
 
 class Withheld(Struct, frozen=True):
@@ -121,14 +125,15 @@ def summarize(compilation: Compilation, has_files: bool = True) -> Outcome:
     Locations are resolved to lines and columns.
     """
     texts = _collect_texts(compilation) if has_files else {}
-    backends = {artefact.path: artefact.backend for artefact in compilation.artefacts}
+    origins = {item.path: (item.backend, item.name) for item in compilation.artefacts}
     return Outcome(
         root=compilation.root,
         inputs=compilation.inputs,
         findings=make_report(compilation.diagnostics, compilation.sources).findings,
         files=tuple(
-            OutputFile(path, backends.get(path, ""), compute_text_digest(text))
+            OutputFile(path, backend, compute_text_digest(text), name)
             for path, text in texts.items()
+            for backend, name in [origins.get(path, ("", ""))]
         ),
         texts=texts,
         withheld=tuple(Withheld(path, why) for path, why in sorted(compilation.withheld.items())),
@@ -170,7 +175,8 @@ def format_manifest(outcome: Outcome, kept: Mapping[str, str]) -> str:
 
 
 def _describe_file(file: OutputFile) -> dict[str, object]:
-    return {"path": file.path, "backend": file.backend, "sha256": file.sha256}
+    name = {"name": file.name} if file.name else {}
+    return {"path": file.path, **name, "backend": file.backend, "sha256": file.sha256}
 
 
 def _describe_withheld(file: Withheld) -> dict[str, object]:

@@ -61,7 +61,8 @@ UNWRITABLE_FILE = rule(
     "unwritable-output",
     Severity.ERROR,
     "cannot write '{path}': {reason}",
-    help="free space on the disk, or change the permissions, and build again",
+    help="free space on the disk, change the permissions, or do what the reason says; "
+    "then build again",
 )
 EDITED_STALE_FILE = rule(
     "SM913",

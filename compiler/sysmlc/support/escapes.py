@@ -29,7 +29,7 @@ def escape_invisible(text: str, allowed: str = "") -> str:
     if text.isascii() and text.isprintable():
         return text
     return "".join(
-        _escape(sign) if _is_invisible(sign) and sign not in allowed else sign for sign in text
+        _escape(sign) if is_invisible(sign) and sign not in allowed else sign for sign in text
     )
 
 
@@ -62,7 +62,8 @@ def escape_undecodable(name: str) -> str:
     return _SURROGATE.sub(_escape_surrogate, name)
 
 
-def _is_invisible(sign: str) -> bool:
+def is_invisible(sign: str) -> bool:
+    """Return whether a character is displayed as nothing, or controls how others are displayed."""
     return unicodedata.category(sign) in _INVISIBLE or sign in _BLANK_LETTERS
 
 

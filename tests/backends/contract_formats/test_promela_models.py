@@ -125,7 +125,7 @@ def test_words_of_promela_and_c_are_no_names(tmp_path):
             ": Press", ": '*/ #include'"
         ),
         tmp_path,
-        "Shop.%2A%2F%20%23include.requirements",
+        "Shop.%2A%2F_%23include.requirements",
     )
     assert diagnostics == []
     assert "*/ #" not in model

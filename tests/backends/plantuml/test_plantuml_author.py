@@ -74,7 +74,7 @@ def test_parts_are_nested_as_in_the_diagram_of_the_author():
 
 
 def test_a_diagram_without_nesting_has_the_ports_of_the_types():
-    assert draw_authored()["Plant.Line.By%20type.ibd.puml"].count(">outfeed<") == 2
+    assert draw_authored()["Plant.Line.By_type.ibd.puml"].count(">outfeed<") == 2
 
 
 def test_a_long_row_has_its_size_in_each_of_its_lines():

@@ -12,7 +12,7 @@ from sysmlc.backends.aml.rules import EMPTY, ILLEGAL_CHARACTERS, Losses
 from sysmlc.backends.base import EmitOptions, name_compile_unit
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.support.output import Output, assign_file_names
+from sysmlc.support.output import Output, assign_file_names, fold_path
 
 FOLDER = "aml"
 
@@ -110,9 +110,9 @@ def _choose_paths(names: list[str]) -> dict[str, str]:
     used: set[str] = set()
     for name, stem in stems.items():
         path = "/".join(file_names[part] for part in stem)
-        while path.lower() in used:
+        while fold_path(path) in used:
             path += "_"
-        used.add(path.lower())
+        used.add(fold_path(path))
         paths[name] = f"{FOLDER}/{path}.aml"
     return paths
 

@@ -106,7 +106,8 @@ def _write(
                     marked = _mark_faults(graph, diagram, trace, options.faulty)
                     text = _render(graph, marked, templates)
                     path = f"diagrams/{folder}{file}.{kind}.puml"
-                    output.add(path, text, trace, "plantuml", marks_faults=True)
+                    name = diagram.name
+                    output.add(path, text, trace, "plantuml", marks_faults=True, name=name)
             except TemplateError as fault:
                 sink.report(BAD_TEMPLATE, Subject(f"{kind}.puml.j2"), kind=kind, fault=fault)
 

@@ -39,7 +39,8 @@ class RecipeBackend(Struct, frozen=True):
                 continue
             text = encode_json(describe_model(model, options.inputs), 2)
             path = f"recipes/{names[model.recipe.id]}.json"
-            output.add(path, text, _iter_traced_elements(model), self.name)
+            trace = _iter_traced_elements(model)
+            output.add(path, text, trace, self.name, name=model.recipe.id)
 
 
 class _Traced(Protocol):

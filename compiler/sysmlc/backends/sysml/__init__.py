@@ -50,7 +50,7 @@ from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph, Kind
 from sysmlc.support import resources
 from sysmlc.support.interpreter import allow_recursion
-from sysmlc.support.output import Output, assign_file_names
+from sysmlc.support.output import Output, assign_file_names, fold_path
 
 LIBRARY = "SysMLC.sysml"
 """The library of metadata definitions to which the text refers."""
@@ -96,7 +96,7 @@ def _name_file(
     inputs = tuple(file for file in options.inputs if file.path not in author_files)
     unit = name_compile_unit(graph, replace(options, inputs=inputs))
     path = f"{assign_file_names([unit])[unit]}.sysml"
-    if path.lower() not in {text.lower() for text in taken}:
+    if fold_path(path) not in set(map(fold_path, taken)):
         return path
     whole_name = posixpath.basename(inputs[0].path) if inputs else f"{unit}.graph"
     return f"{assign_file_names([whole_name])[whole_name]}.sysml"

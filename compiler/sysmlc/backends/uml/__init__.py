@@ -66,7 +66,7 @@ class UmlBackend(Struct, frozen=True):
         """Add ``uml/<unit>.uml``; report what UML cannot express."""
         unit = name_compile_unit(graph, options)
         path = f"uml/{assign_file_names([unit])[unit]}.uml"
-        output.add(path, write_document(graph, sink), (), self.name)
+        output.add(path, write_document(graph, sink), (), self.name, name=unit)
 
 
 BACKEND = UmlBackend()
