@@ -1,5 +1,6 @@
 """Syntax errors: each is reported once, at its location, and the parser reads the rest."""
 
+import random
 from codecs import BOM_UTF8
 
 import pytest
@@ -353,7 +354,18 @@ def test_an_error_is_located_at_its_byte_after_any_byte_order_marks(marks):
 
 def test_a_file_in_another_encoding_has_one_diagnostic():
     text = "package P { part x; }".encode("utf-16").decode("utf-8", "replace")
-    assert list_diagnostics(text) == ["1:1 SM194 the file is not written in UTF-8"]
+    assert list_diagnostics(text) == ["1:1 SM194 the file is not text in UTF-8"]
+
+
+def test_a_binary_file_has_one_diagnostic():
+    for seed in range(20):
+        text = random.Random(seed).randbytes(3_000).decode("utf-8", "replace")
+        assert list_diagnostics(text) == ["1:1 SM194 the file is not text in UTF-8"]
+
+
+def test_a_few_control_characters_are_reported_one_by_one():
+    text = "package P { part x\x01; part y\x02; }"
+    assert [line.split()[1] for line in list_diagnostics(text)] == ["SM194", "SM194"]
 
 
 @pytest.mark.parametrize("text", ["\0", "\ufffd\ufffd", "'", '"', "/*", "}", "{", ";", "§" * 99])

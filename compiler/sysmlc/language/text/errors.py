@@ -22,7 +22,10 @@ _LEXICAL_FAULTS = {
     "comment": ("this comment", "put */ where it ends"),
     "quote": ("this name in quotes", "put ' where it ends, in the same line"),
     "string": ("this text in quotes", 'put " where it ends'),
-    "encoding": ("the file is not written in UTF-8", "save it in UTF-8, and it is read"),
+    "encoding": (
+        "the file is not text in UTF-8",
+        "save it in UTF-8; if it is not a model, rename or remove it",
+    ),
     "number": ("{} is too large a number", "write it with an exponent below 308"),
     "character": (
         "{} belongs to no name, symbol or text",

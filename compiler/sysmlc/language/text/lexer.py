@@ -29,7 +29,10 @@ INVALID_GROUP = 6
 MAX_INTEGER_DIGITS = 1_000
 """Digits of the longest natural number that is read exactly."""
 _PROBE_LENGTH = 64
-"""A binary file, or one in UTF-16, has a zero among so many first characters."""
+"""A file in UTF-16 has a zero among so many first characters."""
+_CONTROL_CHARACTER = re.compile(r"[\x00-\x08\x0e-\x1f\x7f]")
+_CONTROL_SHARE = 0.05
+"""A file is binary if more than this share of its first characters are control characters."""
 _REST_OF_LITERAL = re.compile(r"[\w ]*")
 _COMMENT_START = re.compile(r"\A[ \t\f\v]*(?:(?:\r\n|\r|\n)[ \t\f\v]*\*? ?)?")
 _LINE_START = re.compile(r"(\r\n|\r|\n)[ \t\f\v]*\*? ?")
@@ -120,7 +123,7 @@ def tokenize(text: str, types: TokenTypes) -> Tokens:
     tokens = Tokens(text, bytearray(), [], [], [], [], [], [], {})
     position = 0
     # Decoded as UTF-8, such a file would give thousands of faults instead of one.
-    if "\0" in text[:_PROBE_LENGTH]:
+    if "\0" in text[:_PROBE_LENGTH] or _is_binary(text):
         tokens.faults.append(LexicalFault("encoding", 0, ""))
         position = len(text)
     while position >= 0:
@@ -130,6 +133,12 @@ def tokenize(text: str, types: TokenTypes) -> Tokens:
     if not text.isascii():
         _check_name_characters(tokens, types)
     return tokens
+
+
+def _is_binary(text: str) -> bool:
+    """Whether a text is the content of a binary file that was decoded as UTF-8."""
+    head = text[:4_096]
+    return len(_CONTROL_CHARACTER.findall(head)) > max(3, _CONTROL_SHARE * len(head))
 
 
 def _tokenize_valid(tokens: Tokens, types: TokenTypes, position: int) -> int:
