@@ -12,7 +12,9 @@ from sysmlc.driver.outcome import Outcome, format_manifest, format_trace, summar
 from sysmlc.driver.publishing import Publication, Target, compare, publish
 from sysmlc.driver.registry import (
     BackendError,
+    PlugInWarning,
     list_backend_names,
+    load_all_backends,
     load_backends,
     load_full_catalogue,
     select_backends,
@@ -25,6 +27,7 @@ __all__ = [
     "Observer",
     "OpenedUnit",
     "Outcome",
+    "PlugInWarning",
     "Publication",
     "Request",
     "Target",
@@ -33,6 +36,7 @@ __all__ = [
     "format_manifest",
     "format_trace",
     "list_backend_names",
+    "load_all_backends",
     "load_backends",
     "load_full_catalogue",
     "open_unit",

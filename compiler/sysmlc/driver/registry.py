@@ -5,6 +5,7 @@ of sysmlc. The rules of a plug-in are those that its modules define when they ar
 """
 
 import dataclasses
+import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from importlib import import_module
@@ -72,7 +73,11 @@ _RULE_PACKAGES = (
 
 
 class BackendError(Exception):
-    """A back end is unknown, defined twice, or cannot be loaded."""
+    """A back end is unknown or cannot be loaded."""
+
+
+class PlugInWarning(UserWarning):
+    """A plug-in that no option names is ignored, because it cannot be used."""
 
 
 def load_frontends(library: str = "") -> list[Frontend]:
@@ -89,28 +94,35 @@ def load_frontends(library: str = "") -> list[Frontend]:
 def load_passes(options: Mapping[str, Mapping[str, object]]) -> list[Pass]:
     """Return the passes in order; *options* maps the name of a pass to its options.
 
-    Raise ConfigError for a pass or an option that does not exist, and for a plug-in that cannot be
-    loaded.
+    A plug-in that cannot be used is ignored with a PlugInWarning. Raises ConfigError for a pass or
+    an option that does not exist.
     """
     plug_ins = find_plug_ins(PASS_GROUP)
     names = [*pipeline.NAMES, *plug_ins]
     for name in options:
         if name not in names:
             advice = did_you_mean(name, names)
-            raise ConfigError(f"passes.{name}: unknown pass; {advice}")
+            raise ConfigError(f"passes.{name}: unknown pass; {advice}", ("passes", name))
     loaded = [pipeline.load(name) for name in pipeline.NAMES]
-    loaded += [_load_pass(entry) for entry in plug_ins.values()]
+    loaded += [step for entry in plug_ins.values() if (step := _load_pass(entry)) is not None]
     configured = [_set_options(step, options.get(step.name, {})) for step in loaded]
     return pipeline.sort_passes(_share_assumed_range(configured))
 
 
-def _load_pass(entry: EntryPoint) -> Pass:
+def _load_pass(entry: EntryPoint) -> Pass | None:
+    """Return the pass of a plug-in, or None with a PlugInWarning if it cannot be used."""
     if entry.name in pipeline.NAMES:
-        raise ConfigError(f"the plug-in {entry.value} takes the name of pass '{entry.name}'")
+        _ignore_plug_in(f"the plug-in {entry.value} takes the name of pass '{entry.name}'")
+        return None
     try:
         return cast("Pass", entry.load())
     except Exception as problem:
-        raise ConfigError(f"pass '{entry.name}' cannot be loaded: {problem!r}") from problem
+        _ignore_plug_in(f"pass '{entry.name}' cannot be loaded: {problem!r}")
+        return None
+
+
+def _ignore_plug_in(reason: str) -> None:
+    warnings.warn(f"{reason}; the plug-in is ignored", PlugInWarning, stacklevel=3)
 
 
 def _set_options(step: Pass, options: Mapping[str, object]) -> Pass:
@@ -119,12 +131,13 @@ def _set_options(step: Pass, options: Mapping[str, object]) -> Pass:
         return step
     names = _list_option_names(step)
     for name, value in options.items():
-        where = f"passes.{step.name}.{name}"
+        path = ("passes", step.name, name)
+        where = ".".join(path)
         if name not in names:
-            raise ConfigError(f"{where}: unknown option; {did_you_mean(name, names)}")
+            raise ConfigError(f"{where}: unknown option; {did_you_mean(name, names)}", path)
         default = getattr(step, name)
         if not _has_type_of(value, default):
-            raise ConfigError(f"{where}: {value!r} is no {type(default).__name__}")
+            raise ConfigError(f"{where}: {value!r} is no {type(default).__name__}", path)
     replace = structs.replace if isinstance(step, Struct) else dataclasses.replace
     return cast("Pass", replace(cast("Any", step), **options))
 
@@ -169,16 +182,33 @@ def load_backends(names: Iterable[str]) -> list[Backend]:
     return _load_each(names, _find_foreign_backends())
 
 
+def load_all_backends() -> list[Backend]:
+    """Load all back ends; plug-ins that cannot be used are ignored with a PlugInWarning."""
+    foreign = _find_foreign_backends()
+    return _load_usable(sorted({*_BACKENDS, *foreign}), foreign)
+
+
 def _load_each(names: Iterable[str], foreign: dict[str, EntryPoint]) -> list[Backend]:
     return [_load(name, foreign) for name in dict.fromkeys(names)]
 
 
+def _load_usable(names: Iterable[str], foreign: dict[str, EntryPoint]) -> list[Backend]:
+    """Load back ends that no option names; one that cannot be loaded is ignored."""
+    backends = []
+    for name in names:
+        try:
+            backends.append(_load(name, foreign))
+        except BackendError as problem:
+            _ignore_plug_in(str(problem))
+    return backends
+
+
 def _find_foreign_backends() -> dict[str, EntryPoint]:
-    """Return the back ends of other distributions by name. Raise BackendError."""
+    """Return the back ends of other distributions by name, without those that take our names."""
     plug_ins = find_plug_ins(BACKEND_GROUP)
-    for name, entry in plug_ins.items():
-        if name in _BACKENDS:
-            raise BackendError(f"the plug-in {entry.value} takes the name of back end '{name}'")
+    for name in plug_ins.keys() & _BACKENDS.keys():
+        entry = plug_ins.pop(name)
+        _ignore_plug_in(f"the plug-in {entry.value} takes the name of back end '{name}'")
     return plug_ins
 
 
@@ -200,8 +230,10 @@ def select_backends(wanted: Sequence[str]) -> list[Backend]:
         return _load_each([*plain, *added], foreign)
     selected = _check_names(added, foreign)
     skipped = _BACKENDS.keys() - _DEFAULT - selected
-    candidates = _load_each(sorted({*_BACKENDS, *foreign} - skipped), foreign)
-    return [b for b in candidates if b.is_default or b.name in selected]
+    by_default = sorted({*_BACKENDS, *foreign} - skipped - selected)
+    defaults = [b for b in _load_usable(by_default, foreign) if b.is_default]
+    backends = [*defaults, *_load_each(selected, foreign)]
+    return sorted(backends, key=lambda backend: backend.name)
 
 
 def load_full_catalogue(note: Callable[[str], None] = lambda _: None) -> dict[str, Rule]:
