@@ -1,14 +1,17 @@
 """The builds of ``sysmlc watch`` inside the process of the test."""
 
 import gc
+import json
 import os
 
 import pytest
 import watchfiles
+from jsonschema import Draft202012Validator
 
 from sysmlc.cli import session, watch, watching
 from sysmlc.cli.session import Settings
 from sysmlc.cli.watching import Watch
+from sysmlc.support import resources
 
 
 def test_outputs_are_not_updated_while_the_model_has_errors(workspace):
@@ -185,3 +188,18 @@ def test_changes_are_detected_by_size_and_time(tmp_path):
     }
     path.write_bytes(b"xy")
     assert watching.is_fresh(watching.read_stamps([path]), 3600)
+
+
+def test_json_is_one_line_for_each_build(workspace, capsys):
+    settings = Settings(emit=("graph",), form="json")
+    model = workspace.folder / "plant.ir"
+    watch.rebuild((model,), workspace.folder / "out", settings)
+    workspace.write("plant.ir", 'Package pkg "Plant"\n  Class gate "Gate"\n    Port gate.in\n')
+    watch.rebuild((model,), workspace.folder / "out", settings)
+    documents = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    schema = json.loads(resources.read_text("metamodels", "sysmlc-diagnostics.schema.json"))
+    for document in documents:
+        assert list(Draft202012Validator(schema).iter_errors(document)) == []
+    assert [document["summary"]["errors"] for document in documents] == [0, 1]
+    assert [document["output"]["is_updated"] for document in documents] == [True, False]
+    assert "graph.json" in documents[0]["output"]["changed"]

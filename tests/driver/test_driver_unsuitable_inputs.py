@@ -123,7 +123,9 @@ def test_a_skipped_file_in_a_folder_is_reported_with_the_reason(run_sysmlc, tmp_
     (tmp_path / "models" / "pom.xml").write_text("<project/>")
     code, report = run_sysmlc("check", "models")
     assert code == 0
-    assert "'pom.xml' is named like a model but is not one: it is XML with the root" in report
+    assert (
+        "'models/pom.xml' is named like a model but is not one: it is XML with the root" in report
+    )
 
 
 def test_a_folder_without_models_is_an_error(run_sysmlc, tmp_path):

@@ -1,8 +1,10 @@
 """Reports: print the findings of compilations, compute exit codes, and write result files."""
 
+import json
 import os
+import re
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,6 +14,7 @@ from msgspec.structs import replace
 from sysmlc.support.escapes import escape_undecodable
 
 if TYPE_CHECKING:
+    from sysmlc.backends.base import InputFile
     from sysmlc.cli.session import Settings
     from sysmlc.cli.units import Unit
     from sysmlc.config import Config
@@ -24,24 +27,34 @@ _DEFAULT_LIMIT = 1_000
 """The largest number of findings that are printed for people by default."""
 _MAX_NOTES = 4
 """Notes of a finding that are printed for people, unless ``--verbose`` asks for all."""
+_NO_DETAILS: Mapping[str, object] = {}
 _FORMS_ON_STDOUT = frozenset({"json", "sarif", "github"})
 
 
 def report_outcomes(
-    outcomes: "Iterable[Outcome]", settings: "Settings", publications: "Iterable[Publication]" = ()
+    outcomes: "Iterable[Outcome]",
+    settings: "Settings",
+    publications: "Iterable[Publication]" = (),
+    details: Mapping[str, object] = _NO_DETAILS,
+    *,
+    is_one_line: bool = False,
 ) -> None:
     """Print the findings about all units and their output folders as one report.
 
-    A finding about a library that several units use is printed once.
+    A finding about a library that several units use is printed once. *details* and *is_one_line*
+    are those of ``print_findings``.
     """
     from sysmlc.diagnostics.renderers import make_report
 
     findings = [
-        finding for outcome in outcomes for finding in localize(outcome.root, outcome.findings)
+        finding
+        for outcome in outcomes
+        for finding in localize(outcome.root, outcome.findings, outcome.inputs)
     ]
     diagnostics = [d for publication in publications for d in publication.diagnostics]
     findings += localize(Path.cwd(), make_report(diagnostics, ()).findings)
-    print_findings(dict.fromkeys(findings), settings, folds_infos=True)
+    unique = dict.fromkeys(findings)
+    print_findings(unique, settings, details, folds_infos=True, is_one_line=is_one_line)
 
 
 def list_findings(compilation: "Compilation", only_errors: bool = False) -> "list[Finding]":
@@ -49,20 +62,47 @@ def list_findings(compilation: "Compilation", only_errors: bool = False) -> "lis
     from sysmlc.diagnostics.renderers import make_report
 
     diagnostics = [d for d in compilation.diagnostics if d.is_error or not only_errors]
-    return localize(compilation.root, make_report(diagnostics, compilation.sources).findings)
+    findings = make_report(diagnostics, compilation.sources).findings
+    return localize(compilation.root, findings, compilation.inputs)
 
 
-def localize(root: Path, findings: "Iterable[Finding]") -> "list[Finding]":
-    """Return the findings with file names relative to the working folder."""
+def localize(
+    root: Path, findings: "Iterable[Finding]", inputs: "Iterable[InputFile]" = ()
+) -> "list[Finding]":
+    """Return the findings with file names relative to the working folder.
+
+    Names of *inputs* and of files with findings are also replaced in messages, notes and help.
+    """
     findings = list(findings)
-    files = {finding.file for finding in findings if finding.file}
-    names = {file: localize_name(root, file) for file in files} | {"": ""}
-    return [
-        finding
-        if names[finding.file] == finding.file
-        else replace(finding, file=names[finding.file])
-        for finding in findings
-    ]
+    files = {finding.file for finding in findings if finding.file} | {file.path for file in inputs}
+    names = {file: localize_name(root, file) for file in sorted(files)}
+    spellings = {spelling: names[file] for file in names for spelling in (file, str(root / file))}
+    changed = {spelling: name for spelling, name in spellings.items() if spelling != name}
+    if not changed:
+        return findings
+    alternatives = "|".join(re.escape(name) for name in sorted(changed, key=len, reverse=True))
+    pattern = re.compile(rf"(?<=')(?:{alternatives})(?=')|(?<![^\s(])(?:{alternatives})(?=:\d)")
+
+    def localize_text(text: str) -> str:
+        return pattern.sub(lambda match: changed[match[0]], text)
+
+    return [_localize_finding(finding, names, localize_text) for finding in findings]
+
+
+def _localize_finding(
+    finding: "Finding", names: Mapping[str, str], localize_text: Callable[[str], str]
+) -> "Finding":
+    diagnostic = finding.diagnostic
+    return replace(
+        finding,
+        file=names.get(finding.file, ""),
+        diagnostic=replace(
+            diagnostic,
+            message=localize_text(diagnostic.message),
+            notes=tuple(map(localize_text, diagnostic.notes)),
+            help=localize_text(diagnostic.help),
+        ),
+    )
 
 
 def localize_name(root: Path, name: str) -> str:
@@ -73,20 +113,19 @@ def localize_name(root: Path, name: str) -> str:
     return escape_undecodable(path.relative_to(folder).as_posix())
 
 
-_NO_DETAILS: Mapping[str, object] = {}
-
-
 def print_findings(
     findings: "Iterable[Finding]",
     settings: "Settings",
     details: Mapping[str, object] = _NO_DETAILS,
     *,
     folds_infos: bool = False,
+    is_one_line: bool = False,
 ) -> None:
     """Print the reported findings in the form that the user selected, one for each fact.
 
     *details* are members of the document that only the format JSON has. With *folds_infos*, the
-    text has one line for each rule with infos, unless options ask for more.
+    text has one line for each rule with infos, unless options ask for more. With *is_one_line*, a
+    JSON or SARIF document is one line.
     """
     from sysmlc.diagnostics import Severity
     from sysmlc.diagnostics.renderers import (
@@ -113,6 +152,8 @@ def print_findings(
         text = render_json(report, details)
     else:
         text = render(report, settings.form, color=has_color(stream))
+    if is_one_line and settings.form in ("json", "sarif"):
+        text = json.dumps(json.loads(text), ensure_ascii=False) + "\n"
     # has_color has decided; without color=True click would decide again.
     click.echo(text, nl=False, err=not on_stdout, color=True)
     if report.hidden:
@@ -182,9 +223,19 @@ def exit_code_of_all(
 
 
 def has_color(stream: object) -> bool:
-    """Whether a stream is a terminal that shows colours."""
+    """Whether text on a stream is coloured: by ``--color``, NO_COLOR, FORCE_COLOR or the terminal.
+
+    Sources: https://no-color.org and https://force-color.org.
+    """
+    context = click.get_current_context(silent=True)
+    if context is not None and context.color is not None:
+        return context.color
+    if os.environ.get("NO_COLOR"):
+        return False
+    if os.environ.get("FORCE_COLOR"):
+        return True
     is_terminal = getattr(stream, "isatty", lambda: False)()
-    return bool(is_terminal) and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
+    return bool(is_terminal) and os.environ.get("TERM") != "dumb"
 
 
 # -- result files ------------------------------------------------------------------------------

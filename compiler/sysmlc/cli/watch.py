@@ -22,8 +22,9 @@ _QUIET_MILLISECONDS = 20
     "watch",
     short_help="Compile again after every save.",
     epilog="""\b
-Example:
-  sysmlc watch plant.uml -o out/           # ends with Ctrl-C""",
+Examples:
+  sysmlc watch plant.uml -o out/           # ends with Ctrl-C
+  sysmlc watch plant.uml --format json     # a line of JSON for each unit of a build""",
 )
 @options.models()
 @options.output_folder

@@ -279,19 +279,31 @@ def publish(unit: CompiledUnit, settings: "Settings", keep_going: bool = False) 
     from sysmlc.driver import publish as write_outputs
 
     folder, code = unit.unit.output, unit.outcome.exit_code()
-    if code > 1 or (code and not keep_going):
-        reports.report_outcomes([unit.outcome], settings)
+    has_blocking_errors = code > 1 or (code > 0 and not keep_going)
+    publication = None if has_blocking_errors else write_outputs(unit.outcome, unit.target)
+    is_updated = publication is not None and not publication.is_refused
+    changed = publication.changed if publication is not None and is_updated else ()
+    withheld = sorted(file.path for file in unit.outcome.withheld)
+    summary = {
+        "folder": str(folder),
+        "is_updated": is_updated,
+        "changed": list(changed),
+        "withheld": withheld,
+    }
+    publications = [publication] if publication is not None else []
+    reports.report_outcomes(
+        [unit.outcome], settings, publications, {"output": summary}, is_one_line=True
+    )
+    if not reports.allows_sentences(settings):
+        return is_updated
+    if has_blocking_errors:
         terminal.echo(f"{folder}: not updated because the model has errors")
-        return False
-    publication = write_outputs(unit.outcome, unit.target)
-    reports.report_outcomes([unit.outcome], settings, [publication])
-    if publication.is_refused:
+    elif not is_updated:
         terminal.echo(f"{folder}: not updated")
-        return False
-    withheld = len(unit.outcome.withheld)
-    held = f", {withheld} withheld because of errors" if withheld else ""
-    terminal.echo(f"{folder}: {len(publication.changed)} changed{held}")
-    return True
+    else:
+        held = f", {len(withheld)} withheld because of errors" if withheld else ""
+        terminal.echo(f"{folder}: {len(changed)} changed{held}")
+    return is_updated
 
 
 def _list_messages(units: "list[CompiledUnit]") -> frozenset[tuple[str, str]]:

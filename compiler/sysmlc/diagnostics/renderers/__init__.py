@@ -2,7 +2,11 @@
 
 from collections.abc import Callable
 
-from sysmlc.diagnostics.renderers.json_documents import render_json, render_sarif
+from sysmlc.diagnostics.renderers.json_documents import (
+    render_failure,
+    render_json,
+    render_sarif,
+)
 from sysmlc.diagnostics.renderers.report import Finding, Report, make_report, merge_facts, shorten
 from sysmlc.diagnostics.renderers.text import (
     render_concise,
@@ -19,6 +23,7 @@ __all__ = [
     "make_report",
     "merge_facts",
     "render",
+    "render_failure",
     "render_json",
     "shorten",
 ]

@@ -56,12 +56,31 @@ def render_sarif(report: Report) -> str:
     rules_by_code = {f.diagnostic.rule.code: f.diagnostic.rule for f in report.findings}
     rules = [rules_by_code[code] for code in sorted(rules_by_code)]
     rule_index = {rule.code: index for index, rule in enumerate(rules)}
+    results = [_describe_result(finding, rule_index) for finding in report.findings]
+    return _encode_sarif(rules, results)
+
+
+def _encode_sarif(rules: list[Rule], results: list[dict[str, object]], **members: object) -> str:
+    """Return a SARIF log with one run; *members* are further members of the run."""
     run = {
         "tool": {"driver": _describe_tool(rules)},
         "columnKind": "unicodeCodePoints",
-        "results": [_describe_result(finding, rule_index) for finding in report.findings],
+        "results": results,
+        **members,
     }
     return encode_json({"$schema": SARIF_SCHEMA, "version": "2.1.0", "runs": [run]})
+
+
+def render_failure(message: str, format: str) -> str:
+    """Return the document of a command that could not do its work, in ``json`` or ``sarif``.
+
+    A program that reads the output gets a valid document with the reason instead of an empty file.
+    """
+    if format == "json":
+        return render_json(Report(()), {"failure": message})
+    notification = {"level": "error", "message": {"text": message}}
+    invocation = {"executionSuccessful": False, "toolExecutionNotifications": [notification]}
+    return _encode_sarif([], [], invocations=[invocation])
 
 
 def _describe_tool(rules: list[Rule]) -> dict[str, object]:
