@@ -2,7 +2,7 @@
 
 import json
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -32,7 +32,14 @@ _WILDCARDS = "*?["
 
 
 class ConfigError(Exception):
-    """The configuration cannot be used; the message gives the location and the reason."""
+    """The configuration cannot be used; the message gives the location and the reason.
+
+    *path* are the keys that lead to a wrong value, if the message does not give its location.
+    """
+
+    def __init__(self, message: str, path: Sequence[str] = ()) -> None:
+        super().__init__(message)
+        self.path = path
 
 
 class ModelUnit(Struct, frozen=True):
@@ -153,15 +160,18 @@ def _check_paths(file: Path, text: str, config: Config) -> None:
     for unit in config.models:
         if not _is_inside(unit.name):
             message = f"the name '{unit.name}' leads out of the output folder"
-            raise ConfigError(f"{file}:{_find_line(text, 'name')}: {message}; use a plain name")
+            raise ConfigError(
+                f"{file}:{_find_line_of_path(text, ['name'])}: {message}; use a plain name"
+            )
         entries += [("files", pattern) for pattern in unit.files]
     # Links in the path of an output folder are checked when a file is written to it.
     entries += [("output", output) for output in outputs if not _is_inside(output)]
     for key, value in entries:
         if not _is_confined(value, config):
+            line = _find_line_of_path(text, [key])
             raise ConfigError(
-                f"{file}:{_find_line(text, key)}: '{key}': '{value}' leads out of the project root "
-                f"'{config.root}'; only paths on the command line may do that"
+                f"{file}:{line}: '{key}': '{value}' leads out of the project root '{config.root}'; "
+                "only paths on the command line may do that"
             )
 
 
@@ -175,7 +185,7 @@ def _check_lengths(file: Path, text: str, config: Config) -> None:
         parts = Path(value).parts
         if len(parts) > _MAX_PARTS or any(len(os.fsencode(part)) > _MAX_BYTES for part in parts):
             message = f"'{value[:_EXCERPT]}...' is longer than file systems allow"
-            raise ConfigError(f"{file}:{_find_line(text, key)}: '{key}': {message}")
+            raise ConfigError(f"{file}:{_find_line_of_path(text, [key])}: '{key}': {message}")
 
 
 def _is_inside(name: str) -> bool:
@@ -264,35 +274,72 @@ def _validate(file: Path, text: str, table: object) -> None:
 
 
 def _explain_error(file: Path, text: str, error: "ValidationError") -> str:
-    path = [str(part) for part in error.absolute_path]
+    path = list(error.absolute_path)
     if error.validator == "additionalProperties":
         schema = cast("dict[str, dict[str, object]]", error.schema)
         properties = schema["properties"]
         instance = cast("dict[str, object]", error.instance)
         key = next(key for key in instance if key not in properties)
         advice = did_you_mean(key, properties)
-        line = _find_line(text, key)
-        return f"{file}:{line}: unknown key '{'.'.join([*path, key])}'; {advice}"
-    key = next((part for part in reversed(path) if not part.isdigit()), "")
+        line = _find_line_of_path(text, [*path, key])
+        return f"{file}:{line}: unknown key '{_format_path([*path, key])}'; {advice}"
+    line = _find_line_of_path(text, path)
+    where = f"'{_format_path(path)}'" if path else "the file"
+    return f"{file}:{line}: {where}: {_describe_violation(error)}"
+
+
+def _describe_violation(error: "ValidationError") -> str:
+    value, limit = cast("object", error.instance), cast("object", error.validator_value)
+    if error.validator == "enum" and isinstance(value, str):
+        return f"unknown value '{value}'; {did_you_mean(value, map(str, cast('list[str]', limit)))}"
+    if error.validator == "required":
+        return f"lacks {error.message.partition(' ')[0]}"
     message = error.message
     # The message quotes the value, which can be long, and gives the reason at its end.
     if len(message) > _MAX_MESSAGE:
         message = f"{message[:_EXCERPT]} ... {message[-_EXCERPT:]}"
-    return f"{file}:{_find_line(text, key)}: '{'.'.join(path)}': {message}"
+    return message
 
 
-def _find_line(text: str, key: str) -> int:
-    """Return the number of the first line that mentions *key*, 1 if none does.
+def _format_path(path: Sequence[str | int]) -> str:
+    """Return the path of a value in the words of TOML; entries of lists count from 1."""
+    text = ""
+    for part in path:
+        text += f"[{part + 1}]" if isinstance(part, int) else f".{part}"
+    return text.removeprefix(".")
+
+
+def _find_line_of_path(text: str, path: Sequence[str | int]) -> int:
+    """Return the number of the line that a path of keys and indices leads to, as far as possible.
+
+    The index of an array of tables selects the header ``[[suppress]]`` of that number.
+    """
+    line = 0
+    for key, following in zip(path, [*path[1:], None], strict=True):
+        if not isinstance(key, str):
+            continue
+        line = _find_line(text, key, line) or line
+        for _ in range(following if isinstance(following, int) else 0):
+            line = _find_line(text, key, line + 1) or line
+    return max(line, 1)
+
+
+def locate_key(file: Path, path: Sequence[str | int]) -> str:
+    """Return ``file:line`` of a key of a configuration file, for a message."""
+    return f"{file}:{_find_line_of_path(_read_file(file), path)}"
+
+
+def _find_line(text: str, key: str, start: int = 1) -> int:
+    """Return the number of the first line from *start* on that mentions *key*, 0 if none does.
 
     It is searched in the text, because tomllib does not return the lines of keys.
     """
     for number, line in enumerate(text.splitlines(), 1):
         head = line.partition("=")[0] if "=" in line else line
-        if key and key in head.strip(" []").replace('"', "").split("."):
+        names = head.strip(" []").replace('"', "").split(".")
+        if number >= start and (key in names or head.strip(' "') == key):
             return number
-        if key and head.strip(' "') == key:
-            return number
-    return 1
+    return 0
 
 
 # -- settings ----------------------------------------------------------------------------------

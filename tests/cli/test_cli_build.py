@@ -230,15 +230,26 @@ def test_a_suppression_that_matches_nothing_is_reported(workspace):
     [
         ('emitt = ["graph"]\n', "sysmlc.toml:1: unknown key 'emitt'; did you mean 'emit'?"),
         ("strict = 1\n", "sysmlc.toml:1: 'strict': 1 is not of type 'boolean'"),
-        ('\n[[model]]\nname = "a"\nfile = "x"\n', "sysmlc.toml:4: unknown key 'model.0.file'"),
-        ('[rules]\nuntyped = "off"\n', "unknown rule 'untyped'; "),
-        ('[rules]\nmissing-file = "of"\n', "sysmlc.toml:2: 'rules.missing-file': 'of' is not one"),
+        ('\n[[model]]\nname = "a"\nfile = "x"\n', "sysmlc.toml:4: unknown key 'model[1].file'"),
+        (
+            '[rules]\nuntyped = "off"\n',
+            "sysmlc.toml:2: unknown rule 'untyped'; 'sysmlc explain' lists the rules",
+        ),
+        (
+            '[rules]\nmissing-file = "of"\n',
+            "sysmlc.toml:2: 'rules.missing-file': unknown value 'of'; did you mean 'off'?",
+        ),
+        (
+            '[[suppress]]\nrule = "SM410"\nelement = "A"\nreason = "r"\n[[suppress]]\nrule = "a"\n',
+            "sysmlc.toml:5: 'suppress[2]': lacks 'reason'",
+        ),
+        ('emit = ["plantmul"]\n', "sysmlc.toml:1: unknown back end 'plantmul'; did you mean"),
         ("strict = \n", "sysmlc.toml:1:10: Invalid value"),
     ],
 )
 def test_a_fault_in_the_configuration_has_a_location_and_a_suggestion(workspace, text, sentence):
     workspace.write("sysmlc.toml", text)
-    result = workspace.sysmlc("plant.ir", "--emit", "graph")
+    result = workspace.sysmlc("plant.ir")
     assert result.exit_code == 2
     assert sentence in result.stderr
 
@@ -250,3 +261,11 @@ def test_pyproject_is_used_when_there_is_no_sysmlc_toml(workspace):
     workspace.write("sysmlc.toml", 'output = "own"\n')
     workspace.sysmlc("plant.ir", "--emit", "graph")
     assert workspace.list_files("own") == OUTPUTS
+
+
+@pytest.mark.parametrize("word", ["lint", "chekc", "graph-it"])
+def test_an_unknown_word_is_no_model_and_nothing_is_built(workspace, word):
+    result = workspace.sysmlc(word, "plant.ir", "--emit", "graph")
+    assert result.exit_code == 2
+    assert f"no command, file or folder '{word}'; " in result.stderr
+    assert workspace.list_files("out") == []

@@ -241,3 +241,49 @@ def test_text_shows_a_thousand_diagnostics_and_json_all(workspace):
     result = workspace.sysmlc("check", "many.ir", "--format", "json")
     assert len(json.loads(result.stdout)["diagnostics"]) == 1_011
     assert result.stderr == ""
+
+
+@pytest.mark.parametrize("command", ["check", "build"])
+def test_a_command_that_fails_prints_a_document_with_the_reason(workspace, command):
+    """A service that reads the output must not get an empty file."""
+    arguments = (command, "plant.ir", "--select", "SM999x")
+    result = workspace.sysmlc(*arguments, "--format", "sarif")
+    (invocation,) = json.loads(result.stdout)["runs"][0]["invocations"]
+    reason = "unknown rule 'SM999x'; 'sysmlc explain' lists the rules"
+    assert result.exit_code == 2
+    assert invocation == {
+        "executionSuccessful": False,
+        "toolExecutionNotifications": [{"level": "error", "message": {"text": reason}}],
+    }
+    document = json.loads(workspace.sysmlc(*arguments, "--format", "json").stdout)
+    schema = json.loads(resources.read_text("metamodels", "sysmlc-diagnostics.schema.json"))
+    assert list(Draft202012Validator(schema).iter_errors(document)) == []
+    assert (document["diagnostics"], document["failure"]) == ([], reason)
+
+
+@pytest.mark.parametrize(
+    ("option", "variables", "is_colored"),
+    [
+        ("always", {"NO_COLOR": "1"}, True),
+        ("never", {"FORCE_COLOR": "1"}, False),
+        ("auto", {"FORCE_COLOR": "1"}, True),
+        ("auto", {"FORCE_COLOR": "1", "NO_COLOR": "1"}, False),
+        ("auto", {}, False),
+    ],
+)
+def test_the_option_color_comes_before_the_environment(
+    workspace, monkeypatch, option, variables, is_colored
+):
+    for name in ("NO_COLOR", "FORCE_COLOR"):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in variables.items():
+        monkeypatch.setenv(name, value)
+    result = workspace.sysmlc("check", "missing.uml", "--color", option)
+    assert ("\x1b[" in result.stderr) == is_colored
+
+
+def test_messages_name_files_as_their_locations_do(workspace):
+    workspace.write("models/empty.uml", "")
+    result = workspace.sysmlc("check", "models", "--format", "concise")
+    assert "models/empty.uml: warning" in result.stderr
+    assert "'models/empty.uml' is named like a model" in result.stderr

@@ -1,6 +1,7 @@
 """``sysmlc build``: compile models and write the output folder."""
 
 import os
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -93,16 +94,19 @@ def command(
 
 
 def _check_command_word(models: tuple[Path, ...]) -> None:
-    """Suggest a command if the first model looks like a misspelt one, as in ``sysmlc chekc``."""
+    """Raise UsageError if the first model is a word that names no file, as in ``sysmlc lint``.
+
+    The other models must not be built, because the user meant something else.
+    """
     from sysmlc.cli.group import COMMANDS
 
     word = str(models[0]) if models else ""
-    if word.isalpha() and not Path(word).exists():
+    if re.fullmatch(r"[\w-]+", word) and not os.path.lexists(word):
         from sysmlc.support.suggestions import find_similar
 
         similar = find_similar(word, COMMANDS)
-        if similar:
-            raise click.UsageError(f"no command or file '{word}'; did you mean '{similar}'?")
+        advice = f"did you mean '{similar}'?" if similar else f"commands: {', '.join(COMMANDS)}"
+        raise click.UsageError(f"no command, file or folder '{word}'; {advice}")
 
 
 def _compare(outcome: "Outcome", target: "Target") -> int:

@@ -1,15 +1,17 @@
 """The command ``sysmlc``: run the named command, or ``build`` if none is named."""
 
 import sys
+import warnings
 from collections.abc import Callable
 from importlib import import_module
-from typing import ParamSpec, TypeVar
+from typing import ParamSpec, TextIO, TypeVar
 
 import click
 
 from sysmlc import __version__
 from sysmlc.cli import terminal
 from sysmlc.cli.limits import LIMITS, add_limit_options
+from sysmlc.cli.options import add_color_option
 from sysmlc.cli.supervisor import OUT_OF_MEMORY, report_memory_limit
 
 COMMANDS = (
@@ -45,6 +47,7 @@ class _Commands(click.Group):
             return None
         command: click.Command = import_module(f"sysmlc.cli.{cmd_name}").command
         add_limit_options(command)
+        add_color_option(command)
         return command
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
@@ -85,6 +88,7 @@ def sysmlc() -> None:
 def main() -> None:
     """Run the command line; an internal fault is reported in one sentence, with exit code 2."""
     terminal.open_streams()
+    warnings.showwarning = _print_warning
     try:
         run_guarded(sysmlc, prog_name="sysmlc")
     except SystemExit as end:
@@ -94,6 +98,18 @@ def main() -> None:
         if isinstance(end.code, int) and (not is_measured or terminal.find_stream_problems()):
             terminal.leave(end.code)
         raise
+
+
+def _print_warning(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    file: TextIO | None = None,
+    line: str | None = None,
+) -> None:
+    """Print a Python warning, such as one about a plug-in, without its place in our code."""
+    terminal.echo(f"sysmlc: warning: {message}", err=True)
 
 
 def run_guarded(run: Callable[_P, _T], *args: _P.args, **kwargs: _P.kwargs) -> _T:

@@ -27,6 +27,30 @@ def models(required: bool = False) -> Callable[[_F], _F]:
     )
 
 
+def add_color_option(command: click.Command) -> None:
+    """Give *command*, or all commands of a group, the option ``--color``."""
+    if isinstance(command, click.Group):
+        for subcommand in command.commands.values():
+            add_color_option(subcommand)
+    elif not any(parameter.name == "color" for parameter in command.params):
+        option = click.Option(
+            ["--color"],
+            type=click.Choice(["auto", "always", "never"]),
+            default="auto",
+            show_default=True,
+            expose_value=False,
+            callback=_set_color,
+            help="Colours in texts for people. 'auto' obeys NO_COLOR and FORCE_COLOR, and else"
+            " colours what a terminal shows.",
+        )
+        command.params.append(option)
+
+
+def _set_color(ctx: click.Context, _param: click.Parameter, value: str) -> None:
+    """Set the colour of the context, which ``reports.has_color`` reads; None is ``auto``."""
+    ctx.color = {"always": True, "never": False}.get(value)
+
+
 def folder(help: str) -> Callable[[_F], _F]:
     """The option ``-o``: the folder for files that a command writes besides its report."""
     return click.option(

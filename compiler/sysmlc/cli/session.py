@@ -1,7 +1,7 @@
 """Compile the units of a command: options, configuration, cache, requests."""
 
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
@@ -13,7 +13,6 @@ from sysmlc.cli import terminal
 from sysmlc.cli.limits import LIMITS
 
 if TYPE_CHECKING:
-    from sysmlc.backends.base import Backend
     from sysmlc.cli.units import Unit
     from sysmlc.config import Config
     from sysmlc.diagnostics import Rule
@@ -62,10 +61,21 @@ class Settings(Struct, frozen=True):
 
 
 def fail(message: str, *details: str) -> NoReturn:
-    """Print a message, with each detail on a line of its own, and exit with code 2."""
+    """Print a message, with each detail on a line of its own, and exit with code 2.
+
+    If findings were requested as JSON or SARIF, standard output gets a document with the message.
+    """
     terminal.echo(f"sysmlc: {message}", err=True)
     for detail in details:
         terminal.echo(f"  {detail}", err=True)
+    context = click.get_current_context(silent=True)
+    parameters = context.params if context is not None else {}
+    form = parameters.get("form")
+    # The documents of 'diff' and 'coverage', which lack this option, have other formats.
+    if form in ("json", "sarif") and "max_diagnostics" in parameters:
+        from sysmlc.diagnostics.renderers import render_failure
+
+        click.echo(render_failure("\n".join([message, *details]), form), nl=False)
     sys.exit(2)
 
 
@@ -83,7 +93,7 @@ def load_config(models: Sequence[Path], settings: Settings) -> "Config":
     """
     from sysmlc import config
 
-    _check_rule_names([*settings.select, *settings.ignore], "")
+    _check_rule_names([*settings.select, *settings.ignore])
     if settings.isolated:
         if settings.config is not None:
             raise click.UsageError("--isolated and --config exclude each other")
@@ -92,27 +102,46 @@ def load_config(models: Sequence[Path], settings: Settings) -> "Config":
         loaded = config.read_config(settings.config or config.find_config_file(_find_start(models)))
     except config.ConfigError as problem:
         fail(str(problem))
-    chosen = [*loaded.rules, *(entry.rule for entry in loaded.suppress)]
-    _check_rule_names(chosen, f"{loaded.file}: ")
+    chosen: dict[tuple[str | int, ...], str] = {("rules", name): name for name in loaded.rules}
+    for number, entry in enumerate(loaded.suppress):
+        chosen["suppress", number, "rule"] = entry.rule
+    _check_rule_names_in_config(loaded, chosen)
     LIMITS.lower(loaded.time_limit, loaded.memory_limit)
     return loaded
 
 
-def _check_rule_names(names: Sequence[str], where: str) -> None:
-    """Exit with code 2 unless each name is the name or the code of a rule.
-
-    *where* is the place of the names in a configuration. Names from the command line, for which it
-    is empty, may also be the start of a code (``SM4``).
-    """
-    from sysmlc.support.suggestions import did_you_mean
-
+def _check_rule_names(names: Sequence[str]) -> None:
+    """Exit with code 2 unless each name is a name, a code or the start of a code (``SM4``)."""
     # The catalogue imports every module that defines rules, so it is loaded only if needed.
     rules = load_rules().values() if names else ()
-    rule_names = {rule.code for rule in rules} | {rule.name for rule in rules}
     for name in names:
-        is_start = not where and any(rule.code.startswith(name) for rule in rules)
-        if name not in rule_names and not is_start:
-            fail(f"{where}unknown rule '{name}'; {did_you_mean(name, rule_names)}")
+        if not any(name == rule.name or rule.code.startswith(name) for rule in rules):
+            fail(_describe_unknown_rule(name, rules))
+
+
+def _check_rule_names_in_config(
+    config: "Config", names: Mapping[tuple[str | int, ...], str]
+) -> None:
+    """Exit with code 2 unless each name is the name or the code of a rule.
+
+    The keys of *names* are the paths of the names in the configuration.
+    """
+    from sysmlc.config import locate_key
+
+    rules = load_rules().values() if names else ()
+    rule_names = {rule.code for rule in rules} | {rule.name for rule in rules}
+    for path, name in names.items():
+        if name not in rule_names and config.file is not None:
+            where = locate_key(config.file, path)
+            fail(f"{where}: {_describe_unknown_rule(name, rules)}")
+
+
+def _describe_unknown_rule(name: str, rules: "Collection[Rule]") -> str:
+    from sysmlc.support.suggestions import find_similar
+
+    similar = find_similar(name, [rule.name for rule in rules])
+    advice = f"did you mean '{similar}'?" if similar else "'sysmlc explain' lists the rules"
+    return f"unknown rule '{name}'; {advice}"
 
 
 def _find_start(models: Sequence[Path]) -> Path:
@@ -148,7 +177,7 @@ def _compile_opened(
     unit: "Unit", settings: Settings, emit: tuple[str, ...] | None = None
 ) -> "Compilation":
     """Compile a unit with the back ends of *emit* (None for no back end)."""
-    return _compile(_set_backends(unit.request, emit), settings, unit.opened)
+    return _compile(_set_backends(unit.request, emit, settings), settings, unit.opened)
 
 
 def read_as_written(unit: "Unit", settings: Settings) -> "Compilation":
@@ -240,8 +269,20 @@ def _load_schemas(settings: Settings) -> "Schemas | None":
         fail(str(problem))
 
 
-def _set_backends(request: "Request", emit: tuple[str, ...] | None) -> "Request":
-    return request if emit is None else replace(request, backends=_select_backends(emit))
+def _set_backends(
+    request: "Request", emit: tuple[str, ...] | None, settings: Settings
+) -> "Request":
+    """Return the request with the back ends of *emit*; exit with code 2 if one is unknown."""
+    from sysmlc.config import locate_key
+    from sysmlc.driver import BackendError, select_backends
+
+    if emit is None:
+        return request
+    try:
+        return replace(request, backends=tuple(select_backends(emit)))
+    except BackendError as problem:
+        file = None if settings.emit else request.config.file
+        fail(f"{locate_key(file, ['emit'])}: {problem}" if file else str(problem))
 
 
 def _compile(
@@ -256,18 +297,12 @@ def _compile(
         _check_pass_names([step.name for step in request.load_passes()], settings.print_after)
         return compile_model(request, progress, opened)
     except ConfigError as problem:
-        fail(f"{request.config.file}: {problem}" if request.config.file else str(problem))
+        from sysmlc.config import locate_key
+
+        file = request.config.file
+        fail(f"{locate_key(file, problem.path)}: {problem}" if file else str(problem))
     finally:
         progress.clear()
-
-
-def _select_backends(emit: tuple[str, ...]) -> "tuple[Backend, ...]":
-    from sysmlc.driver import BackendError, select_backends
-
-    try:
-        return tuple(select_backends(emit))
-    except BackendError as problem:
-        fail(str(problem))
 
 
 def _find_templates(config: "Config", settings: Settings) -> Path | None:
