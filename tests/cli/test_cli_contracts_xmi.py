@@ -152,6 +152,21 @@ def test_two_blocks_are_composed_along_the_connector_of_their_ports(check_contra
     assert "part 'picker' of 'Plant::Cell' assumes 'feeder.ready', which neither" in error
 
 
+def test_a_port_that_no_requirement_of_its_block_mentions_is_free(check_contracts):
+    full = (
+        '<ownedAttribute xmi:type="uml:Port" xmi:id="fe.f" name="full" type="bool" '
+        'aggregation="composite"/>\n</packagedElement>\n'
+        '<packagedElement xmi:type="uml:Class" xmi:id="r1"'
+    )
+    direction = '<PortsAndFlows:FlowPort xmi:id="q5" base_Port="fe.f" direction="out"/>\n'
+    model = CELL.replace(
+        '</packagedElement>\n<packagedElement xmi:type="uml:Class" xmi:id="r1"', full
+    )
+    code, verdicts, (error,) = check_contracts(model + direction, "G F full")
+    assert (code, verdicts[-1]) == (1, "Plant::Cell: its 2 parts do not fit together")
+    assert "part 'picker' of 'Plant::Cell' assumes 'feeder.ready', which neither" in error
+
+
 @pytest.mark.parametrize(
     ("text", "rule", "component", "machine"),
     [

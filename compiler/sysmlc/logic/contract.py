@@ -163,6 +163,8 @@ class Part(Struct, frozen=True):
     contract: Contract
     origin: str
     is_behaviour: bool = False
+    has_contract: bool = True
+    """False for a part that nothing is known about but the outputs that other parts read."""
 
 
 class Composite(Struct, frozen=True):

@@ -11,7 +11,8 @@ from msgspec.structs import replace
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.logic import formula as f
-from sysmlc.logic.contract import Composite, Conjunct, Contract
+from sysmlc.logic.contract import Class, Composite, Conjunct, Contract, Owner
+from sysmlc.logic.formula import Formula
 from sysmlc.logic.printing import print_formula
 from sysmlc.support.disjoint_sets import DisjointSets
 from sysmlc.synthesis.algebra.composition import Composition, DriverError, compose_parts
@@ -148,11 +149,12 @@ def check_compositions(
             for witness in _build_witnesses(group, composition)
         )
         whole, has_shared = composite.whole, has_shared_variables(composite)
+        parts = [part for part in composite.parts if part.has_contract]
         has_whole = whole is not None and bool(whole.guarantees)
         yield CompositionVerdict(
             composite.component,
-            len(composite.parts),
-            sum(part.is_behaviour for part in composite.parts),
+            len(parts),
+            sum(part.is_behaviour for part in parts),
             has_whole,
             has_shared,
             is_satisfied,
@@ -177,7 +179,7 @@ def _compose(
         return None
     if composition.conflict:
         _report_conflict(composite, composition, place, sink)
-    for assumption in composition.open:
+    for assumption in _drop_repeated(composition.open):
         _report_open(composite, assumption, place, sink)
     for failure in composition.failures:
         subject = place(failure.conjunct.origin or composite.origin)
@@ -223,20 +225,48 @@ def _report_conflict(
     sink.report(CONTRADICT, subject, notes=tuple(notes), component=composite.component)
 
 
+def _drop_repeated(assumptions: Iterable[OpenAssumption]) -> Iterator[OpenAssumption]:
+    """Yield the assumptions without those that repeat one about the first step for all others."""
+    repeated: set[tuple[str, str, Formula]] = set()
+    for assumption in assumptions:
+        part, conjunct = assumption.part, assumption.conjunct
+        if (part.name, conjunct.origin, conjunct.formula) not in repeated:
+            yield assumption
+        if conjunct.class_ is Class.INIT:
+            repeated.add((part.name, conjunct.origin, f.prime(conjunct.formula)))
+
+
 def _report_open(
     composite: Composite, assumption: OpenAssumption, place: Place, sink: Sink
 ) -> None:
     sink.report(
         CIRCLE if assumption.is_circular else OPEN,
         place(assumption.conjunct.origin or assumption.part.origin),
-        notes=()
-        if assumption.trace is None
-        else tuple(describe_run(assumption.trace, assumption.conjunct)),
+        notes=(
+            *_note_free_outputs(composite, assumption.conjunct),
+            *(
+                ()
+                if assumption.trace is None
+                else describe_run(assumption.trace, assumption.conjunct)
+            ),
+        ),
         part=assumption.part.name,
         component=composite.component,
         formula=print_formula(assumption.conjunct.formula),
         context=text_in_parentheses(assumption.conjunct),
     )
+
+
+def _note_free_outputs(composite: Composite, assumption: Conjunct) -> Iterator[str]:
+    """Yield a note for each variable of an assumption that no contract restricts."""
+    names = _variable_names(assumption)
+    for part in composite.parts:
+        contract = part.contract
+        restricted = {name for item in contract.guarantees for name in _variable_names(item)}
+        for variable in contract.variables:
+            is_output = variable.owner is Owner.SYSTEM and variable.name in names
+            if is_output and variable.name not in restricted:
+                yield f"'{part.name}' decides '{variable.name}' and guarantees nothing about it"
 
 
 def _build_witnesses(composite: Composite, composition: Composition) -> Iterator[Witness]:

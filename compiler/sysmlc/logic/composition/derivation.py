@@ -14,6 +14,7 @@ from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.activities.token_nodes import Handshake
+from sysmlc.logic.composition.free_outputs import add_free_outputs
 from sysmlc.logic.composition.members import (
     Block,
     Member,
@@ -31,6 +32,7 @@ from sysmlc.logic.composition.structure import (
 )
 from sysmlc.logic.contract import Composite, Conjunct, Contract, Owner, Part, drop_trivial
 from sysmlc.logic.domains import describe
+from sysmlc.logic.feature_writes import WriterIndex
 from sysmlc.logic.simplification import substitute
 
 TWO_DRIVERS = rule(
@@ -72,11 +74,13 @@ def compose_blocks(graph: Graph, contracts: Iterable[Contract], sink: Sink) -> I
         for contract in contracts
     }
     open_steps: list[OpenStep] = []
+    writers = WriterIndex(graph)
     for element in _list_blocks(graph, by_origin):
         block = read_block(graph, element, by_origin)
         whole = _add_own_contracts(block) if block.members else None
         if len(block.members) + (whole is not None) < 2:
             continue
+        add_free_outputs(block, writers)
         open_steps += _find_open_steps(block)
         composite = _make_composite(block, whole, sink)
         if composite is not None:
@@ -152,6 +156,7 @@ def _make_composite(block: Block, whole: Member | None, sink: Sink) -> Composite
                 rename_contract(member, wires),
                 member.origin,
                 block.graph[member.origin].kind not in (Kind.PROPERTY, Kind.PORT),
+                bool(member.contract.component),
             )
             for member in block.members
         ),

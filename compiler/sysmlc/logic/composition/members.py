@@ -66,6 +66,8 @@ class Block:
     contracts: Mapping[str, Contract]
     """Contracts by the id of the element that has the contract."""
     members: list[Member] = field(default_factory=list)
+    usages: dict[str, Usage] = field(default_factory=dict)
+    """Usages by path, the block itself included."""
     names: dict[str, list[str]] = field(default_factory=dict)
     """Dotted names of the features of each usage."""
     steps: set[Slot] = field(default_factory=set)
@@ -73,6 +75,11 @@ class Block:
     features: DisjointSets[Slot] = field(default_factory=DisjointSets)
     channels: Channels = field(default_factory=Channels)
     """Ends between which messages pass."""
+
+    def group_slots(self) -> list[list[Slot]]:
+        """Return the slots of all features of all usages in groups of joined ones."""
+        slots = [(path, name) for path, names in self.names.items() for name in names]
+        return self.features.group_items(slots)
 
 
 def read_block(graph: Graph, element: Element, contracts: Mapping[str, Contract]) -> Block:
@@ -82,6 +89,7 @@ def read_block(graph: Graph, element: Element, contracts: Mapping[str, Contract]
     of their subject.
     """
     block = Block(graph, element, contracts)
+    block.usages[ITSELF] = Usage(ITSELF, element, element)
     block.names[ITSELF] = list(variables_of(graph, element))
     _open_usage(block, element, ITSELF, {element.id})
     return block
@@ -90,6 +98,7 @@ def read_block(graph: Graph, element: Element, contracts: Mapping[str, Contract]
 def _open_usage(block: Block, element: Element, path: str, enclosing: set[str]) -> None:
     for usage in iter_usages(block.graph, element, path):
         variables = variables_of(block.graph, usage.type_)
+        block.usages[usage.path] = usage
         block.names[usage.path] = list(variables)
         contract = find_contract(block, usage)
         if contract is not None:

@@ -44,9 +44,8 @@ def find_wires(block: Block, members: Iterable[Member]) -> list[Wire]:
     by_path: dict[str, list[Member]] = {}
     for member in members:
         by_path.setdefault(member.path, []).append(member)
-    slots = [(path, name) for path, names in block.names.items() for name in names]
     wires = []
-    for group in block.features.group_items(slots):
+    for group in block.group_slots():
         ends = [
             (member, _find_variable(member, name))
             for path, name in group

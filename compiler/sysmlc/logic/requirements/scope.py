@@ -232,13 +232,13 @@ def scope_of(context: Context, behaviour_variables: Iterable[Variable]) -> Scope
             constants[feature.variable] = feature.default
         elif feature.domain is not None:
             feature_variables[feature.variable] = Variable(
-                feature.variable, _find_owner(feature), feature.domain, feature.element.id
+                feature.variable, find_owner(feature), feature.domain, feature.element.id
             )
     by_name = {variable.name: variable for variable in behaviour_variables}
     return Scope(context, feature_variables | by_name, constants)
 
 
-def _find_owner(feature: Feature) -> Owner:
+def find_owner(feature: Feature) -> Owner:
     """Return the environment for inputs, else the system.
 
     A parameter without a direction is an input, which is the default of UML.
