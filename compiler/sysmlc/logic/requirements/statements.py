@@ -109,11 +109,9 @@ def _iter_subjects(graph: Graph, requirement: Element) -> Iterator[Element]:
 
     A usage counts as its type. All specialisations follow each element.
     """
-    family = (requirement, *query.generals(graph, requirement))
     stated = graph.sources(requirement, Edge.SATISFIES)
     if not stated:
-        declared = (graph.targets(member, Edge.SUBJECT) for member in family)
-        stated = next(filter(None, declared), [])
+        stated = _list_declared_subjects(graph, requirement)
     for element in stated:
         type_ = element if element.kind in _SUBJECTS else query.type_of(graph, element)
         if type_ is not None:
@@ -179,6 +177,7 @@ def find_redefining_operation(graph: Graph, subject: Element) -> Element | None:
 # -- stated requirements ---------------------------------------------------------------------------
 
 _NO_SUBJECT = "the requirement has no subject, and no element satisfies it"
+_LIBRARY_SUBJECT = "no element of the model satisfies it or specialises its subject '{subject}'"
 _ONLY_TEXT = "not formalised: the requirement is only text"
 
 
@@ -206,8 +205,8 @@ def list_stated_requirements(
 ) -> Iterator[StatedRequirement]:
     """Yield the required constraints of each subject, then those of requirements without subject.
 
-    Requirements that are only text follow. *reasons* are messages about constraints, by the id of
-    the constraint.
+    Requirements that are only text follow. Requirements of libraries that the model does not use
+    are left out. *reasons* are messages about constraints, by the id of the constraint.
     """
     contracts = list(contracts)
     described = {contract.origin for contract in contracts}
@@ -232,8 +231,9 @@ def list_stated_requirements(
                 str(constraint.attrs.get("body", "")).strip(),
                 gap if constraint.id in origins else reason,
             )
-    requirements = [*filter(query.is_requirement, graph.of_kind(Kind.CLASS))]
+    requirements = _list_relevant_requirements(graph)
     for requirement in requirements:
+        reason = _explain_missing_subject(graph, requirement)
         for statement in iter_statements(graph, requirement):
             if statement.constraint.id not in listed and not statement.is_assumed:
                 listed.add(statement.constraint.id)
@@ -242,11 +242,54 @@ def list_stated_requirements(
                     "",
                     statement.constraint.id,
                     str(statement.constraint.attrs.get("body", "")).strip(),
-                    _NO_SUBJECT,
+                    reason,
                 )
     for requirement in requirements:
         if is_only_text(graph, requirement):
             yield _describe_text(graph, requirement)
+
+
+def _list_relevant_requirements(graph: Graph) -> list[Element]:
+    """List the requirements of the model, and those of libraries that the model uses.
+
+    A library's requirement is used if an element of the model leads to it or to its subject.
+    """
+    used = find_used_library_elements(graph)
+    return [
+        requirement
+        for requirement in filter(query.is_requirement, graph.of_kind(Kind.CLASS))
+        if not requirement.attrs.get("external")
+        or requirement.id in used
+        or any(subject.id in used for subject in _list_declared_subjects(graph, requirement))
+    ]
+
+
+def _list_declared_subjects(graph: Graph, requirement: Element) -> list[Element]:
+    """Return the subjects that a requirement declares, or that its nearest general declares."""
+    family = (requirement, *query.generals(graph, requirement))
+    declared = (graph.targets(member, Edge.SUBJECT) for member in family)
+    return next(filter(None, declared), [])
+
+
+def find_used_library_elements(graph: Graph) -> set[str]:
+    """Return the ids of the library elements to which elements of the model lead.
+
+    Relations lead to them, directly or through other library elements, and from an element to its
+    members, but not from a package.
+    """
+    used: set[str] = set()
+    worklist = [
+        graph[target]
+        for _, source, target in graph.edges()
+        if graph[target].attrs.get("external") and not graph[source].attrs.get("external")
+    ]
+    while worklist:
+        element = worklist.pop()
+        if element.id not in used and element.attrs.get("external"):
+            used.add(element.id)
+            if element.kind is not Kind.PACKAGE:
+                worklist += (item for edge in Edge for item in graph.targets(element, edge))
+    return used
 
 
 def _find_gap(graph: Graph, subject: Element, described: Set[str]) -> str:
@@ -281,6 +324,13 @@ def list_texts_about(graph: Graph, element: Element) -> list[Element]:
     candidates = (*graph.targets(element, Edge.SATISFIES), *graph.sources(element, Edge.SUBJECT))
     requirements = dict.fromkeys(item.id for item in candidates if query.is_requirement(item))
     return [graph[id] for id in requirements if is_only_text(graph, graph[id])]
+
+
+def _explain_missing_subject(graph: Graph, requirement: Element) -> str:
+    subject = next(iter(_list_declared_subjects(graph, requirement)), None)
+    if subject is None or not subject.attrs.get("external"):
+        return _NO_SUBJECT
+    return _LIBRARY_SUBJECT.format(subject=graph.qualified_name(subject))
 
 
 def _describe_text(graph: Graph, requirement: Element) -> StatedRequirement:
