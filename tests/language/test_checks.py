@@ -81,6 +81,15 @@ def test_a_usage_cannot_be_a_type_and_a_subset_inherits_types():
     ]
 
 
+def test_an_enumerated_value_is_typed_by_its_enumeration_definition():
+    colours = "enum def Colour { enum red; } enum def Size { enum red; }"
+    assert list_messages(colours + "attribute a : Colour { enum warm redefines red; }") == []
+    assert list_messages(colours + "attribute a : Colour; enum warm :> Colour::red;") == []
+    assert list_messages(colours + "enum warm :> Colour::red, Size::red;") == [
+        "enumeration 'warm' must be typed by one definition, but has 'Colour' and 'Size'"
+    ]
+
+
 def test_a_type_and_its_specialisation_count_as_one_type():
     assert list_messages("""
         requirement def Safe;

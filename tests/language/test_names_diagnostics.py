@@ -4,7 +4,7 @@ import pytest
 from small_models import DECLARE_OR_IMPORT, list_name_errors, load_library, parse_texts
 
 from sysmlc.diagnostics import Place, Sink
-from sysmlc.language.names import CYCLE, NO_STANDARD_LIBRARY, TOO_DEEP, resolve
+from sysmlc.language.names import CYCLE, HIDDEN, NO_STANDARD_LIBRARY, TOO_DEEP, resolve
 from sysmlc.language.names.unresolved import UNRESOLVED
 from sysmlc.language.text import parse
 from sysmlc.language.tree import Document, Node, locate
@@ -19,7 +19,12 @@ def list_codes(text):
 
 @pytest.mark.parametrize(
     ("rule", "code"),
-    [(UNRESOLVED, "SM205"), (CYCLE, "SM206"), (NO_STANDARD_LIBRARY, "SM207")],
+    [
+        (UNRESOLVED, "SM205"),
+        (CYCLE, "SM206"),
+        (NO_STANDARD_LIBRARY, "SM207"),
+        (HIDDEN, "SM241"),
+    ],
 )
 def test_the_wrong_example_breaks_the_rule_and_the_right_one_does_not(rule, code):
     assert rule.code == code

@@ -74,6 +74,7 @@ def write_member(random, depth):
         f"private import {second}::{third};",
         f"part def {first} :> {second};",
         f"part {first.lower()} : {second};",
+        f"part {first.lower()} : {second}::{third};",
         f"action def {first} {{ in x : {second}; }}",
     ]
     if depth < 2:

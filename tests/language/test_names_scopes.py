@@ -1,7 +1,17 @@
 """Lookup of names in scopes: owned, imported, enclosing and global members; filters."""
 
 import pytest
-from small_models import DECLARE_OR_IMPORT, list_name_errors, resolve_texts, target_name
+from small_models import (
+    DECLARE_OR_IMPORT,
+    list_name_errors,
+    load_library,
+    parse_texts,
+    resolve_texts,
+    target_name,
+)
+
+from sysmlc.diagnostics import Sink
+from sysmlc.language.names import resolve
 
 
 def test_a_name_is_looked_up_in_the_innermost_namespace_first():
@@ -276,3 +286,81 @@ def test_advice_names_units_and_what_imported_packages_pass_on():
         "3: unknown name 'kgg': did you mean 'kg'?",
         "4: unknown name 'ISQ::MasValue': did you mean 'MassValue'?",
     ]
+
+
+TYPE_NAMED_LIKE_ITS_PACKAGE = """
+    package Plant {
+        part def Plant { part pump : Pump; }
+        part def Pump;
+        package Tools { part def Drill; }
+    }
+    package Use {
+        private import Plant::*;
+        part a : Plant::Pump;
+        part b : Plant::Tools::Drill;
+        part c : Plant;
+        package Inner { private import Plant::Tools::*; part d : Drill; }
+    }
+"""
+
+
+def test_an_imported_type_does_not_hide_the_package_of_the_same_name():
+    documents = parse_texts(TYPE_NAMED_LIKE_ITS_PACKAGE)
+    sink = Sink()
+    model = resolve(documents, load_library(), sink)
+    assert target_name(model, "Use::a") == "Plant::Pump"
+    assert target_name(model, "Use::b") == "Plant::Tools::Drill"
+    assert target_name(model, "Use::c") == "Plant::Plant"
+    assert target_name(model, "Use::Inner::d") == "Plant::Tools::Drill"
+    assert [(d.rule.code, d.message) for d in sink if d.rule.code != "SM207"] == [
+        (
+            "SM241",
+            "'Plant::Pump' is found although the nearest 'Plant' has no 'Pump' "
+            "(2 more such names in this file)",
+        )
+    ]
+
+
+def test_a_name_that_no_meaning_of_its_first_part_has_is_unknown():
+    text = TYPE_NAMED_LIKE_ITS_PACKAGE.replace("part c : Plant;", "part c : Plant::Valve;")
+    assert [error for error in list_name_errors(text) if "unknown" in error] == [
+        "11: unknown name 'Plant::Valve': declare it in 'Plant'"
+    ]
+
+
+def test_a_declared_namespace_hides_those_further_outside():
+    assert list_name_errors("""
+        package Doors { part def Gate; }
+        package Plant {
+            package Doors { part def Flap; }
+            part a : Doors::Gate;
+        }
+    """) == ["5: unknown name 'Doors::Gate': declare it in 'Doors', which has: Flap"]
+
+
+@pytest.mark.parametrize("import_", ["Motors::**", "Motors::*::**"])
+def test_a_recursive_import_finds_a_type_below_a_package_of_the_same_name(import_):
+    model = resolve_texts(f"""
+        package Motors {{ package Motor {{ package Parts {{ part def Motor; }} }} }}
+        package Use {{ private import {import_}; part a : Motor; part b : Motor::Parts::Motor; }}
+    """)
+    for part in ("a", "b"):
+        assert target_name(model, f"Use::{part}") == "Motors::Motor::Parts::Motor"
+
+
+def test_recursive_imports_may_form_a_cycle():
+    model = resolve_texts("""
+        package Line {
+            package Left { public import Right::**; package Deep { part def Gate; } }
+            package Right { public import Left::**; package Deep { part def Flap; } }
+            package Use {
+                public import Line::**;
+                part a : Gate;
+                part b : Flap;
+                part c : Left::Flap;
+            }
+        }
+    """)
+    assert target_name(model, "Line::Use::a") == "Line::Left::Deep::Gate"
+    assert target_name(model, "Line::Use::b") == "Line::Right::Deep::Flap"
+    assert target_name(model, "Line::Use::c") == "Line::Right::Deep::Flap"

@@ -303,6 +303,17 @@ def test_transitions_have_source_trigger_guard_effect_and_target():
     ]
 
 
+def test_the_effect_of_a_transition_may_be_empty():
+    assert parse_members("state s { transition first a do then b; }") == [
+        "FeatureMembership TransitionUsage Membership->a",
+        "  ParameterMembership ReferenceUsage",
+        "  TransitionFeatureMembership (effect) ActionUsage",
+        "  OwningMembership SuccessionAsUsage",
+        "    EndFeatureMembership ReferenceUsage",
+        "    EndFeatureMembership ReferenceUsage ReferenceSubsetting->b",
+    ]
+
+
 def test_requirements_have_subjects_assumptions_and_guarantees():
     text = "requirement r { subject s : S; assume constraint a { s > 1 } require b; }"
     assert parse_members(text) == [

@@ -11,7 +11,7 @@ from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.language.library import SHIPPED, Library
 from sysmlc.language.names.model import Model
 from sysmlc.language.names.unresolved import report_unresolved
-from sysmlc.language.tree import Document, Node, Relation, find_root, make_subject
+from sysmlc.language.tree import Document, Node, Reference, Relation, find_root, make_subject
 
 __all__ = ["Model", "resolve", "resolve_all"]
 
@@ -39,6 +39,13 @@ TOO_DEEP = rule(
     Severity.ERROR,
     "'{name}' is resolved through too many other names",
     help="refer to the element directly",
+)
+HIDDEN = rule(
+    "SM241",
+    "hidden-meaning",
+    Severity.INFO,
+    "'{name}' is found although the nearest '{first}' has no '{second}'{others}",
+    help="import the element itself, or begin with '$::', so that every tool finds it",
 )
 
 _RECURSION_LIMIT = 20_000
@@ -68,6 +75,7 @@ def resolve_all(model: Model, sink: Sink) -> None:
         for document in model.documents:
             _resolve_generals(document, model)
         _report_cycles(model, sink)
+        _report_hidden_meanings(model, sink)
         if model.library.is_core:
             _report_missing_library(model, sink)
     finally:
@@ -120,6 +128,30 @@ def _report_cycles(model: Model, sink: Sink) -> None:
             place = make_subject(document, node, node.name_start)
             through = f" through {names}" if names else ""
             sink.report(CYCLE, place, name=model.name(node) or node.kind, through=through)
+
+
+def _report_hidden_meanings(model: Model, sink: Sink) -> None:
+    """Report the first use of each name whose nearest meaning lacks the next part, by document."""
+    uses: dict[tuple[str, str], list[tuple[Node, Reference]]] = {}
+    for reference, node in model.lookup.hidden_references.items():
+        document = model.document(node)
+        if document in model.documents and reference.target is not None:
+            key = document.path, reference.chain[0][0]
+            uses.setdefault(key, []).append((node, reference))
+    for same_name in uses.values():
+        node, reference = min(same_name, key=lambda use: use[1].start)
+        document, names = model.document(node), reference.chain[0]
+        if document is None:
+            continue
+        count = len(same_name) - 1
+        sink.report(
+            HIDDEN,
+            make_subject(document, node, reference.start),
+            name="::".join(names),
+            first=names[0],
+            second=names[1],
+            others=f" ({count} more such names in this file)" if count else "",
+        )
 
 
 def _report_missing_library(model: Model, sink: Sink) -> None:

@@ -19,7 +19,8 @@ _METADATA = frozenset({"MetadataUsage", "MetadataFeature"})
 _IMPORTS = kinds_of("Import")
 _TYPING = frozenset({"FeatureTyping", "TypeFeaturing"})
 _MEMBER = frozenset({"importedMembership"})
-_IMPORTED = _MEMBER | {"importedNamespace"}
+IMPORTED = _MEMBER | {"importedNamespace"}
+"""Relations of imports."""
 
 TARGET_KINDS: dict[str, frozenset[str]] = {
     "Specialization": _TYPE,
@@ -112,7 +113,7 @@ def _make_context(node: Node, relation: Relation) -> LookupContext:
     if kind in _TYPING:
         scope = node if kind == "TypeFeaturing" else _find_expression_scope(node)
         return LookupContext(scope, without=node, is_metadata=node.kind in _METADATA)
-    if kind in _IMPORTED:
+    if kind in IMPORTED:
         return _make_import_context(
             node, everything=kind in _MEMBER and bool(node.attributes.get("isImportAll"))
         )

@@ -19,6 +19,7 @@ from sysmlc.language.tree import Node, Reference, Relation
 
 GENERALIZATION_KINDS = kinds_of("Specialization") | {"Conjugation", "FeatureChaining"}
 """Relations by which a node inherits the members of the target."""
+_DEFINITIONS = kinds_of("Definition")
 
 
 class GeneralLookup(ABC):
@@ -250,6 +251,10 @@ class GeneralLookup(ABC):
                 cached = (*by_position, *cached)
             if value is not None and value is not node:
                 cached = (value, *cached)
+            # A variant such as an enumerated value has the type that it is a variant of.
+            if node.membership == "VariantMembership" and not self.generals(node):
+                owner = node.owner
+                cached = (owner, *cached) if owner and owner.kind in _DEFINITIONS else cached
             if self.cycle_hits == hits_before:
                 self._implied_generals[node] = cached
         return cached

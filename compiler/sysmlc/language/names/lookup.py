@@ -122,11 +122,10 @@ class ImportLookup(MemberLookup):
             if hit.name or hit.short_name
             else (relation.reference.chain[-1][-1],)
         )
-        if name in names:
-            return (hit,)
+        hits = (hit,) if name in names else NO_HITS
         if node.attributes.get("isRecursive"):
-            return self._find_in_namespace_import(node, self.resolve_alias(hit), name)
-        return NO_HITS
+            hits += self._find_in_namespace_import(node, self.resolve_alias(hit), name)
+        return hits
 
     def _find_in_namespace_import(self, node: Node, scope: Node | None, name: str) -> Hits:
         if scope is None:
@@ -137,16 +136,15 @@ class ImportLookup(MemberLookup):
             if everything
             else self.visible_outside(scope, name)
         )
-        # A recursive import searches nested namespaces only for names that the first one lacks.
-        if hits or not node.attributes.get("isRecursive"):
-            return hits
-        for nested in self._list_nested_namespaces(scope, everything):
-            hits = (
-                self.own_members(nested, name) if everything else self.visible_outside(nested, name)
-            )
-            if hits:
-                return hits
-        return NO_HITS
+        if node.attributes.get("isRecursive"):
+            # The package 'Motor' does not hide the type 'Motor' in it, so that all count.
+            for nested in self._list_nested_namespaces(scope, everything):
+                hits += (
+                    self.own_members(nested, name)
+                    if everything
+                    else self.visible_outside(nested, name)
+                )
+        return hits
 
     def _list_nested_namespaces(self, scope: Node, everything: bool) -> list[Node]:
         """Return the namespaces below ``scope`` that a recursive import searches, owners first."""
@@ -192,6 +190,8 @@ class Lookup(ImportLookup):
         self._text = text
         self.circular_references: set[Reference] = set()
         """References whose lookup hit too many cycles."""
+        self.hidden_references: dict[Reference, Node] = {}
+        """Users of references whose first name has a nearer meaning that lacks the next name."""
 
     def target(self, node: Node, relation: Relation) -> Node | None:
         """Return the element that a relation of ``node`` leads to, or None if it is unresolved.
@@ -233,7 +233,12 @@ class Lookup(ImportLookup):
                 scope = find_result(context.operand, self)
                 hit = self.descend(scope, names, 0, kinds) if scope else None
             else:
+                hits_before = self.cycle_hits
                 hit = self.search(context, names, kinds)
+                # A search that a cycle impeded may find the nearest meaning later.
+                is_impeded = self.cycle_hits != hits_before and len(self._active) > 1
+                if hit is None and len(names) > 1 and not is_impeded:
+                    hit = self._search_hidden(node, relation, context, kinds)
             if hit is None:
                 break
             is_import = relation.kind == "importedMembership"
@@ -259,10 +264,38 @@ class Lookup(ImportLookup):
             None,
         )
 
-    def search(
-        self, context: contexts.LookupContext, names: tuple[str, ...], kinds: frozenset[str] | None
+    def _search_hidden(
+        self,
+        node: Node,
+        relation: Relation,
+        context: contexts.LookupContext,
+        kinds: frozenset[str] | None,
     ) -> Node | None:
-        """Return the member that a qualified name leads to from a scope outwards."""
+        """Return the member that a qualified name leads to if its nearest meaning lacks it."""
+        # An import that is found by another import could depend on itself.
+        if relation.kind in contexts.IMPORTED:
+            context = context._replace(importing=tuple(contexts.list_scopes(context)))
+        hits_before = self.cycle_hits
+        hit = self.search(context, relation.reference.chain[0], kinds, past_imported=True)
+        if hit is None or (self.cycle_hits != hits_before and len(self._active) > 1):
+            return None
+        self.hidden_references[relation.reference] = node
+        return hit
+
+    def search(
+        self,
+        context: contexts.LookupContext,
+        names: tuple[str, ...],
+        kinds: frozenset[str] | None,
+        *,
+        past_imported: bool = False,
+    ) -> Node | None:
+        """Return the member that a qualified name leads to from a scope outwards.
+
+        By the letter of KerML 8.2.3.5 the nearest namespace with the first name decides, even if it
+        lacks the next name. Published models rely on tools that resolve the name as a whole: with
+        ``past_imported`` the search goes on if the nearest namespace is an imported one.
+        """
         first, scope = names[0], context.scope
         if first == "$" and len(names) > 1 and not self._is_first_name_quoted(context):
             return self.find_among(self._find_roots(names[1]), names, 1, kinds)
@@ -274,13 +307,14 @@ class Lookup(ImportLookup):
                     member = self.find_among(hits, names, 0, kinds, context.everything)
                     if member is not None:
                         return member
-                    # The nearest namespace with the first name decides, even if it lacks the next
-                    # name (KerML 8.2.3.5).
-                    if len(names) > 1 and any(map(self._is_namespace, hits)):
+                    is_passed = past_imported and hits == self.imported_members(
+                        scope, first, inside=True
+                    )
+                    if not is_passed and len(names) > 1 and any(map(self._is_namespace, hits)):
                         return None
             scope = contexts.find_outer_scope(scope)
         member = self.find_among(self._find_roots(first), names, 0, kinds)
-        if member is None:
+        if member is None and not past_imported:
             for importing in context.importing:
                 hits = self.imported_members(importing, first, inside=True)
                 member = member or self.find_among(hits, names, 0, kinds, context.everything)

@@ -212,6 +212,11 @@ def _build_effect_part(tokens: Tokens, _stop: int, begin: int, effect: Node) -> 
     return _mark_transition_part(effect, "effect")
 
 
+def _build_empty_effect(tokens: Tokens, stop: int, begin: int, _none: None) -> Node:
+    node = make_node("ActionUsage", FEATURE, tokens, begin, stop)
+    return _mark_transition_part(node, "effect")
+
+
 def _build_effect(
     tokens: Tokens,
     stop: int,
@@ -361,6 +366,7 @@ ACTIONS = {
     "trigger_part": _build_trigger_part,
     "guard_part": _build_guard_part,
     "effect_part": _build_effect_part,
+    "effect_empty": _build_empty_effect,
     "effect": _build_effect,
     "effect_declared": _build_effect_declared,
     "effect_step": _build_effect_step,
