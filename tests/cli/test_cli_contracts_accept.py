@@ -81,6 +81,7 @@ def test_a_run_in_json(workspace, form):
         ("run.csv", "", "run.csv:1:1: it has no step"),
         ("run.csv", 'go\n"1\n', "it is not CSV"),
         ("run.json", "{", "run.json:1:1: it is not JSON"),
+        ("run.json", '[{"go": "\\ud800"}]', "only half of a character"),
         ("run.json", "3", "it is not a list of steps"),
         ("run.json", "[\n3]", "step 1 is not an object"),
         ("run.json", '[{"go": true},\n{"done": true}]', "run.json:2:1: not each step has a value"),

@@ -48,6 +48,8 @@ def test_parsing_a_printed_graph_gives_the_same_graph(graph):
         ('Class a x={"b": 1}', "cannot be an attribute"),
         ('Class a "b', "line 1: Unterminated string"),
         ("Class a b", "line 1: expected ="),
+        ('Class a "\\ud800"', r"line 1: an escape such as \ud800 is only half of a character"),
+        ('Class a x="\\udc00"', "is only half of a character"),
     ],
 )
 def test_syntax_errors_name_their_line(text, message):

@@ -116,6 +116,11 @@ def test_a_wrong_checksum_is_an_error_at_its_location():
             " Expecting property name enclosed in double quotes: line 1 column 2 (char 1)",
         ),
         (
+            {"project": b'{"name": "\\ud800"}'},
+            "SM752 'Robots.kpar!.project.json' does not describe a project: it is not JSON:"
+            r" an escape such as \ud800 is only half of a character",
+        ),
+        (
             {"project": []},
             "SM752 'Robots.kpar!.project.json' does not describe a project: it is not a JSON "
             "object",

@@ -43,6 +43,7 @@ def print_nested_aliases(levels=12, width=9):
         ("overlay: 1\nitems: 'x", 2, 10, "found unexpected end of stream"),
         ("overlay: 1\n\titems: x", 2, 1, "found character '\\t' that cannot start any token"),
         ("overlay: 1\nitems: \x00", 2, 8, "the character #x0000 is not allowed"),
+        ('overlay: 1\nitems: "\\ud800"', 2, 8, "an escape such as \\ud800 is only half of a"),
         (b"overlay: 1\n# caf\xe9\n", 2, 6, "it is not UTF-8 here"),
         ("overlay: 1\n---\noverlay: 1\n", 2, 1, "a second document begins"),
         ("overlay: !!python/object:os.system 1\n", 1, 10, "the tag tag:yaml.org"),

@@ -11,6 +11,7 @@ from msgspec.structs import asdict
 
 from sysmlc.ir.element import AttrValue
 from sysmlc.ir.kinds import Edge, Kind
+from sysmlc.support.escapes import parse_json
 
 PREFIX = "sysmlc-kept/1 "
 """Start of the body; JSON follows (metamodels/sysmlc-kept.schema.json)."""
@@ -57,7 +58,7 @@ def decode_record(body: str) -> Record:
     Raises ValueError for a text that is not such a record.
     """
     try:
-        return _read_record(json.loads(body.removeprefix(PREFIX)))
+        return _read_record(parse_json(body.removeprefix(PREFIX)))
     except (TypeError, KeyError, AttributeError) as problem:
         raise ValueError(str(problem)) from problem
 

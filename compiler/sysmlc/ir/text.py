@@ -15,6 +15,7 @@ from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
 from sysmlc.ir.pending import Reference
+from sysmlc.support.escapes import HALF_CHARACTER, has_surrogate
 
 _E = TypeVar("_E", bound=StrEnum)
 _BARE = re.compile(r"[\w.:/#!+~%-]+")
@@ -237,9 +238,12 @@ class _Scanner:
 
     def _decode(self) -> tuple[object, int]:
         try:
-            return _DECODER.raw_decode(self._line, self._position)
+            value, end = _DECODER.raw_decode(self._line, self._position)
         except ValueError as problem:
             raise IrSyntaxError(f"line {self.number}: {problem}") from problem
+        if "\\u" in self._line and has_surrogate(json.dumps(value, ensure_ascii=False)):
+            raise IrSyntaxError(f"line {self.number}: {HALF_CHARACTER}")
+        return value, end
 
     def read_enum(self, type_: type[_E]) -> _E:
         word = self.read_word()

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from sysmlc.overlay.model import Spot
+from sysmlc.support.escapes import HALF_CHARACTER, has_surrogate
 
 if TYPE_CHECKING:
     from ruamel.yaml.error import StreamMark
@@ -141,6 +142,8 @@ class _Builder:
                 self._add_value(self._resolve_alias(str(event.anchor), spot), "")
             case events.ScalarEvent():
                 _refuse_tag(event.tag, spot)
+                if has_surrogate(event.value):
+                    raise TreeError(HALF_CHARACTER, spot)
                 scalar = event.value if event.style else _resolve_scalar(event.value)
                 self._add_value(Value(spot, scalar, event.value), event.anchor or "")
             case events.MappingStartEvent():

@@ -1,8 +1,12 @@
 """Escapes texts of models and file names, which terminals, Markdown or XML would interpret."""
 
+import json
 import re
 import unicodedata
+from collections.abc import Callable
+from typing import Any
 
+HALF_CHARACTER = r"an escape such as \ud800 is only half of a character"
 _INVISIBLE = frozenset(["Cc", "Cf", "Cs", "Zl", "Zp"])
 """Unicode categories of controls, bidirectional and zero-width signs, surrogates, separators."""
 _BLANK_LETTERS = frozenset("\u034f\u115f\u1160\u17b4\u17b5\u3164\uffa0")
@@ -60,6 +64,24 @@ def escape_undecodable(name: str) -> str:
     Python represents the byte 0xff by the lone surrogate U+DCFF, which no output can encode.
     """
     return _SURROGATE.sub(_escape_surrogate, name)
+
+
+def has_surrogate(text: str) -> bool:
+    r"""Return whether a text contains half of a character, from an escape such as ``\ud800``.
+
+    JSON and YAML can spell it, but no output can encode it.
+    """
+    return not text.isascii() and _SURROGATE.search(text) is not None
+
+
+def parse_json(
+    text: str | bytes, object_hook: Callable[[dict[str, Any]], Any] | None = None
+) -> Any:  # noqa: ANN401
+    """Return the value of a JSON text. Raises ValueError, also for half of a character."""
+    value = json.loads(text, object_hook=object_hook)
+    if has_surrogate(json.dumps(value, ensure_ascii=False)):
+        raise ValueError(HALF_CHARACTER)
+    return value
 
 
 def is_invisible(sign: str) -> bool:

@@ -3,7 +3,6 @@
 The back end ``sysml`` writes such facts as strings where no construct of SysML v2 expresses them.
 """
 
-import json
 import re
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 from sysmlc.frontends.sysml import nodes
 from sysmlc.ir import AttrValue, Edge, Element, Kind, list_items
 from sysmlc.language.tree import Node
+from sysmlc.support.escapes import parse_json
 
 if TYPE_CHECKING:
     from sysmlc.frontends.sysml.lowering import Lowering
@@ -55,7 +55,7 @@ def _restore_fact(lowering: "Lowering", element: Element, fact: str, attempts: i
         return
     part, name, operator, text = match.groups()
     holder = element if part is None else _find_part(lowering, element, part)
-    key = str(json.loads(name)) if name.startswith('"') else name
+    key = str(parse_fact_value(name)) if name.startswith('"') else name
     if holder is None and attempts:
         _defer_fact(lowering, element, fact, attempts - 1)
         return
@@ -135,7 +135,7 @@ def _parse_value_with_elements(lowering: "Lowering", text: str) -> AttrValue:
         return None if element is None else element.id
 
     try:
-        return _freeze(json.loads(text, object_hook=find_id))
+        return _freeze(parse_json(text, find_id))
     except (ValueError, RecursionError):
         return text
 
@@ -143,7 +143,7 @@ def _parse_value_with_elements(lowering: "Lowering", text: str) -> AttrValue:
 def parse_fact_value(text: str) -> AttrValue:
     """Return the JSON value of a text, or the text itself if it is no JSON."""
     try:
-        return _freeze(json.loads(text))
+        return _freeze(parse_json(text))
     except (ValueError, RecursionError):
         return text
 

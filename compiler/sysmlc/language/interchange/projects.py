@@ -13,6 +13,7 @@ from msgspec import Struct, field
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.language.interchange import rules
 from sysmlc.sources import DEFAULT_LIMITS, Fault, Limits, Source, SourceError, read_entries
+from sysmlc.support.escapes import parse_json
 
 _ALGORITHMS = {
     "SHA1": "sha1",
@@ -141,7 +142,7 @@ def _read_json(
         _report(sink, rules.BAD_PROJECT, Place(name), file=name, problem="it is missing")
         return {}
     try:
-        content = json.loads(source.data)
+        content = parse_json(source.data)
     except (ValueError, RecursionError) as problem:
         return _report_bad_project(sink, source, f"it is not JSON: {problem}")
     if not isinstance(content, dict):

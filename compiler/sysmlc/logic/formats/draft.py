@@ -23,6 +23,7 @@ from sysmlc.logic.formula import Formula, Op
 from sysmlc.logic.infix import FormulaReader
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.syntax import Cursor, FormulaError, Syntax
+from sysmlc.support.escapes import HALF_CHARACTER, has_surrogate
 
 SIDES = {Owner.ENVIRONMENT: "assumptions", Owner.SYSTEM: "guarantees"}
 """The conjuncts that each owner promises."""
@@ -306,6 +307,8 @@ class _LocatingDecoder(json.JSONDecoder):
 
 def _parse_string(text: str, begin: int, strict: bool = True) -> tuple[LocatedText, int]:
     value, end = scanstring(text, begin, strict)
+    if has_surrogate(value):
+        raise json.JSONDecodeError(HALF_CHARACTER, text, begin)
     located = LocatedText(value)
     located.offset, located.source = begin, text[begin : end - 1]
     return located, end
