@@ -177,7 +177,7 @@ def test_a_check_names_its_element(gate):
 
 
 def test_names_of_the_model_cannot_leave_comments_and_strings(tmp_path):
-    text = GATE.replace('"Gate"', "\"Ga*/te??/ ''' ü\"").replace(
+    text = GATE.replace('"Gate"', "\"Ga*/te??/ *\\\\typedef int q; // ''' ü\"").replace(
         '"Plant"', r'"P */ \"\"\"; abort()"'
     )
     _, files, _ = refine_and_emit(BACKEND, text)
@@ -189,6 +189,61 @@ def test_names_of_the_model_cannot_leave_comments_and_strings(tmp_path):
     if COMPILER is not None:
         flags = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wtrigraphs", "-Werror"]
         subprocess.run([COMPILER, *flags, "-fsyntax-only", str(source)], check=True)
+
+
+WORDS = (
+    *("linux", "unix", "asm", "new", "typeof", "int8_t", "NULL", "EOF", "main", "signal", "auto"),
+    *("and", "alignas", "char8_t", "class", "concept", "constexpr", "errno", "export", "final"),
+    *("friend", "I", "import", "INFINITY", "inline", "namespace", "nullptr", "operator", "stdin"),
+    *("SIGINT", "static_assert", "restrict", "template", "this", "thread_local", "true", "xor_eq"),
+    *("uint64_t", "wchar_t", "typeof_unqual", "_Bool", "__LINE__", "bool", "divide", "step", "now"),
+)
+MACROS = ("SEEK_SET", "EXIT_SUCCESS", "INT8_MAX", "UINT_LEAST8_MAX", "FLT_MAX", "GATE_MONITOR_H")
+HEADERS = (
+    *("assert", "complex", "ctype", "errno", "fenv", "float", "inttypes", "iso646", "limits"),
+    *("locale", "math", "setjmp", "signal", "stdarg", "stdbool", "stddef", "stdint", "stdio"),
+    *("stdlib", "string", "time", "wchar", "wctype"),
+)
+"""Headers of C99 that C++ has too."""
+
+
+def name_features(words):
+    """Return the gate with a Boolean feature of each name, which the first guard reads."""
+    features = [
+        f'    Property p{number} "{word}"\n      -> typed-by bool\n'
+        for number, word in enumerate(words)
+    ]
+    guard = " or ".join(f"'{word}'" for word in words)
+    return GATE.replace("level < 9", guard).replace(
+        "    StateMachine", f"{''.join(features)}    StateMachine"
+    )
+
+
+def name_constant(word):
+    """Return the gate with names of the block and a state that C joins to this constant."""
+    block, _, state = word.partition("_")
+    return GATE.replace('"Gate"', f'"{block.title()}"').replace('"A"', f'"{state.title()}"')
+
+
+@pytest.mark.skipif(COMPILER is None, reason="no C compiler is installed")
+@pytest.mark.parametrize("standard", ["-std=c99 -Wpedantic", "-std=gnu17", "-x c++"])
+def test_words_of_c_and_macros_of_its_headers_are_no_names_of_c(tmp_path, standard):
+    if "c++" in standard and not shutil.which("g++"):
+        pytest.skip("no C++ compiler is installed")
+    sources = []
+    for text in (name_features(WORDS), *map(name_constant, MACROS)):
+        _, files, _ = refine_and_emit(BACKEND, text)
+        folder = tmp_path / str(len(sources))
+        folder.mkdir()
+        for path, file in files.items():
+            (folder / path.rpartition("/")[2]).write_text(file.text)
+        (source,) = folder.glob("*.c")
+        source.write_text(
+            "".join(f"#include <{name}.h>\n" for name in HEADERS) + source.read_text()
+        )
+        sources.append(str(source))
+    flags = ["-Wall", "-Werror", "-fsyntax-only", *standard.split()]
+    subprocess.run([COMPILER, *flags, *sources], check=True)
 
 
 def test_a_contract_that_no_finite_run_breaks_has_no_monitor():

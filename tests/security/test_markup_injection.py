@@ -19,6 +19,7 @@ from sysmlc.passes import pipeline
 from sysmlc.support import plantuml_text as plantuml
 from sysmlc.support.escapes import escape_code, escape_markdown
 from sysmlc.support.output import Output
+from sysmlc.support.program_text import format_comment
 
 HOSTILE = "<script>x</script>[y](javascript:z)`|**b**\n## Injected\n\u202e&lt;"
 MODEL = machine(
@@ -90,6 +91,27 @@ def test_names_in_plantuml_comments_cannot_end_the_comment():
     comment = plantuml.format_comment("Gate\n@enduml\n!include /etc/passwd /' \u202e\\")
     assert comment == r"Gate @enduml !include /etc/passwd / ' \u202e\ ."
     assert plantuml.format_comment("Gate 'in'") == "Gate 'in'"
+
+
+@pytest.mark.parametrize(
+    ("text", "comment"),
+    [
+        ("G*\\typedef int q; //", "G*_typedef int q; //"),
+        ("a*/b**/c/*d/*/", "a* /b** /c/ *d/ * /"),
+        ("a\\\n*/", "a_ * /"),
+        ("*\u200b/ \u202e", "*_/ _"),
+        ("a\u2028b\x85c\x1ed", "a b c d"),
+        ("*??/\n/", "*? ?/ /"),
+        ('"""', "___"),
+        ("Förder*band / 装置 - 'x' -- #}", "Förder*band / 装置 - 'x' -- #}"),
+    ],
+)
+def test_names_in_comments_of_programs_cannot_end_or_extend_the_comment(text, comment):
+    assert format_comment(text) == comment
+
+
+def test_long_names_in_comments_are_cut():
+    assert format_comment("ab" * 9, width=5) == "ababa..."
 
 
 def test_names_in_tlsf_titles_cannot_end_the_quotes():

@@ -5,7 +5,6 @@
 it; the other formats have the contract as a formula.
 """
 
-import re
 from collections.abc import Callable, Mapping
 
 from msgspec import Struct
@@ -22,6 +21,7 @@ from sysmlc.logic.formats import NotExpressibleError
 from sysmlc.logic.formula import variable_names
 from sysmlc.logic.printing import print_formula
 from sysmlc.support.output import Output, assign_file_names
+from sysmlc.support.program_text import format_comment
 
 NOT_EXPRESSIBLE = rule(
     "SM590",
@@ -35,7 +35,6 @@ NOT_EXPRESSIBLE = rule(
 
 _SUFFIX = ".requirements"
 """End of the name of a contract whose requirements a behaviour has to satisfy."""
-_NOT_IN_COMMENTS = re.compile(r"[^ \w.,:;!=<>()&|'+-]")
 
 
 class ContractFormatBackend(Struct, frozen=True):
@@ -80,9 +79,7 @@ class ContractFormatBackend(Struct, frozen=True):
                     output.add(path, notes + file_text, trace, self.name, name=component)
 
     def _print_gap(self, reason: str) -> str:
-        text = _NOT_IN_COMMENTS.sub(
-            "_", f"not described, so that a violation may be none: {reason}"
-        )
+        text = format_comment(f"not described, so that a violation may be none: {reason}")
         return f"{self.comment.format(text)}\n"
 
 

@@ -16,11 +16,12 @@ from sysmlc.ir import Graph
 from sysmlc.logic.contract import BooleanDomain, Class, Contract, EnumerationDomain, Owner
 from sysmlc.logic.domains import describe
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var, has_primes
-from sysmlc.logic.identifiers import make_unique
+from sysmlc.logic.identifiers import identifier, make_unique
 from sysmlc.logic.monitors import Check, Monitor, build_monitor
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import as_ltl
 from sysmlc.support.output import Output
+from sysmlc.support.program_text import format_comment, is_c_word, quote_c, quote_python
 
 NOTHING_TO_MONITOR = rule(
     "SM579",
@@ -28,11 +29,6 @@ NOTHING_TO_MONITOR = rule(
     Severity.INFO,
     "the contract of '{component}' has no monitor: no finite run breaks it",
     help="state what must hold in each step, or within a number of steps",
-)
-_C_KEYWORDS = (
-    "auto break case char const continue default do double else enum extern float for goto if "
-    "inline int long register restrict return short signed sizeof static struct switch typedef "
-    "union unsigned void volatile while bool true false _Bool _Complex _Imaginary"
 )
 _MAX_COMMENT = 90
 """Characters of a name or range in a comment."""
@@ -49,7 +45,8 @@ class MonitorBackend(Struct, frozen=True):
         """Add three files for each contract with something that a finite run can break."""
         contracts = graph.derived(Contract)
         names = [contract.component.rpartition("::")[2].lower() for contract in contracts]
-        prefixes = make_unique(names, "component", *_C_KEYWORDS.split())
+        # A suffix follows each prefix, so that it may be a keyword.
+        prefixes = make_unique(names, "component")
         # Templates of users are not read: the generated code must be the code that is tested.
         with Templates(self.name, None) as templates:
             for contract, prefix in zip(contracts, prefixes, strict=True):
@@ -114,19 +111,19 @@ class _Page(Struct, frozen=True):
 def _build_page(graph: Graph, monitor: Monitor, prefix: str) -> _Page:
     contract = monitor.contract
     names = [variable.name for variable in contract.variables] + [b.name for b in monitor.bits]
-    fields = dict(zip(names, make_unique(names, "value", *_C_KEYWORDS.split()), strict=True))
+    fields = dict(zip(names, _name_in_c(names, "value"), strict=True))
     constants = _name_literals(contract, prefix)
     c_language = _make_c_language(fields, constants)
     rules = [bit.rule for bit in monitor.bits]
     formulas = [*rules, *(check.conjunct.formula for check in monitor.checks)]
     return _Page(
-        component=_make_comment(contract.component),
+        component=format_comment(contract.component, _MAX_COMMENT),
         prefix=prefix,
         variables=tuple(_list_variables(contract, fields)),
         literals=tuple(constants.values()),
         bits=tuple(
             _Bit(
-                key=ascii(bit.name),
+                key=quote_python(bit.name),
                 field=fields[bit.name],
                 is_true_first=bit.start,
                 c_rule=print_expression(bit.rule, c_language, is_about_two_steps=True),
@@ -136,7 +133,7 @@ def _build_page(graph: Graph, monitor: Monitor, prefix: str) -> _Page:
         ),
         checks=tuple(_build_check(graph, check, c_language) for check in monitor.checks),
         unmonitored=tuple(
-            _make_comment(conjunct.text or print_formula(as_ltl(conjunct)))
+            format_comment(conjunct.text or print_formula(as_ltl(conjunct)), _MAX_COMMENT)
             for conjunct in monitor.unmonitored
         ),
         uses_division=any(map(_has_division, formulas)),
@@ -153,8 +150,14 @@ def _name_literals(contract: Contract, prefix: str) -> dict[str, str]:
             for literal in variable.domain.literals
         )
     )
-    constants = make_unique([f"{prefix}_{literal}" for literal in literals], "literal")
-    return {name: text.upper() for name, text in zip(literals, constants, strict=True)}
+    names = [f"{prefix}_{literal}".upper() for literal in literals]
+    constants = _name_in_c(names, "literal", f"{prefix}_monitor_h")
+    return dict(zip(literals, constants, strict=True))
+
+
+def _name_in_c(names: list[str], fallback: str, *taken: str) -> tuple[str, ...]:
+    """Return unique identifiers that C and C++ read as names."""
+    return make_unique(names, fallback, *taken, *filter(is_c_word, map(identifier, names)))
 
 
 def _list_variables(contract: Contract, fields: Mapping[str, str]) -> Iterator[_Variable]:
@@ -162,8 +165,8 @@ def _list_variables(contract: Contract, fields: Mapping[str, str]) -> Iterator[_
         yield _Variable(
             field=fields[variable.name],
             c_type="bool" if isinstance(variable.domain, BooleanDomain) else "long",
-            comment=_make_comment(f"{variable.name}: {describe(variable.domain)}"),
-            key=ascii(variable.name),
+            comment=format_comment(f"{variable.name}: {describe(variable.domain)}", _MAX_COMMENT),
+            key=quote_python(variable.name),
         )
 
 
@@ -179,8 +182,8 @@ def _build_check(graph: Graph, check: Check, c_language: "_Language") -> _Check:
         condition="later" if is_about_two_steps else condition,
         c_test=print_expression(conjunct.formula, c_language, is_about_two_steps),
         python_test=print_expression(conjunct.formula, _PYTHON, is_about_two_steps),
-        c_description=", ".join(map(_quote_c, description)),
-        python_description=", ".join(map(ascii, description)),
+        c_description=", ".join(map(quote_c, description)),
+        python_description=", ".join(map(quote_python, description)),
     )
 
 
@@ -188,27 +191,6 @@ def _has_division(formula: Formula) -> bool:
     if not isinstance(formula, Apply):
         return False
     return formula.op in (Op.DIV, Op.MOD) or any(map(_has_division, formula.args))
-
-
-# -- texts -----------------------------------------------------------------------------------------
-
-
-def _make_comment(text: str) -> str:
-    """Return a text for a comment of one line in both languages."""
-    # A name must not end the comment in C or the docstring in Python.
-    line = ascii(text)[1:-1].replace("*/", "* /").replace("/*", "/ *")
-    line = line.replace("\\", "/").replace('"', "'")
-    return line if len(line) <= _MAX_COMMENT else f"{line[:_MAX_COMMENT]}..."
-
-
-def _quote_c(text: str) -> str:
-    """Return a string literal of C; characters outside of ASCII are octal escapes of UTF-8."""
-    # '?' is escaped, because "??=" and the like are trigraphs in C99.
-    characters = (
-        chr(byte) if 32 <= byte < 127 and chr(byte) not in '"\\?' else f"\\{byte:03o}"
-        for byte in text.encode("utf-8", "replace")
-    )
-    return f'"{"".join(characters)}"'
 
 
 # -- expressions -----------------------------------------------------------------------------------
@@ -247,7 +229,17 @@ def _make_c_language(fields: Mapping[str, str], constants: Mapping[str, str]) ->
     )
 
 
-_PYTHON = _Language("not ", " and ", " or ", ascii, lambda step, name: f"{step}[{name!a}]")
+def _print_python_constant(value: Literal) -> str:
+    return quote_python(value) if isinstance(value, str) else str(value)
+
+
+_PYTHON = _Language(
+    "not ",
+    " and ",
+    " or ",
+    _print_python_constant,
+    lambda step, name: f"{step}[{quote_python(name)}]",
+)
 
 
 def print_expression(formula: Formula, language: _Language, is_about_two_steps: bool) -> str:

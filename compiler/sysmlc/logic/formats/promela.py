@@ -17,7 +17,6 @@ of Büchi automata.
 """
 
 import itertools
-import re
 from collections.abc import Iterable, Iterator, Sequence
 
 from msgspec.structs import replace
@@ -62,11 +61,11 @@ from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
 from sysmlc.logic.identifiers import Names
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import as_ltl
+from sysmlc.support.program_text import format_comment
 
 _OWN_NAMES = "step blocked fair due turn environment component stop FIRST ENVIRONMENT COMPONENT"
 _RESERVED = KEYWORDS | frozenset(_OWN_NAMES.split())
 _WORDS = {**LTL_WORDS, Op.AND: "&&", Op.OR: "||", Op.EQ: "==", Op.MOD: "%"}
-_NOT_IN_COMMENTS = re.compile(r"[^ \w.,:;!=<>()&|'+-]")
 _MAX_LITERALS = 250
 """SPIN numbers the names of an mtype from 1 to 255."""
 _MAX_NUMBER = 2**31 - 1
@@ -178,7 +177,7 @@ class _PromelaWriter:
     def iter_lines(self) -> Iterator[str]:
         """Yield the lines of the model."""
         claims = list(self._iter_claims())
-        name = _make_comment(self._contract.component)
+        name = format_comment(self._contract.component)
         yield f"/* {name}: its behaviour and requirements, written by sysmlc."
         yield "   Check one claim: spin -a FILE && gcc -o pan pan.c && ./pan -a -N CLAIM */"
         yield ""
@@ -321,7 +320,7 @@ class _PromelaWriter:
             text = sample_start(formula, self._print_condition)
             text = f"(({assumed}) -> {text})" if assumed else text
             yield ""
-            yield f"/* {_make_comment(print_formula(formula))} */"
+            yield f"/* {format_comment(print_formula(formula))} */"
             title = names.new(claim.viewpoint or "claim", "claim")
             yield f"ltl {title} {{ (<>blocked) || {text} }}"
 
@@ -393,8 +392,3 @@ def _print_type(domain: Domain) -> str:
             return "mtype"
         case IntegerDomain(low, high):
             return "byte" if low >= 0 and high <= 255 else "int"
-
-
-def _make_comment(text: str) -> str:
-    """Return text that cannot end a comment."""
-    return _NOT_IN_COMMENTS.sub("_", text)

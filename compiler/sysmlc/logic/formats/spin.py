@@ -46,6 +46,7 @@ from sysmlc.logic.infix import FormulaReader, Term
 from sysmlc.logic.printing import print_literal
 from sysmlc.logic.syntax import NEUTRAL, FormulaError
 from sysmlc.support.disjoint_sets import DisjointSets
+from sysmlc.support.program_text import C_WORDS
 
 # -- reading ---------------------------------------------------------------------------------------
 
@@ -305,7 +306,7 @@ def _print_variable(variable: Var) -> str:
 
 # -- claims about a model ------------------------------------------------------------------------
 
-KEYWORDS = frozenset(
+KEYWORDS = C_WORDS.union(
     re.findall(
         r"\w+",
         # Promela.
@@ -316,12 +317,9 @@ KEYWORDS = frozenset(
         "set_priority short show skip timeout trace true typedef unless unsigned xr xs always "
         "eventually until weakuntil stronguntil release implies equivalent next _ _last "
         "_nr_pr _pid _priority "
-        # C, because the verifier has a structure with the variables, and its macros.
-        "auto case char const continue default double enum extern float long register "
-        "restrict signed sizeof static struct switch union void volatile while inline asm "
-        "typeof linux unix i386 final getframe iam_alive max maxseq0 maxseq1 maxseq2 minseq0 "
-        "minseq1 minseq2 mix onstack_put onstack_zap pthread_equal q_sz rand rot ulong ushort "
-        "wasnew uchar uint errno stdin stdout stderr",
+        # Names of the verifier, a program in C that has a structure with the variables.
+        "final getframe iam_alive max maxseq0 maxseq1 maxseq2 minseq0 minseq1 minseq2 mix "
+        "onstack_put onstack_zap pthread_equal q_sz rand rot ulong ushort wasnew uchar uint",
     )
 )
 """Words that cannot be names of variables in Promela, and so in its verifier, a program in C."""

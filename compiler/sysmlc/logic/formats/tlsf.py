@@ -38,8 +38,8 @@ from sysmlc.logic.formats.writing import (
 from sysmlc.logic.formula import Formula, Op, Var
 from sysmlc.logic.infix import MAX_DEPTH
 from sysmlc.logic.syntax import Cursor, Syntax, Token, tokenize
-from sysmlc.support.escapes import escape_invisible
 from sysmlc.support.interpreter import allow_recursion
+from sysmlc.support.program_text import format_comment
 
 _SIGNS = ("!", "&&", "||", "->", "<->", "==", "!=", "<", "<=", ">", ">=", "+", "-", "*", "/", "%")
 # The tables of operators are empty: `tlsf_expressions` parses expressions, with other precedences.
@@ -276,7 +276,7 @@ def write(contract: Contract, format_name: str) -> str:
     """Return the contract over bits, with the semantics of GR(1) games (strict implication)."""
     lowered = lower(contract, format_name)
     # A string of TLSF ends at the next quotation mark, and has no escapes.
-    title = escape_invisible(contract.component).replace("\\", "").replace('"', "")
+    title = format_comment(contract.component)
     lines = [
         "INFO {",
         f'  TITLE:       "{title}"',

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
+from sysmlc.language.text.spelling import format_comment, quote_name
 from sysmlc.logic.contract import (
     BooleanDomain,
     Contract,
@@ -148,9 +149,10 @@ def _write_sysml(
     component = contract.component
     comment = f"Made by sysmlc: the environment in which {component} fails."
     lines = [
-        f"package {_quote_name(f'What makes {component} fail')} {{",
+        f"package {quote_name(f'What makes {component} fail')} {{",
         "    private import ScalarValues::*;",
-        f"    doc /* {_escape_comment(comment)} */",
+        "    doc",
+        *(f"    {line}" for line in format_comment(comment)),
     ]
     for variable in (*machine.inputs, *machine.outputs):
         lines += _declare_enumeration(variable)
@@ -166,8 +168,8 @@ def _write_sysml(
 
 def _declare_enumeration(variable: Variable) -> Iterator[str]:
     if isinstance(variable.domain, EnumerationDomain):
-        yield f"    enum def {_quote_name(f'values of {variable.name}')} {{"
-        yield from (f"        enum {_quote_name(literal)};" for literal in variable.domain.literals)
+        yield f"    enum def {quote_name(f'values of {variable.name}')} {{"
+        yield from (f"        enum {quote_name(literal)};" for literal in variable.domain.literals)
         yield "    }"
 
 
@@ -178,16 +180,17 @@ def _declare_attribute(
 
     Inputs of the component are outputs of the environment, and vice versa.
     """
-    kinds = {BooleanDomain: "Boolean", EnumerationDomain: _quote_name(f"values of {variable.name}")}
+    kinds = {BooleanDomain: "Boolean", EnumerationDomain: quote_name(f"values of {variable.name}")}
     kind = kinds.get(type(variable.domain), "Integer")
     side = "out" if variable.owner is Owner.ENVIRONMENT else "in"
     value = "" if initial_value is None else f" := {_print_sysml_literal(variable, initial_value)}"
     element = qualified_name(variable.origin)
     if element:
-        yield f"        /* {_escape_comment(f'{variable.name} is {element}')} */"
-    yield f"        {side} attribute {_quote_name(variable.name)} : {kind}{value};"
+        comment = format_comment(f"{variable.name} is {element}")
+        yield from (f"        {line}" for line in comment)
+    yield f"        {side} attribute {quote_name(variable.name)} : {kind}{value};"
     if isinstance(variable.domain, IntegerDomain):
-        name, domain = _quote_name(variable.name), variable.domain
+        name, domain = quote_name(variable.name), variable.domain
         bounds = f"{domain.low} <= {name} and {name} <= {domain.high}"
         yield f"        assert constraint {{ {bounds} }}"
 
@@ -199,7 +202,7 @@ def _print_state_machine(machine: CounterStrategy) -> Iterator[str]:
         yield f"            state S{number} {{"
         yield "                entry action {"
         for variable, value in zip(machine.inputs, state.inputs, strict=True):
-            assignment = f"{_quote_name(variable.name)} := {_print_sysml_literal(variable, value)}"
+            assignment = f"{quote_name(variable.name)} := {_print_sysml_literal(variable, value)}"
             yield f"                    assign {assignment};"
         yield "                }"
         yield "            }"
@@ -220,22 +223,13 @@ def _print_guards(
 
 
 def _print_comparison(variable: Variable, value: Literal) -> str:
-    return f"{_quote_name(variable.name)} == {_print_sysml_literal(variable, value)}"
+    return f"{quote_name(variable.name)} == {_print_sysml_literal(variable, value)}"
 
 
 def _print_sysml_literal(variable: Variable, value: Literal) -> str:
     if isinstance(variable.domain, EnumerationDomain):
-        return f"{_quote_name(f'values of {variable.name}')}::{_quote_name(str(value))}"
+        return f"{quote_name(f'values of {variable.name}')}::{quote_name(str(value))}"
     return print_literal(value)
-
-
-def _quote_name(name: str) -> str:
-    """Return a name in quotes: names of variables may be reserved words (KerML 1.0, 8.2.2.3)."""
-    return "'" + name.replace("\\", "\\\\").replace("'", "\\'") + "'"
-
-
-def _escape_comment(text: str) -> str:
-    return text.replace("*/", "* /")
 
 
 def counterstrategy_files(
