@@ -2,11 +2,13 @@
 
 The names below are the Python API (docs/python-api.md). They are imported at their first use, so
 that ``sysmlc --version`` and the completion of the shell do not import the compiler.
+
+This module imports nothing at its start: ``python -m sysmlc`` runs it while the working folder, which
+may belong to a stranger, still comes first in the search for modules (see ``__main__``).
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING
-
+TYPE_CHECKING = False
+"""Type checkers take it as true, like the name in ``typing``."""
 if TYPE_CHECKING:
     from sysmlc.api import (
         Compilation,
@@ -54,6 +56,8 @@ __all__ = [
 def __getattr__(name: str) -> object:
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib import import_module
+
     return getattr(import_module("sysmlc.api"), name)
 
 
