@@ -102,10 +102,7 @@ def test_keep_going_writes_the_outputs_that_no_error_affects(tmp_path, capsys):
 
 @pytest.mark.parametrize(("saves", "pauses"), [(3, 1), pytest.param(8, 0, marks=pytest.mark.long)])
 def test_memory_of_earlier_builds_is_freed(saves, pauses, tmp_path, monkeypatch):
-    """Front ends freeze their objects, so that garbage collection does not traverse them.
-
-    The watch unfreezes and collects them in a pause, and after many saves without a pause.
-    """
+    """The watch collects syntax trees and graphs in a pause, and after many saves without one."""
     monkeypatch.setenv("SYSMLC_CACHE", str(tmp_path / "cache"))
     path = tmp_path / "cell.sysml"
     path.write_text("package P;")

@@ -193,7 +193,6 @@ class Watch:
     def _collect_garbage(self) -> None:
         """Free graphs and syntax trees, whose nodes form cycles of references."""
         # Without this, each edit of the ICE laboratory left 14 MB in memory.
-        gc.unfreeze()
         gc.collect()
         self._uncollected_builds = 0
 
@@ -259,8 +258,6 @@ def compile_all(
     from sysmlc.cli import session
     from sysmlc.cli.units import open_units
 
-    # Front ends freeze their graphs (gc.freeze); those of earlier compilations can be freed now.
-    gc.unfreeze()
     config = session.load_config(models, settings)
     units = open_units(models, config, settings, output)
     outcomes = session.compile_units(units, settings, uses_cache=False)

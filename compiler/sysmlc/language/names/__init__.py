@@ -3,7 +3,6 @@
 ``resolve`` resolves every reference of a model, and reports unresolved names and cycles.
 """
 
-import gc
 import sys
 from collections.abc import Sequence
 
@@ -12,6 +11,7 @@ from sysmlc.language.library import SHIPPED, Library
 from sysmlc.language.names.model import Model
 from sysmlc.language.names.unresolved import report_unresolved
 from sysmlc.language.tree import Document, Node, Reference, Relation, find_root, make_subject
+from sysmlc.support.interpreter import pause_garbage_collection
 
 __all__ = ["Model", "resolve", "resolve_all"]
 
@@ -59,11 +59,11 @@ def resolve(documents: Sequence[Document], library: Library, sink: Sink) -> Mode
     return model
 
 
+# Resolution creates no garbage but many objects, which would trigger collections.
+@pause_garbage_collection()
 def resolve_all(model: Model, sink: Sink) -> None:
     """Resolve every reference that is not yet resolved, and report unresolved names."""
-    is_collecting, recursion_limit = gc.isenabled(), sys.getrecursionlimit()
-    # Resolution creates no garbage but many objects, which would trigger collections.
-    gc.disable()
+    recursion_limit = sys.getrecursionlimit()
     # Names resolve by recursion, and a chain of aliases may be as long as a program writes it.
     sys.setrecursionlimit(max(recursion_limit, _RECURSION_LIMIT))
     try:
@@ -80,8 +80,6 @@ def resolve_all(model: Model, sink: Sink) -> None:
             _report_missing_library(model, sink)
     finally:
         sys.setrecursionlimit(recursion_limit)
-        if is_collecting:
-            gc.enable()
 
 
 def _resolve_document(document: Document, model: Model, sink: Sink) -> None:

@@ -4,7 +4,6 @@ A text with syntax errors becomes a tree too. Checks of the tree report errors t
 leave out because the tree allows better messages.
 """
 
-import gc
 import re
 from bisect import bisect_left
 from collections.abc import Iterator
@@ -21,6 +20,7 @@ from sysmlc.language.text.lexer import Tokens, tokenize
 from sysmlc.language.text.recovery import Recovery
 from sysmlc.language.tree import Document, Node
 from sysmlc.sources import Source
+from sysmlc.support.interpreter import pause_garbage_collection
 
 _AFTER_EXPRESSION = (
     "} ?? or and implies xor | & == != === !== < > <= >= .. + - * / % ^ ** istype hastype @ as @@ "
@@ -37,13 +37,8 @@ def parse(
     Syntax errors are reported, and the tree has everything that could be parsed.
     """
     # A tree has hundreds of thousands of objects and no garbage: collections only cost time.
-    is_collecting = gc.isenabled()
-    gc.disable()
-    try:
+    with pause_garbage_collection():
         return _parse(text, path, language, sink, source)
-    finally:
-        if is_collecting:
-            gc.enable()
 
 
 def _parse(text: str, path: str, language: str, sink: Sink, source: Source | None) -> Document:
