@@ -3,8 +3,8 @@
 The names below are the Python API (docs/python-api.md). They are imported at their first use, so
 that ``sysmlc --version`` and the completion of the shell do not import the compiler.
 
-This module imports nothing at its start: ``python -m sysmlc`` runs it while the working folder, which
-may belong to a stranger, still comes first in the search for modules (see ``__main__``).
+This module imports nothing at its start: ``python -m sysmlc`` runs it while the working folder,
+which may belong to a stranger, still comes first in the search for modules (see ``__main__``).
 """
 
 TYPE_CHECKING = False

@@ -58,8 +58,8 @@ def compile_model(
     ``ConfigError`` for a configuration that cannot be used and ``BackendError`` for an unknown
     back end.
     """
-    # The nodes of syntax trees form cycles. Without this, each compilation of the ICE laboratory in a
-    # loop left up to 14 MB in memory, because the collector is paused while models are read.
+    # The nodes of syntax trees form cycles. Without this, each compilation of the ICE laboratory in
+    # a loop left up to 14 MB in memory, because the collector is paused while models are read.
     gc.collect()
     if isinstance(paths, Request):
         return compile_request(paths)

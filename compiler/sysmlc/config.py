@@ -2,7 +2,9 @@
 
 import json
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from fnmatch import fnmatch
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -202,7 +204,7 @@ def _is_confined(pattern: str, config: Config) -> bool:
     first = next(wildcard_parts, len(parts))
     if config.folder is None or config.root is None or ".." in parts[first:]:
         return False
-    # Path.glob does not expand absolute patterns.
+    # Patterns are expanded in the folder of the configuration.
     if first < len(parts) and Path(pattern).is_absolute():
         return False
     return Roots((config.root,)).allows(config.folder.joinpath(*parts[:first]))
@@ -211,20 +213,50 @@ def _is_confined(pattern: str, config: Config) -> bool:
 def expand_files(config: Config, patterns: Iterable[str]) -> list[Path]:
     """Return the files that match patterns of the configuration, sorted for each pattern.
 
-    Raises ConfigError for a symbolic link to a file outside the project root.
+    Raises ConfigError for a symbolic link to a file or folder outside the project root.
     """
-    folder, root = config.folder or Path.cwd(), config.root or Path.cwd()
-    files: list[Path] = []
+    folder, files = config.folder or Path.cwd(), list[Path]()
     for pattern in patterns:
         has_wildcard = any(sign in pattern for sign in _WILDCARDS)
-        files += sorted(folder.glob(pattern)) if has_wildcard else [folder / pattern]
+        files += _expand_pattern(pattern, folder, config) if has_wildcard else [folder / pattern]
     for path in files:
-        if not Roots((root,)).allows(path):
-            raise ConfigError(
-                f"{config.file}: '{path}' is a link that leads out of the project root '{root}'; "
-                "only files named on the command line may do that"
-            )
+        _refuse_link_out(path, config)
     return files
+
+
+def _expand_pattern(pattern: str, folder: Path, config: Config) -> list[Path]:
+    """Return what matches a pattern in *folder*, sorted; ``**`` matches folders of any depth.
+
+    ``Path.glob`` would follow links and list folders outside the project root.
+    """
+    paths = [folder]
+    for part in Path(pattern).parts:
+        # Links may lead in circles. By its real path, each folder is searched once for a part.
+        folders = {os.path.realpath(path): path for path in reversed(paths) if path.is_dir()}
+        for path in folders.values():
+            _refuse_link_out(path, config)
+        paths = sorted({match for path in folders.values() for match in _match(part, path)})
+    return paths
+
+
+def _match(part: str, folder: Path) -> Iterator[Path]:
+    """Yield what one part of a pattern matches in *folder*."""
+    if part == "**":
+        yield from (Path(path) for path, _, _ in os.walk(folder))
+    elif set(part) & set(_WILDCARDS):
+        with suppress(PermissionError):
+            yield from (path for path in folder.iterdir() if fnmatch(path.name, part))
+    elif os.path.lexists(folder / part):
+        yield folder / part
+
+
+def _refuse_link_out(path: Path, config: Config) -> None:
+    root = config.root or Path.cwd()
+    if not Roots((root,)).allows(path):
+        raise ConfigError(
+            f"{config.file}: '{path}' is a link that leads out of the project root '{root}'; "
+            "only files named on the command line may do that"
+        )
 
 
 # -- reading -----------------------------------------------------------------------------------

@@ -89,13 +89,23 @@ def test_a_file_that_cannot_be_read_is_exit_code_2(tmp_path, name, content, mess
     )
 
 
-def test_symbolic_links_and_permissions_are_preserved(tmp_path):
-    real, link = tmp_path / "real.sysml", tmp_path / "link.sysml"
+def test_permissions_are_preserved(tmp_path):
+    real = tmp_path / "real.sysml"
     real.write_text(UGLY)
     real.chmod(0o600)
+    run_format(real)
+    assert (real.read_text(), real.stat().st_mode & 0o777) == (NEAT, 0o600)
+
+
+def test_a_symbolic_link_is_refused(tmp_path):
+    """A link in a repository may lead to any file of the user."""
+    real, link = tmp_path / "real.sysml", tmp_path / "link.sysml"
+    real.write_text(UGLY)
     link.symlink_to(real)
-    run_format(link)
-    assert (link.is_symlink(), real.read_text(), real.stat().st_mode & 0o777) == (True, NEAT, 0o600)
+    result = run_format(link)
+    message = f"sysmlc: '{link.as_posix()}' is a link; name what it leads to\n"
+    assert (result.exit_code, result.stderr) == (2, message)
+    assert (link.is_symlink(), real.read_text()) == (True, UGLY)
 
 
 def test_a_folder_without_models_is_exit_code_2(tmp_path):

@@ -41,7 +41,7 @@ UNIT = '[[model]]\nname = "plant"\nfiles = [{files}]\n'
         (UNIT.format(files='"link*.ir"'), "link.ir' is a link that leads out of the project root"),
         (UNIT.format(files='"linked/secret.ir"'), "'linked/secret.ir' leads out"),
         (UNIT.format(files='"linked/*.ir"'), "'linked/*.ir' leads out"),
-        (UNIT.format(files='"link*/*.ir"'), "secret.ir' is a link that leads out"),
+        (UNIT.format(files='"link*/*.ir"'), "/linked' is a link that leads out of"),
     ],
 )
 @pytest.mark.parametrize("command", ["build", "check"])
@@ -67,6 +67,39 @@ def test_a_path_of_the_configuration_inside_the_root_is_read(project, files):
     project.write("sysmlc.toml", f'{UNIT.format(files=files)}output = "sub/../gen"\n')
     result = project.run("build", "--emit", "graph")
     assert (result.exit_code, (project.folder / "gen/graph.json").is_file()) == (0, True)
+
+
+@pytest.mark.parametrize(
+    "pattern", ["root?ink/**/*", "*/**/*.ir", "[r]ootlink/*/*", "**/rootlink/*", "sub/*nk/*.ir"]
+)
+def test_wildcards_are_expanded_inside_the_root_only(project, pattern):
+    """The message names the link and nothing to which it leads."""
+    (project.folder / "rootlink").symlink_to("/")
+    (project.folder / "sub").mkdir()
+    (project.folder / "sub/link").symlink_to("../../outside")
+    project.write("sysmlc.toml", UNIT.format(files=f'"{pattern}"'))
+    result = project.run("check")
+    link = "sub/link" if pattern.startswith("sub") else "rootlink"
+    assert result.exit_code == 2
+    assert f"'{project.folder / link}' is a link that leads out of the project" in result.stderr
+
+
+def test_a_recursive_wildcard_follows_no_link(project):
+    (project.folder / "rootlink").symlink_to("/")
+    project.write("sub/deep/second.ir", 'Package second "Second"\n')
+    project.write("sysmlc.toml", UNIT.format(files='"**/*.ir"'))
+    result = project.run("show", "plant.ir")
+    assert result.exit_code == 0
+    result = project.run("check", "--format", "json")
+    assert (result.exit_code, "usr" in result.output) == (0, False)
+
+
+def test_links_in_a_circle_end(project):
+    for name in ("a", "b", "c"):
+        (project.folder / name).symlink_to(".")
+    pattern = "*/" * 60 + "*.ir"
+    project.write("sysmlc.toml", UNIT.format(files=f'"{pattern}"'))
+    assert project.run("check", "--time-limit", "20").exit_code == 0
 
 
 @pytest.mark.parametrize("name", ["../outside/secret.ir", "link.ir"])
@@ -154,5 +187,19 @@ def test_format_of_a_folder_does_not_follow_links_out_of_it(project):
     assert project.run("format", ".").exit_code == 0
     changed = {name for name, data in project.snapshot().items() if before[name] != data}
     assert changed == {"project/plant.sysml"}
-    assert project.run("format", "link.sysml").exit_code == 0  # a named link is followed
-    assert (project.outside / "secret.sysml").read_text() == "package P {}\n"
+
+
+@pytest.mark.parametrize("name", ["link.sysml", "inner.sysml", "linked", "linked/secret.sysml"])
+@pytest.mark.parametrize("options", [(), ("--check",), ("--diff",)])
+def test_format_neither_reads_nor_writes_through_a_named_link(project, name, options):
+    """The user may have written ``*.sysml``, which names the links of the repository too."""
+    (project.outside / "secret.sysml").write_text("package  Secret{}\n")
+    (project.folder / "link.sysml").symlink_to("../outside/secret.sysml")
+    (project.folder / "inner.sysml").symlink_to("plant.sysml")
+    (project.folder / "linked").symlink_to("../outside")
+    project.write("plant.sysml", "package  P{}\n")
+    before = project.snapshot()
+    result = project.run("format", "plant.sysml", name, *options)
+    assert (result.exit_code, project.snapshot() == before) == (2, True)
+    assert f"sysmlc: '{name}' " in result.stderr
+    assert "Secret" not in result.output

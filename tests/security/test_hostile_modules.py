@@ -1,7 +1,7 @@
 """``python -m sysmlc`` in a folder whose files have the names of modules of the standard library.
 
-Python searches the working folder first. The entry ``__main__`` removes it, so that a stranger's
-``typing.py`` is not imported. Only what Python itself imports before it runs a module can be replaced;
+Python searches the working folder first. ``__main__`` removes it, so that a foreign ``typing.py``
+is not imported. Only what Python itself imports before it runs a module can be replaced;
 docs/untrusted-repositories.md lists these modules.
 """
 

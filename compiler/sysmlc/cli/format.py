@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 from msgspec import Struct
 
+from sysmlc.cli import terminal
 from sysmlc.support.escapes import escape_undecodable
 
 if TYPE_CHECKING:
@@ -95,26 +96,58 @@ def command(
 
 def _expand(files: tuple[Path, ...]) -> Iterator[Path]:
     for path in files:
-        if str(path) != "-" and path.is_dir():
+        if str(path) == "-":
+            yield path
+            continue
+        _refuse_link(path)
+        if path.is_dir():
             yield from _list_folder(path)
         else:
             yield path
 
 
+def _refuse_link(path: Path) -> None:
+    """Exit with code 2 if a path is a link, or leads out of the project in which it is written.
+
+    The links of a repository, which a wildcard of the shell names too, may come from a stranger.
+    """
+    from sysmlc.cli.session import fail
+    from sysmlc.config import find_boundary
+    from sysmlc.sources import Roots
+
+    if path.is_symlink():
+        fail(f"'{path.as_posix()}' is a link; name what it leads to")
+    if not Roots((find_boundary(path),)).allows(path):
+        fail(f"'{path.as_posix()}' leads out of the project through a link; name the file itself")
+
+
 def _list_folder(folder: Path) -> list[Path]:
     """Return the files in *folder* to lay out, sorted; hidden folders are skipped.
 
-    Links out of the folder are skipped too, so that no file outside of the folder is rewritten.
+    Links, pipes, sockets and devices are skipped with a warning. A file to which a link leads is
+    laid out if it is in the folder itself.
     """
     from sysmlc.cli.session import fail
-    from sysmlc.sources import Roots
+    from sysmlc.sources.files import is_special
 
-    roots, files = Roots((folder,)), []
+    matches, files = list[Path](), list[Path]()
     for path, folders, names in os.walk(folder):
         folders[:] = [name for name in folders if not name.startswith(".")]
-        files += [Path(path, name) for name in names if Path(name).suffix[1:].lower() in _LANGUAGES]
-    inside = sorted(file for file in files if not file.is_symlink() or roots.allows(file))
-    return inside or fail(f"{folder.as_posix()} holds no .sysml or .kerml file")
+        matches += (Path(path, name) for name in names if _has_language(name))
+    for file in sorted(matches):
+        name = escape_undecodable(file.as_posix())
+        if file.is_symlink():
+            terminal.echo(f"sysmlc: warning: '{name}' is a link; it is not formatted", err=True)
+        elif is_special(file):
+            reason = "is a pipe, a socket or a device"
+            terminal.echo(f"sysmlc: warning: '{name}' {reason}; it is not formatted", err=True)
+        else:
+            files.append(file)
+    return files or fail(f"{folder.as_posix()} holds no .sysml or .kerml file")
+
+
+def _has_language(name: str) -> bool:
+    return Path(name).suffix[1:].lower() in _LANGUAGES
 
 
 def _read(path: Path, language: str | None, *, fix: bool) -> _Text:
@@ -188,7 +221,7 @@ def _write(texts: list[_Text]) -> None:
         if text.path is None:
             sys.stdout.buffer.write((text.after or text.before).encode())
         elif text.is_changed and text.after is not None:
-            _replace(text.path.resolve(), text.name, text.after)
+            _replace(text.path, text.name, text.after)
     files = [text for text in texts if text.path is not None]
     changed = sum(text.is_changed for text in files)
     if files:

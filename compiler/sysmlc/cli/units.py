@@ -12,6 +12,7 @@ import click
 from msgspec import Struct
 from msgspec.structs import replace
 
+from sysmlc.cli import terminal
 from sysmlc.cli.session import fail
 
 if TYPE_CHECKING:
@@ -70,13 +71,21 @@ def select(
 
 
 def _expand(config: "Config", patterns: Iterable[str]) -> list[Path]:
-    """Return the files of a ``[[model]]``; exit with code 2 if one is outside the project root."""
+    """Return the files of a ``[[model]]``, without pipes, sockets and devices.
+
+    Exits with code 2 if a file is outside the project root.
+    """
     from sysmlc.config import ConfigError, expand_files
+    from sysmlc.sources.files import is_special
 
     try:
-        return expand_files(config, patterns)
+        files = expand_files(config, patterns)
     except ConfigError as problem:
         fail(str(problem))
+    for file in filter(is_special, files):
+        message = f"'{file}' is a pipe, a socket or a device; it is not read"
+        terminal.echo(f"sysmlc: warning: {message}", err=True)
+    return [file for file in files if not is_special(file)]
 
 
 def _contains(model: Path, file: Path) -> bool:

@@ -105,6 +105,13 @@ LEADS_OUT = rule(
     "'{path}' is a link that leads out of the folder; it is not read",
     help="name the file itself if it is meant",
 )
+SPECIAL_FILE = rule(
+    "SM908",
+    "special-file",
+    Severity.WARNING,
+    "'{path}' is a pipe, a socket or a device; it is not read",
+    help="remove it from the folder",
+)
 INTERNAL_FAULT = rule(
     "SM900",
     "internal-fault",

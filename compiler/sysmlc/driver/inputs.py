@@ -14,6 +14,7 @@ from sysmlc.driver import faults
 from sysmlc.driver.ownership import is_output_folder
 from sysmlc.frontends.base import Frontend
 from sysmlc.sources import Roots, Source
+from sysmlc.sources.files import is_special
 from sysmlc.support.escapes import escape_undecodable
 from sysmlc.support.suggestions import find_similar
 
@@ -116,13 +117,16 @@ def _make_absolute(path: Path) -> Path:
 
 
 def _search_folder(folder: Path, root: Path, sink: Sink, excluded: frozenset[Path]) -> list[Path]:
-    """Return the model files below *folder*; report links out of it, and if there is no model."""
+    """Return the model files below *folder*; report what is skipped, and if there is no model."""
     inside = Roots((folder,))
     files = []
     for path in sorted(find_model_files(folder, excluded)):
         if path.is_symlink() and not inside.allows(path):
             name = name_of(path, root)
             sink.report(faults.LEADS_OUT, faults.about_file(name), path=name)
+        elif is_special(path):
+            name = name_of(path, root)
+            sink.report(faults.SPECIAL_FILE, faults.about_file(name), path=name)
         else:
             files.append(path)
     if not files and not any(path.is_relative_to(folder) for path in excluded):

@@ -47,6 +47,8 @@ def is_output_folder(folder: Path) -> bool:
     """Whether sysmlc wrote *folder*, so that the models in it are outputs and not inputs."""
     for name in (MANIFEST, PENDING):
         try:
+            if not stat.S_ISREG(read_mode(folder / name) or 0):
+                continue
             with open(folder / name, "rb", opener=_open_without_waiting) as stream:
                 if f'"{_FORMATS}'.encode() in stream.read(200):
                     return True

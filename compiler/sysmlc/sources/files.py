@@ -29,7 +29,7 @@ def read_whole(path: Path, name: str, limits: Limits) -> bytes:
     """Return the content of a regular file that did not change while it was read.
 
     A file that changed, because a program is saving it, is read a second time. Pipes and devices
-    are refused, because they may never end. Raises SourceError.
+    are not opened, because they may never end. Raises SourceError.
     """
     for is_last_attempt in (False, True):
         data, before, after = _read_with_states(path, name, limits)
@@ -43,6 +43,8 @@ def read_whole(path: Path, name: str, limits: Limits) -> bytes:
 def _read_with_states(path: Path, name: str, limits: Limits) -> tuple[bytes, _State, _State]:
     """Return the content, and the states of the file before and after reading."""
     try:
+        # Opening a pipe or a device has effects of its own, such as waking the writer of the pipe.
+        _check_status(os.stat(path), name, limits)  # noqa: PTH116 - called for every file
         with open(path, "rb", opener=_open_nonblocking) as stream:
             status = os.fstat(stream.fileno())
             _check_status(status, name, limits)
@@ -51,6 +53,15 @@ def _read_with_states(path: Path, name: str, limits: Limits) -> tuple[bytes, _St
     except OSError as problem:
         message = f"cannot be opened: {problem.strerror or type(problem).__name__}"
         raise SourceError(message, name, fault=Fault.MISSING) from None
+
+
+def is_special(path: Path) -> bool:
+    """Whether *path* is neither a file nor a folder but a pipe, a socket or a device."""
+    try:
+        mode = path.stat().st_mode
+    except OSError:
+        return False
+    return not (stat.S_ISREG(mode) or stat.S_ISDIR(mode))
 
 
 def _open_nonblocking(path: str, flags: int) -> int:

@@ -5,14 +5,15 @@ The schemas of one folder are compiled; files outside the folder are never opene
 
 import re
 from collections.abc import Iterable, Iterator
+from io import BytesIO
 from pathlib import Path
 from typing import cast
 
 from lxml import etree
 from msgspec import Struct
 
-from sysmlc.sources.files import Roots
-from sysmlc.sources.source import Source
+from sysmlc.sources.files import Roots, read_whole
+from sysmlc.sources.source import DOCUMENT_LIMITS, Source, SourceError
 from sysmlc.support.escapes import escape_undecodable
 
 _XS = "{http://www.w3.org/2001/XMLSchema}"
@@ -143,8 +144,9 @@ def _parse_schema(path: Path, folder: Path) -> _Tree:
     name = _relative_name(path, folder)
     parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
     try:
-        tree = etree.parse(str(path), parser)
-    except (etree.XMLSyntaxError, OSError) as problem:
+        data = read_whole(path, name, DOCUMENT_LIMITS)
+        tree = etree.parse(BytesIO(data), parser, base_url=str(path))
+    except (etree.XMLSyntaxError, SourceError) as problem:
         raise SchemaError(f"the schema '{name}' cannot be read: {problem}") from problem
     if _has_doctype(tree):
         raise SchemaError(f"the schema '{name}' has a DOCTYPE, which is refused")
