@@ -8,6 +8,7 @@ from pathlib import Path
 import hostile_families as families
 import pytest
 
+from sysmlc.backends import contracts
 from sysmlc.backends.plantuml import block_definition
 from sysmlc.driver import Request, compile_model, list_backend_names, load_backends
 from sysmlc.logic.machines import conflicts as conflicts
@@ -96,3 +97,51 @@ def test_block_diagrams_of_many_packages_take_linear_time(tmp_path):
         finally:
             sys.setprofile(None)
     assert 0 < calls[200] <= 2.2 * calls[100]
+
+
+def test_assignments_in_a_row_do_not_double_the_paths(tmp_path):
+    assignments = "assign x := x + 1; " * 40
+    text = (
+        "package P { part def B { attribute x : ScalarValues::Integer; exhibit state m "
+        f"{{ entry; then a; state a {{ entry action {{ {assignments} }} }} }} }} }}"
+    )
+    compilation = compile_text(tmp_path, "assignments.sysml", text)
+    assert not find_codes(compilation) & {"SM430", "SM900"}
+    assert "contracts/P.B.contract.json" in {file.path for file in compilation.artefacts}
+
+
+def test_a_long_chain_of_specialisations_is_checked(tmp_path):
+    parts = " ".join(f"part def A{n} :> A{n + 1} {{ attribute x{n}; }}" for n in range(400))
+    path = tmp_path / "chain.sysml"
+    path.write_text(f"package P {{ {parts} part def A400; }}")
+    assert not find_codes(compile_model(Request((path,))))
+
+
+def test_a_long_chain_of_choices_gets_no_contract(tmp_path):
+    links = [("i", "a"), ("a", "c0"), *((f"c{n}", f"c{n + 1}") for n in range(250)), ("c250", "a")]
+    lines = [
+        'Class cell "Cell" role="block"',
+        "  -> classifier-behavior m",
+        '  StateMachine m "m"',
+        "    Region r",
+        '      Pseudostate i subkind="initial"',
+        '      State a "A"',
+        *(f'      Pseudostate c{n} subkind="choice"' for n in range(251)),
+        *(
+            f"      Transition t{n}\n        -> flow-source {source}\n        -> flow-target {target}"
+            for n, (source, target) in enumerate(links)
+        ),
+    ]
+    compilation = compile_text(tmp_path, "choices.ir", "\n".join([*lines, ""]))
+    assert "SM430" in find_codes(compilation)
+    assert "SM900" not in find_codes(compilation)
+
+
+def test_a_contract_of_many_parallel_actions_is_not_written(tmp_path, monkeypatch):
+    monkeypatch.setattr(contracts, "_MILLION", 10_000)
+    actions = " ".join(f"then a{n};" for n in range(40))
+    ends = " ".join(f"action a{n}; then j;" for n in range(40))
+    text = f"action def A {{ first start then f; fork f; {actions} {ends} join j; then done; }}"
+    compilation = compile_text(tmp_path, "fork.sysml", text)
+    assert "SM711" in find_codes(compilation)
+    assert "contracts/A.contract.json" not in {file.path for file in compilation.artefacts}

@@ -24,6 +24,14 @@ TOO_LARGE = rule(
     "'{file}' is not written",
     help="give the properties smaller ranges",
 )
+TOO_LONG = rule(
+    "SM711",
+    "contract-too-long",
+    Severity.WARNING,
+    "the contract of '{component}' has {size} million characters, more than {limit} million; "
+    "its files are not written",
+    help="split the behaviour: move a group of actions or states into a behaviour of its own",
+)
 BAD_TEMPLATE = rule(
     "SM521",
     "contract-template-fault",
@@ -31,6 +39,11 @@ BAD_TEMPLATE = rule(
     "template contract.md.j2 cannot be used: {fault}",
     help="correct it, or start from the shipped templates/contracts/contract.md.j2",
 )
+
+
+_MILLION = 1_000_000
+_MAX_MILLIONS = 10
+"""Million characters of a contract as JSON. Longer ones come from hundreds of parallel actions."""
 
 
 class ContractsBackend(Struct, frozen=True):
@@ -65,7 +78,15 @@ class _Writer(Struct, frozen=True):
 
     def write_contract(self, contract: Contract) -> None:
         trace = tuple(list_traced_elements(self.graph, contract))
-        self._add(".contract.json", print_contract(contract), trace)
+        text = print_contract(contract)
+        if len(text) > _MAX_MILLIONS * _MILLION:
+            subject = self.graph.subject(self.graph[contract.origin])
+            size = len(text) // _MILLION
+            self.sink.report(
+                TOO_LONG, subject, component=contract.component, size=size, limit=_MAX_MILLIONS
+            )
+            return
+        self._add(".contract.json", text, trace)
         self._add_spin(contract, trace)
         self._add_page(contract, trace)
 

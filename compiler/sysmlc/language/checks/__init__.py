@@ -22,15 +22,28 @@ from sysmlc.language.checks import (
 )
 from sysmlc.language.checks.findings import DECLARED_TYPES, Check
 from sysmlc.language.metaclasses import USAGES
-from sysmlc.language.names import Model
+from sysmlc.language.names import TOO_DEEP, Model
 from sysmlc.language.tree import Document, Node, make_subject
+from sysmlc.support.interpreter import allow_recursion
+
+_GENERALS = 1_000
+"""Generals in a row for which the members of an element are checked."""
 
 
 def check(model: Model, sink: Sink) -> None:
     """Report everything in the documents of the model that breaks a constraint."""
-    for document in model.documents:
-        for node in model.nodes(document):
-            check_node(model, document, node, sink)
+    # Inherited members are looked up by recursion along the generals.
+    with allow_recursion(_GENERALS):
+        for document in model.documents:
+            for node in model.nodes(document):
+                try:
+                    check_node(model, document, node, sink)
+                except RecursionError:
+                    model.lookup.abandon()
+                    name = node.name or node.kind
+                    sink.report(TOO_DEEP, make_subject(document, node, -1), name=name)
+                    # The lookup of further nodes would take as long, and fail in the same way.
+                    return
 
 
 Reporter = Callable[[Model, Document, Node, Sink], None]

@@ -13,7 +13,7 @@ from sysmlc.language.names.unresolved import report_unresolved
 from sysmlc.language.tree import Document, Node, Reference, Relation, find_root, make_subject
 from sysmlc.support.interpreter import pause_garbage_collection
 
-__all__ = ["Model", "resolve", "resolve_all"]
+__all__ = ["TOO_DEEP", "Model", "resolve", "resolve_all"]
 
 
 CYCLE = rule(

@@ -55,8 +55,8 @@ TOO_LARGE = rule(
     "SM430",
     "too-many-paths",
     Severity.WARNING,
-    "{transition} has more than {limit} paths through choices and inner states; the "
-    "component gets no contract",
+    "{transition} has more than {limit} paths through choices and inner states, or more than "
+    "{limit} choices in a row; the component gets no contract",
     help="split the machine",
 )
 

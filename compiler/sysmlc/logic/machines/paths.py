@@ -25,7 +25,9 @@ from sysmlc.logic.machines.machine import (
     Vertex,
 )
 from sysmlc.logic.machines.symbolic_path import (
+    MAX_PATHS,
     Path,
+    TooManyPathsError,
     add_case,
     check_path_count,
     leave_state,
@@ -98,6 +100,9 @@ class PathExplorer(Struct, frozen=True):
 
     def _follow(self, path: Path, transition: Transition) -> list[Path]:
         """Return the paths along a transition and through all pseudostates behind it."""
+        # Paths are followed by recursion.
+        if len(path.passed) > MAX_PATHS:
+            raise TooManyPathsError
         guarded = self._pass_guard(path, transition)
         guarded = replace(guarded, passed=(*path.passed, transition.id))
         region = self.machine.find_main_region(transition)
@@ -158,7 +163,10 @@ class PathExplorer(Struct, frozen=True):
             paths = [
                 after for path_so_far in paths for after in self._run_action(path_so_far, action)
             ]
-        return self._drop_infeasible(paths)
+            # Infeasible cases are dropped after each action, else they double with each of them.
+            paths = self._drop_infeasible(paths)
+            check_path_count(paths)
+        return paths
 
     def _run_action(self, path: Path, action: Action) -> list[Path]:
         if isinstance(action, Raise):

@@ -19,7 +19,7 @@ class TooManyPathsError(Exception):
 
 
 MAX_PATHS = 200
-"""The largest number of paths of one transition."""
+"""The largest number of paths of one transition, and of transitions on one path."""
 
 
 class Path(Struct, frozen=True):
