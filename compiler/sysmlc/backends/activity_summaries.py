@@ -304,7 +304,8 @@ class ActivitySummary:
         others: list[str] = []
         for conjunct in self._contract.assumptions:
             node = done.get(conjunct.origin)
-            if conjunct.is_derived and node is not None and _is_ending(conjunct, node):
+            is_ending = node is not None and _is_ending(conjunct, node)
+            if node is not None and is_ending and conjunct.is_derived and not conjunct.awaited:
                 endings.append(_name(node))
             else:
                 others.append(escape_markdown(conjunct.text))

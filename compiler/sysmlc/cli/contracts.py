@@ -177,14 +177,18 @@ def _format_result(result: "CheckedContract", is_verbose: bool) -> "Iterator[str
 
 
 def _summarise_requirements(result: "CheckedContract") -> str:
+    from sysmlc.synthesis.requirement_verdicts import describe_needs
+
     answers = [str(requirement.answer) for requirement in result.requirements]
     if result.is_implemented is False:
         return ", violates its requirements"
     if "not-decided" in answers:
         count = answers.count("not-decided")
         return f", {count} of {len(answers)} requirements not decided"
-    if "holds-if-actions-end" in answers:
-        return ", satisfies its requirements if its actions end"
+    needed = (ending for requirement in result.requirements for ending in requirement.needed)
+    condition = describe_needs(needed)
+    if condition:
+        return f", satisfies its requirements if {condition}"
     return ", satisfies its requirements" if answers else ""
 
 
@@ -210,7 +214,8 @@ def describe_verdicts(result: "CheckedContract", is_verbose: bool) -> Iterator[s
     for verdict in result.requirements:
         if is_verbose or verdict.answer != "holds":
             name = f"{verdict.conjunct.viewpoint}: " if verdict.conjunct.viewpoint else ""
-            yield f"  {name}{_WORDS[verdict.answer]}: {print_temporal(verdict.conjunct)}"
+            words = f"holds if {verdict.condition}" if verdict.condition else _WORDS[verdict.answer]
+            yield f"  {name}{words}: {print_temporal(verdict.conjunct)}"
 
 
 def describe_omitted(

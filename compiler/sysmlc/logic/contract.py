@@ -113,6 +113,8 @@ class Conjunct(Struct, frozen=True):
     source: Source = Source.AUTHOR
     wording: Formula | None = None
     """The formula in LTL with the names that the author wrote, if they differ from variables."""
+    awaited: str = ""
+    """What a derived assumption expects sooner or later ("Go comes"); empty if an action ends."""
 
     @property
     def is_derived(self) -> bool:

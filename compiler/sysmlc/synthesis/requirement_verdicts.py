@@ -64,6 +64,27 @@ class RequirementVerdict(Struct, frozen=True):
     needed: tuple[Conjunct, ...] = ()
     vacuity: str = ""
 
+    @property
+    def condition(self) -> str:
+        """What the environment has to do so that the conjunct holds; empty without such a need."""
+        return describe_needs(self.needed)
+
+
+def describe_needs(needed: Iterable[Conjunct]) -> str:
+    """Return derived assumptions in words: "its actions end and Go comes sooner or later"."""
+    awaited = dict.fromkeys(ending.awaited for ending in needed)
+    events = [event for event in awaited if event]
+    parts = [*(["its actions end"] if "" in awaited else []), *events]
+    text = " and ".join(filter(None, (", ".join(parts[:-1]), *parts[-1:])))
+    return f"{text} sooner or later" if events else text
+
+
+def _explain_needs(needed: Sequence[Conjunct]) -> str:
+    """Return the assumptions that a proof uses, with a summary if actions that end are not all."""
+    texts = " ".join(ending.text for ending in needed)
+    has_more_than_endings = any(ending.awaited for ending in needed)
+    return f"holds if {describe_needs(needed)}: {texts}" if has_more_than_endings else texts
+
 
 class WriteConflict(Struct, frozen=True):
     """A feature to which two writers give different values in one step, and a run that shows it."""
@@ -189,7 +210,7 @@ class BehaviourCheck:
             return RequirementVerdict(
                 conjunct,
                 Answer.HOLDS_IF_ACTIONS_END,
-                " ".join(ending.text for ending in needed),
+                _explain_needs(needed),
                 needed=needed,
                 vacuity=self._explain_vacuity(conjunct, endings),
             )

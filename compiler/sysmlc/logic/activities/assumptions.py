@@ -154,8 +154,9 @@ def _iter_assumptions(formulas: StepFormulas) -> Iterator[Conjunct]:
             if formulas.graph.is_decided_inside(node.done):
                 continue
             ended = f.either(f.negate(f.var(node.run)), _open_if_possible(formulas, node.done))
-            text = f"Whenever {node.label} runs, the environment ends it sooner or later."
-            yield Conjunct(ended, Class.LIVENESS, node.origin, text)
+            end = node.awaited or "the environment ends it"
+            text = f"Whenever {node.label} runs, {end} sooner or later."
+            yield Conjunct(ended, Class.LIVENESS, node.origin, text, awaited=node.awaited)
     for node in formulas.graph.nodes:
         yield from _decision_assumption(formulas, node)
     for loop in _find_loops(formulas.graph):
@@ -200,7 +201,8 @@ def _decision_assumption(formulas: StepFormulas, node: TokenNode) -> Iterator[Co
         return
     answer = f.either(f.negate(formulas.waiting_formula(node)), _open_if_possible(formulas, opened))
     text = f"Whenever a token waits at {node.label}, one of its guards holds sooner or later."
-    yield Conjunct(answer, Class.LIVENESS, node.origin, text)
+    awaited = f"a guard of {node.label} holds"
+    yield Conjunct(answer, Class.LIVENESS, node.origin, text, awaited=awaited)
 
 
 def _loop_assumption(formulas: StepFormulas, loop: Loop) -> Iterator[Conjunct]:
@@ -230,4 +232,5 @@ def _loop_assumption(formulas: StepFormulas, loop: Loop) -> Iterator[Conjunct]:
         f"{guards} holds there eventually."
     )
     formula = f.either(f.both(*map(f.negate, tokens_inside)), exit)
-    yield Conjunct(formula, Class.LIVENESS, nodes[0].origin, text)
+    awaited = f"the loop through {names} is left"
+    yield Conjunct(formula, Class.LIVENESS, nodes[0].origin, text, awaited=awaited)

@@ -85,8 +85,9 @@ class TokenNode(Struct, frozen=True):
     """One node; ``label`` is the name that diagnostics use ("action 'read id'").
 
     ``region`` is the id of the structured node that owns it. ``run`` is the variable that is true
-    while it runs, ``done`` the condition on inputs that ends a timed action. ``exclusive`` is true
-    for a decision whose guards never hold together, ``exhaustive`` if one of them always holds.
+    while it runs, ``done`` the condition on inputs that ends a timed action. ``awaited`` says
+    what ends an accept action ("Go comes"); it is empty if time does. ``exclusive`` is true for a
+    decision whose guards never hold together, ``exhaustive`` if one of them always holds.
     ``queues`` is true for an action that may receive tokens while it runs; they wait until it is
     done (UML 2.5.1, 16.2.3: no action is locally reentrant unless it says so).
     """
@@ -99,6 +100,7 @@ class TokenNode(Struct, frozen=True):
     duration: Duration = Duration.TIMED
     run: str = ""
     done: Formula | None = None
+    awaited: str = ""
     exclusive: bool = False
     exhaustive: bool = False
     queues: bool = False

@@ -29,7 +29,7 @@ from sysmlc.passes.activities.implied_control import (
     chain_sequence_node,
     expand_structured_node,
 )
-from sysmlc.passes.activities.inputs import Inputs, read_events
+from sysmlc.passes.activities.inputs import Inputs, describe_events, read_events
 from sysmlc.passes.activities.regions import (
     FLOWS,
     Regions,
@@ -227,7 +227,8 @@ def _add_action_variables(draft: Draft, node: Element, token_node: TokenNode) ->
         end_condition, names = read_events(draft.inputs, node)
         for name in names:
             draft.accept_actions.setdefault(name, []).append(node)
-        return replace(token_node, run=run, done=end_condition)
+        awaited = describe_events(draft.graph, node)
+        return replace(token_node, run=run, done=end_condition, awaited=awaited)
     return replace(token_node, run=run, done=draft.inputs.declare_pulse(f"done_{short}", node))
 
 

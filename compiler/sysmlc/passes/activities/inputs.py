@@ -306,10 +306,7 @@ class DecisionInput:
 
 def read_events(inputs: Inputs, action: Element) -> tuple[Formula, list[str]]:
     """Return the condition that ends an accept action, and the names of its events."""
-    graph = inputs.graph
-    triggers = dict.fromkeys(
-        [*graph.targets(action, Edge.TRIGGER), *_owned_triggers(graph, action)]
-    )
+    triggers = _list_triggers(inputs.graph, action)
     if not triggers:
         name = f"receive_{identifier(action.name, 'event')}"
         return inputs.declare_pulse(name, action), [name]
@@ -317,8 +314,32 @@ def read_events(inputs: Inputs, action: Element) -> tuple[Formula, list[str]]:
     return f.either(*(formula for formula, _ in events)), [name for _, name in events if name]
 
 
-def _owned_triggers(graph: Graph, action: Element) -> list[Element]:
-    return [element for element in graph.owned(action) if element.kind == "Trigger"]
+def describe_events(graph: Graph, action: Element) -> str:
+    """Return in words what ends an accept action, such as "Go comes or 'level > 2' holds".
+
+    The result is empty if time ends the action, because time passes by itself.
+    """
+    triggers = _list_triggers(graph, action)
+    if any(trigger.subkind == "time" for trigger in triggers):
+        return ""
+    events = dict.fromkeys(_describe_event(graph, trigger) for trigger in triggers)
+    return " or ".join(events) or "an event comes"
+
+
+def _describe_event(graph: Graph, trigger: Element) -> str:
+    condition = trigger.attrs.get("condition")
+    if trigger.subkind == "change" and condition:
+        return f"'{condition}' holds"
+    type_ = graph.target(trigger, Edge.TYPED_BY)
+    name = (type_.name if type_ else "") or trigger.name
+    if not name:
+        return "an event comes"
+    return f"{name} comes" if name.isidentifier() else f"'{name}' comes"
+
+
+def _list_triggers(graph: Graph, action: Element) -> list[Element]:
+    owned = (element for element in graph.owned(action) if element.kind == "Trigger")
+    return list(dict.fromkeys([*graph.targets(action, Edge.TRIGGER), *owned]))
 
 
 def _read_event(inputs: Inputs, trigger: Element, action: Element) -> tuple[Formula, str]:

@@ -1,0 +1,97 @@
+"""Verdicts name what they expect of the environment: events, guards, and actions that end."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+pytestmark = pytest.mark.usefixtures("all_passes")
+
+PAGE = Path(__file__).parents[2] / "docs" / "contracts.md"
+MODEL = """package Shop {{
+    private import ScalarValues::*;
+    item def Go; item def Halt; item def 'Start now';
+    part def Lamp {{
+        in attribute ready : Boolean; attribute on : Boolean := false;
+        perform action job {{ {steps} then action light assign on := true; then done; }}
+    }}
+    requirement def Lights {{ subject lamp : Lamp; {assumed}
+        require constraint {{ language "ltl" /* F on */ }} }}
+}}"""
+
+
+def write_lamp(workspace, steps, assumed=""):
+    workspace.write("lamp.sysml", MODEL.format(steps=f"first start; {steps}", assumed=assumed))
+
+
+def check(workspace, *options):
+    return workspace.sysmlc("contracts", "check", "lamp.sysml", *options).stdout
+
+
+@pytest.mark.parametrize(
+    ("steps", "condition"),
+    [
+        ("then action warm;", "its actions end"),
+        ("then action wait accept Go;", "Go comes sooner or later"),
+        ("then action wait accept 'Start now';", "'Start now' comes sooner or later"),
+        ("then action wait accept when ready;", "'ready' holds sooner or later"),
+        ("then action wait accept after 5 [SI::s];", "its actions end"),
+        (
+            "then action warm; then action wait accept Go;",
+            "its actions end and Go comes sooner or later",
+        ),
+        (
+            "then action a accept Go; then action b accept Halt; then action c accept Go;",
+            "Go comes and Halt comes sooner or later",
+        ),
+        (
+            "then decide d; if ready then reset; action reset assign on := false;",
+            "a guard of decision 'd' holds sooner or later",
+        ),
+    ],
+    ids=["action", "event", "name with a blank", "condition", "time", "both", "events", "guard"],
+)
+def test_the_verdict_names_what_the_environment_has_to_do(workspace, steps, condition):
+    write_lamp(workspace, steps)
+    assert check(workspace).splitlines()[:2] == [
+        f"Shop::Lamp: realizable, satisfies its requirements if {condition}",
+        f"  Lights: holds if {condition}: F on",
+    ]
+
+
+def test_only_what_the_proof_needs_is_named(workspace):
+    write_lamp(workspace, "then action warm; then action wait accept Go;")
+    text = workspace.read("lamp.sysml").replace("/* F on */", "/* F running(wait) */")
+    workspace.write("lamp.sysml", text)
+    assert "  Lights: holds if its actions end: F running(wait)\n" in check(workspace)
+
+
+def test_the_json_document_and_the_page_of_the_activity_say_it(workspace):
+    write_lamp(workspace, "then action wait accept Go;")
+    (requirement,) = json.loads(check(workspace, "--format", "json"))["requirements"]
+    assumption = "Whenever accept action 'wait' runs, Go comes sooner or later."
+    assert requirement["verdict"] == "holds-if-actions-end"
+    assert requirement["needs"] == [assumption]
+    assert requirement["reason"] == f"holds if Go comes sooner or later: {assumption}"
+    workspace.sysmlc("lamp.sysml", "-o", "out")
+    assert f"**Assumed.** {assumption}" in workspace.read("out/contracts/Shop.Lamp.md")
+
+
+def test_an_event_that_the_author_assumes_is_not_named(workspace):
+    assumed = 'assume constraint { language "ltl" /* G F event=Go */ }'
+    write_lamp(workspace, "then action wait accept Go;", assumed)
+    assert check(workspace).startswith("Shop::Lamp: realizable, satisfies its requirements\n")
+
+
+def test_the_documented_assumption_about_a_trigger_proves_the_requirement(workspace):
+    page = PAGE.read_text(encoding="utf-8")
+    text = page.partition("<!-- expected event -->\n```sysml\n")[2].partition("```")[0]
+    workspace.write("lamp.sysml", text)
+    assert check(workspace).startswith("Shop::Lamp: realizable, satisfies its requirements\n")
+    for formula in ("G F event=Go", "G (state=Waiting -> F event=Go)"):
+        assert f"`{formula}`" in page
+        workspace.write("lamp.sysml", text.replace("F event=Go", formula, 1))
+        assert check(workspace).startswith("Shop::Lamp: realizable, satisfies its requirements\n")
+    workspace.write("lamp.sysml", re.sub(r"\n *assume .*", "", text))
+    assert "  Lights: broken: F on\n" in check(workspace)
