@@ -4,6 +4,7 @@ import signal
 import subprocess
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import click
@@ -120,6 +121,25 @@ def default_signals():
     yield
     for number, handler in handlers.items():
         signal.signal(number, handler)
+
+
+@pytest.mark.parametrize("module", ["sysmlc.cli.supervisor", "sysmlc.cli.group"])
+def test_ctrl_c_while_modules_are_imported_ends_without_a_traceback(module):
+    process = subprocess.Popen(
+        # Python prints each module when it has imported it.
+        [sys.executable, "-X", "importtime", "-m", "sysmlc", "backends"],
+        stderr=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        text=True,
+        # Background processes of a shell ignore SIGINT, and children inherit that.
+        preexec_fn=partial(signal.signal, signal.SIGINT, signal.SIG_DFL),
+    )
+    while not process.stderr.readline().rstrip().endswith(module):
+        pass
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=PATIENCE)
+    assert process.returncode in (-signal.SIGINT, 130)
+    assert "Traceback" not in errors
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")

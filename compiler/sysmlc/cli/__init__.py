@@ -1,10 +1,9 @@
 """The command line: one module for each command, which imports what it needs when it runs."""
 
 import gc
+import signal
 import sys
 from typing import TYPE_CHECKING, NoReturn
-
-from sysmlc.cli.supervisor import can_supervise, supervise
 
 if TYPE_CHECKING:
     from sysmlc.cli.supervisor import SharedState
@@ -15,6 +14,12 @@ _NEW_OBJECTS = 200_000
 
 def main() -> None:
     """Run the command ``sysmlc`` in a child process, which ends when it reaches a limit."""
+    # While modules are imported, Ctrl-C ends the process like any other program, without a
+    # traceback. ``group.main`` handles it afterwards. A process that ignores it goes on to do so.
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+    from sysmlc.cli.supervisor import can_supervise, supervise
+
     # The fork comes before the imports: forking a large process takes longer.
     if can_supervise():
         supervise(_run)

@@ -1,5 +1,6 @@
 """The command ``sysmlc``: run the named command, or ``build`` if none is named."""
 
+import signal
 import sys
 import warnings
 from collections.abc import Callable
@@ -88,6 +89,8 @@ def sysmlc() -> None:
 def main() -> None:
     """Run the command line; an internal fault is reported in one sentence, with exit code 2."""
     terminal.open_streams()
+    if signal.getsignal(signal.SIGINT) is signal.SIG_DFL:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     warnings.showwarning = _print_warning
     try:
         run_guarded(sysmlc, prog_name="sysmlc")
