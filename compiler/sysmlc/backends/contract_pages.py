@@ -12,7 +12,7 @@ from msgspec import Struct
 
 from sysmlc.backends.activity_summaries import ActivitySummary
 from sysmlc.backends.templates import Templates
-from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.ir.compare.titles import separate_words
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.contract import Class, Conjunct, Contract, Variable
@@ -239,7 +239,7 @@ def _find_sentence(graph: Graph, constraint: Element) -> str:
         return ""
     if not any(name in language for name in ("fret", "english", "pattern")):
         owner = graph.owner(constraint)
-        text = "" if owner is None else str(owner.attrs.get("text", ""))
+        text = "" if owner is None else query.requirement_text(graph, owner)
     sentence = " ".join(text.split())
     return sentence if not sentence or sentence.endswith((".", "!", "?")) else f"{sentence}."
 
@@ -250,8 +250,8 @@ def _list_texts(graph: Graph, contract: Contract) -> Iterator[str]:
     owner = graph.owner(origin) if origin.kind is Kind.STATE_MACHINE else None
     for element in (origin,) if owner is None else (origin, owner):
         for requirement in list_texts_about(graph, element):
-            text = " ".join(str(requirement.attrs["text"]).split())
-            id = str(requirement.attrs.get("req_id", ""))
+            text = " ".join(query.requirement_text(graph, requirement).split())
+            id = query.requirement_id(graph, requirement)
             yield escape_markdown(f"{id} {requirement.name}: {text}".strip())
 
 

@@ -7,7 +7,7 @@ from sysmlc.backends.plantuml.layout import arrange_boxes
 from sysmlc.backends.plantuml.relations import REQUIREMENT_ROLES, Relation, find_neighbours
 from sysmlc.backends.plantuml.views import Aliases, Box, BoxView, Compartment, Diagram
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.query import is_requirement
+from sysmlc.ir.query import is_requirement, requirement_id, requirement_text
 from sysmlc.support.plantuml_text import escape_line, wrap_lines
 
 _KEYWORDS = {"derive": "deriveReqt"}
@@ -41,14 +41,17 @@ def draw_requirements(graph: Graph) -> Iterator[Diagram]:
 
 def list_relations(graph: Graph) -> list[Relation]:
     """Return the lines between requirements, and to elements that satisfy, verify or refine one."""
-    return [*_iter_containments(graph), *_iter_relations(graph)]
+    return [*_iter_structure(graph), *_iter_relations(graph)]
 
 
-def _iter_containments(graph: Graph) -> Iterator[Relation]:
+def _iter_structure(graph: Graph) -> Iterator[Relation]:
+    """Yield the containments of requirements, and the lines from usages to their definitions."""
     for element in filter(is_requirement, graph):
         owner = graph.owner(element)
         if owner is not None and is_requirement(owner):
             yield Relation(owner.id, element.id, "+--")
+        for general in filter(is_requirement, graph.targets(element, Edge.SPECIALIZES)):
+            yield Relation(element.id, general.id, "--|>")
 
 
 def _iter_relations(graph: Graph) -> Iterator[Relation]:
@@ -112,8 +115,9 @@ def _build_view(graph: Graph, shown: list[Element], relations: list[Relation]) -
 
 def make_box(graph: Graph, item: Element, aliases: Aliases) -> Box:
     """Return the box of a requirement, with id and text."""
-    rows = [f"id = {item.attrs['req_id']}"] if item.attrs.get("req_id") else []
-    rows += [f"text = {item.attrs['text']}"] if item.attrs.get("text") else []
+    id, text = requirement_id(graph, item), requirement_text(graph, item)
+    rows = [f"id = {id}"] if id else []
+    rows += [f"text = {text}"] if text else []
     text_rows = tuple(row for text in rows for row in wrap_lines(text, _TEXT_WIDTH))
     members = [part for part in graph.owned(item) if part.kind in _ROW_KINDS]
     conditions = tuple(row for part in members for row in _format_row(graph, part))

@@ -11,6 +11,7 @@ from sysmlc.backends.reqtable.table import Cell, Table, is_listed, make_tables
 from sysmlc.backends.templates import TemplateError, Templates
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.ir import Edge, Element, Graph
+from sysmlc.ir.query import generals, list_restated
 from sysmlc.support.escapes import escape_markdown
 from sysmlc.support.output import Output, assign_file_names
 
@@ -146,7 +147,7 @@ def _find_closed(graph: Graph, requirements: Iterable[Element], edge: Edge) -> f
     """Return the ids of the requirements with a relation *edge*, directly or by implication.
 
     A compound requirement is satisfied if all requirements in it are (SysML 1.6 clause 16.3.1), and
-    a requirement is satisfied if one derived from it is.
+    a requirement is satisfied if one derived from it is. So is a definition if all its usages are.
     """
     worklist = [element for element in requirements if _has_relation(graph, element, edge)]
     closed = {requirement.id for requirement in worklist}
@@ -159,14 +160,22 @@ def _find_closed(graph: Graph, requirements: Iterable[Element], edge: Edge) -> f
 
 
 def _has_relation(graph: Graph, requirement: Element, edge: Edge) -> bool:
-    # A SysML v2 requirement leads to its subject itself.
-    has_subject = edge is Edge.SATISFIES and bool(graph.targets(requirement, Edge.SUBJECT))
-    return has_subject or bool(graph.sources(requirement, edge))
+    # A SysML v2 requirement leads to its subject itself; a usage has that of its definition.
+    family = (requirement, *generals(graph, requirement))
+    has_subject = edge is Edge.SATISFIES and any(
+        graph.targets(member, Edge.SUBJECT) for member in family
+    )
+    restated = list_restated(graph, requirement)
+    return has_subject or any(graph.sources(member, edge) for member in restated)
 
 
 def _iter_implied(graph: Graph, requirement: Element, closed: set[str]) -> Iterator[Element]:
     """Yield the requirements that have the relation because *requirement* has it."""
     yield from graph.targets(requirement, Edge.DERIVES)
+    for general in graph.targets(requirement, Edge.SPECIALIZES):
+        specials = filter(is_listed, graph.sources(general, Edge.SPECIALIZES))
+        if is_listed(general) and all(special.id in closed for special in specials):
+            yield general
     owner = graph.owner(requirement)
     if owner is not None and is_listed(owner):
         contained = [element for element in graph.owned(owner) if is_listed(element)]

@@ -6,7 +6,14 @@ from collections.abc import Iterator
 from msgspec import Struct
 
 from sysmlc.ir import AttrValue, Edge, Element, Graph
-from sysmlc.ir.query import applications, is_requirement, lineage
+from sysmlc.ir.query import (
+    applications,
+    is_requirement,
+    lineage,
+    list_restated,
+    requirement_id,
+    requirement_text,
+)
 
 COLUMNS = (
     "id",
@@ -83,19 +90,14 @@ def make_tables(graph: Graph) -> list[Table]:
 
 
 def _make_table(graph: Graph, root: Element, requirements: list[Element]) -> Table:
-    ordered = sorted(
-        requirements, key=lambda r: (_make_id_key(_id(r)), graph.qualified_name(r), r.id)
-    )
+    keys = {r.id: _make_id_key(requirement_id(graph, r)) for r in requirements}
+    ordered = sorted(requirements, key=lambda r: (keys[r.id], graph.qualified_name(r), r.id))
     names = {name for requirement in requirements for name in _read_tags(graph, requirement)}
     tags = sorted(names, key=lambda name: (name.lower(), name))
     rows = tuple(
         Row(requirement, tuple(_iter_cells(graph, requirement, tags))) for requirement in ordered
     )
     return Table(graph.qualified_name(root), root.id, (*COLUMNS, *tags), rows)
-
-
-def _id(requirement: Element) -> str:
-    return str(requirement.attrs.get("req_id", "")).strip()
 
 
 def _make_id_key(id: str) -> tuple[bool, tuple[tuple[bool, int, str], ...]]:
@@ -107,15 +109,17 @@ def _make_id_key(id: str) -> tuple[bool, tuple[tuple[bool, int, str], ...]]:
 
 def _iter_cells(graph: Graph, requirement: Element, tags: list[str]) -> Iterator[Cell]:
     """Yield the cells of a requirement in the order of ``COLUMNS``, then those of *tags*."""
-    yield _make_cell(_id(requirement))
+    yield _make_cell(requirement_id(graph, requirement))
     yield _make_cell(requirement.name)
     yield Cell(tuple(_iter_kinds(graph, requirement)))
     yield _make_cell(_find_text(graph, requirement))
     owner = graph.owner(requirement)
     yield _make_cell(graph.qualified_name(owner) if owner is not None else "")
     yield _make_cell(*_list_names(graph, graph.targets(requirement, Edge.DERIVES)))
+    restated = list_restated(graph, requirement)
     for edge in (Edge.SATISFIES, Edge.VERIFIES, Edge.REFINES):
-        yield _make_cell(*_list_names(graph, graph.sources(requirement, edge)))
+        related = (element for member in restated for element in graph.sources(member, edge))
+        yield _make_cell(*_list_names(graph, list(dict.fromkeys(related))))
     masters = _list_masters(graph, requirement)
     # A copy is a trace too (SysML 1.6 clause 16.3.2), and has a column of its own.
     traced = [target for target in graph.targets(requirement, Edge.TRACES) if target not in masters]
@@ -147,7 +151,7 @@ def _iter_kinds(graph: Graph, requirement: Element) -> Iterator[str]:
 def _find_text(graph: Graph, requirement: Element) -> str:
     """Return the text of a requirement; a copy has its master's text (SysML 1.6 clause 16.3.2)."""
     for candidate in (requirement, *_list_masters(graph, requirement)):
-        text = str(candidate.attrs.get("text", "")).strip()
+        text = requirement_text(graph, candidate)
         if text:
             return text
     return ""
@@ -166,8 +170,9 @@ def _list_names(graph: Graph, elements: list[Element]) -> list[str]:
 
 
 def _name_element(graph: Graph, element: Element) -> str:
-    if is_listed(element) and _id(element):
-        return f"{_id(element)} {element.name}".strip()
+    id = requirement_id(graph, element) if is_listed(element) else ""
+    if id:
+        return f"{id} {element.name}".strip()
     return graph.qualified_name(element)
 
 

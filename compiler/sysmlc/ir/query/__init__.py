@@ -37,6 +37,9 @@ from sysmlc.ir.query.names import (
     has_generated_name,
     ids_in,
     is_requirement,
+    list_restated,
+    requirement_id,
+    requirement_text,
 )
 from sysmlc.ir.query.relations import (
     allocated_from,
@@ -92,6 +95,7 @@ __all__ = [
     "is_requirement",
     "lineage",
     "list_chained_actions",
+    "list_restated",
     "opposite",
     "opposite_end",
     "outgoing",
@@ -99,6 +103,8 @@ __all__ = [
     "parts",
     "ports",
     "redefined_features",
+    "requirement_id",
+    "requirement_text",
     "role_of",
     "runs_both_ways",
     "stereotypes",

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator
 from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
-from sysmlc.ir.query.classifiers import BEHAVIORS
+from sysmlc.ir.query.classifiers import BEHAVIORS, generals
 
 _GENERATED_NAME = re.compile(
     r"((control|object)? ?flow|edge|(activity)? ?(initial|final)( ?node)?|flow ?final( ?node)?"
@@ -78,6 +78,36 @@ def _find_subject(graph: Graph, requirement: Element) -> Element | None:
 def is_requirement(element: Element) -> bool:
     """Whether *element* is a requirement, in SysML v1 or v2."""
     return element.attrs.get("role") == "requirement" or element.kind is Kind.REQUIREMENT
+
+
+def requirement_id(graph: Graph, requirement: Element) -> str:
+    """Return the id of a requirement, else that of its nearest general; empty if none has one."""
+    return _find_stated(graph, requirement, "req_id")
+
+
+def requirement_text(graph: Graph, requirement: Element) -> str:
+    """Return the text of a requirement, else that of its nearest general; empty if none has one."""
+    return _find_stated(graph, requirement, "text")
+
+
+def list_restated(graph: Graph, requirement: Element) -> list[Element]:
+    """Return a requirement, and the definitions that it uses without adding text or condition.
+
+    What satisfies or verifies such a definition satisfies or verifies its usage as well.
+    """
+    members = [requirement]
+    for member in members:
+        conditions = (part for part in graph.owned(member) if part.kind is Kind.CONSTRAINT)
+        if not str(member.attrs.get("text", "")).strip() and not any(conditions):
+            definitions = filter(is_requirement, graph.targets(member, Edge.SPECIALIZES))
+            members += [definition for definition in definitions if definition not in members]
+    return members
+
+
+def _find_stated(graph: Graph, requirement: Element, attribute: str) -> str:
+    family = (requirement, *generals(graph, requirement))
+    texts = (str(member.attrs.get(attribute, "")).strip() for member in family)
+    return next(filter(None, texts), "")
 
 
 def ids_in(value: object) -> Iterator[str]:

@@ -107,14 +107,19 @@ def _is_marked_assumption(constraint: Element) -> bool:
 def _iter_subjects(graph: Graph, requirement: Element) -> Iterator[Element]:
     """Yield the elements that satisfy the requirement, or if there are none its declared subject.
 
-    A usage counts as its type. All specialisations follow each element.
+    A usage or instance counts as its type. All specialisations follow each element.
     """
     stated = graph.sources(requirement, Edge.SATISFIES)
     if not stated:
         stated = _list_declared_subjects(graph, requirement)
     for element in stated:
-        type_ = element if element.kind in _SUBJECTS else query.type_of(graph, element)
-        if type_ is not None:
+        if element.kind in _SUBJECTS:
+            types = [element]
+        elif element.kind is Kind.INSTANCE:
+            types = graph.targets(element, Edge.INSTANCE_OF)
+        else:
+            types = [type_ for type_ in [query.type_of(graph, element)] if type_ is not None]
+        for type_ in types:
             yield from _iter_specialisations(graph, type_, set())
 
 
@@ -310,19 +315,31 @@ def _find_gap(graph: Graph, subject: Element, described: Set[str]) -> str:
 
 
 def is_only_text(graph: Graph, requirement: Element) -> bool:
-    """Whether a requirement of the model has a text and no required constraint."""
+    """Whether a requirement of the model has a text and no required constraint.
+
+    The text of a definition is that of its usages, and counts for these only.
+    """
     statements = iter_statements(graph, requirement)
+    usages = filter(query.is_requirement, graph.sources(requirement, Edge.SPECIALIZES))
     return (
-        bool(str(requirement.attrs.get("text", "")).strip())
+        bool(query.requirement_text(graph, requirement))
+        and all(str(usage.attrs.get("text", "")).strip() for usage in usages)
         and not requirement.attrs.get("external")
         and all(statement.is_assumed for statement in statements)
     )
 
 
 def list_texts_about(graph: Graph, element: Element) -> list[Element]:
-    """Return the requirements that are only text and that an element satisfies or is subject of."""
-    candidates = (*graph.targets(element, Edge.SATISFIES), *graph.sources(element, Edge.SUBJECT))
-    requirements = dict.fromkeys(item.id for item in candidates if query.is_requirement(item))
+    """Return the requirements that are only text and that an element satisfies or is subject of.
+
+    The usages of a definition follow it, because they have its subject.
+    """
+    candidates = [*graph.targets(element, Edge.SATISFIES), *graph.sources(element, Edge.SUBJECT)]
+    requirements: dict[str, None] = {}
+    for item in candidates:
+        if query.is_requirement(item) and item.id not in requirements:
+            requirements[item.id] = None
+            candidates += graph.sources(item, Edge.SPECIALIZES)
     return [graph[id] for id in requirements if is_only_text(graph, graph[id])]
 
 
@@ -339,7 +356,7 @@ def _describe_text(graph: Graph, requirement: Element) -> StatedRequirement:
         graph.qualified_name(requirement),
         "" if subject is None else component_of(graph, subject),
         requirement.id,
-        str(requirement.attrs["text"]).strip(),
+        query.requirement_text(graph, requirement),
         _ONLY_TEXT,
         is_formal=False,
     )

@@ -242,7 +242,7 @@ def read_limits(context: Context, elements: list[Element | None]) -> tuple[TimeL
 
 
 def _read_limit(context: Context, requirement: Element) -> TimeLimit | None:
-    text = str(requirement.attrs.get("text", ""))
+    text = query.requirement_text(context.graph, requirement)
     if _PART.search(text):
         return None
     least = list(_iter_times(_LEAST, _NOT_BOUND.sub("at most", text)))
