@@ -97,3 +97,159 @@ def test_an_output_bound_to_another_expression_is_reported(tmp_path, value):
         f"output 'result' of 'Shop::MakePart::check' is bound to '{value}', which is not a "
         "variable; the recipe assigns it to 'result' only"
     )
+
+
+# -- units -------------------------------------------------------------------------------------
+
+CUT = """
+    attribute <cyc> cycle : ISQ::DurationUnit;
+    attribute cutTime : ISQ::DurationValue = 9 [SI::s];
+    action def Cut :> MachineService;
+    dependency from Cut to Mill {{ @Capability {{ {capability} }} }}
+    action def MakePart :> Task {{
+        {task}
+        first start then cut; action cut : Cut; {then} then done;
+    }}
+    dependency from MakePart to Mill {{ @Capability; }}"""
+
+
+def compile_cut(folder, capability, *, task="", then=""):
+    body = CUT.format(capability=capability, task=task, then=then)
+    recipe, findings = compile_shop(folder, body)
+    provider = None if recipe is None else recipe["services"][0]["providers"][0]
+    return recipe, provider, findings
+
+
+def test_times_are_milliseconds_and_power_is_watts(tmp_path):
+    capability = "duration = 9 [SI::s]; minPower = 1 [SI::W]; maxPower = 1.5 [SI::kW];"
+    task = "attribute :>> maxDuration = 5 [SI::min];"
+    recipe, provider, findings = compile_cut(tmp_path, capability, task=task)
+    assert (provider["duration"], provider["power"]) == (9000, {"min": 1, "max": 1500})
+    (made,) = recipe["recipes"][0]["tasks"]
+    assert made["maxDuration"] == 300_000
+    assert made["derived"]["duration"] == {"min": 9000, "max": 9000}
+    assert findings == {}
+
+
+@pytest.mark.parametrize(
+    ("value", "milliseconds"),
+    [
+        ("9", 9),
+        ("0.29 [SI::s]", 290),
+        ("1.5 [SI::h]", 5_400_000),
+        ("2 [SI::minute]", 120_000),
+        ("cutTime", 9000),
+        ('"9 s"', 9000),
+        ('"9.5 seconds"', 9500),
+        ('"250ms"', 250),
+    ],
+)
+def test_a_duration_may_have_any_unit_of_time(tmp_path, value, milliseconds):
+    _, provider, _ = compile_cut(tmp_path, f"duration = {value};")
+    assert provider["duration"] == milliseconds
+
+
+@pytest.mark.parametrize(
+    ("capability", "message"),
+    [
+        ("duration = 9 [SI::kg];", "is '9 kg', but 'kg' is a unit of mass, not of time"),
+        ("duration = 9 [SI::m];", "is '9 m', but 'm' is a unit of length, not of time"),
+        ("maxPower = 2 [SI::s];", "is '2 s', but 's' is a unit of time, not of power"),
+        ("minPower = 2 [SI::J];", "is '2 J', but 'J' is a unit of energy, not of power"),
+    ],
+)
+def test_a_unit_of_another_quantity_withholds_the_recipe(tmp_path, capability, message):
+    recipe, _, findings = compile_cut(tmp_path, capability)
+    assert recipe is None
+    assert findings["SM643"].endswith(message)
+
+
+@pytest.mark.parametrize(
+    ("value", "code", "end"),
+    [
+        ("3 [cycle]", "SM644", "is '3 cyc': unit 'cyc' is unknown, and the value is ignored"),
+        ('"1,5 s"', "SM622", "must be a whole number of milliseconds, 0 or more; it is ignored"),
+        ("-3 [SI::s]", "SM622", "must be a whole number of milliseconds, 0 or more; it is ignored"),
+        ('"0.5 ms"', "SM622", "must be a whole number of milliseconds, 0 or more; it is ignored"),
+    ],
+)
+def test_a_duration_that_is_no_time_is_reported_and_ignored(tmp_path, value, code, end):
+    _, provider, findings = compile_cut(tmp_path, f"duration = {value};")
+    assert "duration" not in provider
+    assert findings[code].endswith(end)
+
+
+def test_a_metre_is_not_a_minute(tmp_path):
+    then = "then accept after 2 [SI::m];"
+    recipe, _, findings = compile_cut(tmp_path, "duration = 9;", then=then)
+    assert "duration" not in recipe["recipes"][0]["tasks"][0]["derived"]
+    assert "'2 [SI::m]'" in findings["SM616"]
+
+
+@pytest.mark.parametrize(
+    "capability", ["duration = nothing;", "duration = 9 [SI::sekunde];", "speed = 9;"]
+)
+def test_an_unknown_name_in_a_capability_withholds_the_recipe(tmp_path, capability):
+    recipe, _, findings = compile_cut(tmp_path, capability)
+    assert recipe is None
+    assert findings["SM205"].startswith("unknown name")
+
+
+def test_a_capability_of_an_unknown_machine_withholds_the_recipe(tmp_path):
+    body = CUT.format(capability="duration = 9;", task="", then="")
+    more = "dependency from Cut to Lathe { @Capability { duration = 5; } }"
+    recipe, findings = compile_shop(tmp_path, body + more)
+    assert recipe is None
+    assert findings["SM205"] == "unknown name 'Lathe'"
+
+
+MATERIALS = """
+    part def Steel :> Material {{
+        attribute :>> available = 5 [SI::kg];
+        attribute weight : ISQ::MassValue = 800 [SI::g];
+    }}
+    part def Screw :> Material {{ attribute :>> available = 50; attribute :>> unit = "pcs"; }}
+    action def Cut :> MachineService {{
+        in pause : ISQ::DurationValue = 3 [SI::s];
+        constant attribute load : ISQ::MassValue = 2 [SI::kg];
+    }}
+    dependency from Cut to Mill {{ @Capability {{ duration = 9; }} }}
+    action def MakePart :> Task {{
+        in item steel : Steel; in item screw : Screw;
+        first start then cut; action cut : Cut {{ in :>> pause = 2 [SI::min]; }} then done;
+    }}
+    dependency from MakePart to Mill {{ @Capability; }}"""
+USES = """
+    item steel : Steel; item screw : Screw;
+    first start then make; action make : MakePart; then done;
+    bind make.steel = steel {{ @MaterialUse {{ quantity = 500 [SI::g]; }} }}
+    bind make.screw = screw {{ @MaterialUse {{ quantity = {screws}; }} }}"""
+
+
+def test_quantities_are_in_the_unit_of_the_material(tmp_path):
+    recipe, findings = compile_shop(tmp_path, MATERIALS.format(), recipe=USES.format(screws=5))
+    screw, steel = recipe["materials"]
+    assert (steel["available"], steel["unit"]) == (5, "kg")
+    assert (steel["properties"], steel["propertyUnits"]) == ({"weight": 800}, {"weight": "g"})
+    assert (screw["available"], screw["unit"]) == (50, "pcs")
+    uses = [use["quantity"] for use in recipe["recipes"][0]["tasks"][0]["materials"]]
+    assert (uses, findings) == ([5, 0.5], {})
+
+
+def test_a_unit_that_is_not_that_of_the_material_is_reported(tmp_path):
+    recipe, findings = compile_shop(
+        tmp_path, MATERIALS.format(), recipe=USES.format(screws="5 [SI::g]")
+    )
+    assert recipe is None
+    assert findings["SM643"].endswith("is '5 g', but the material is counted in 'pcs'")
+
+
+def test_values_of_parameters_have_their_unit(tmp_path):
+    recipe, _ = compile_shop(tmp_path, MATERIALS.format(), recipe=USES.format(screws=5))
+    (cut,) = recipe["services"]
+    (pause,) = cut["inputs"]
+    (load,) = cut["constants"]
+    assert (pause["value"], pause["unit"]) == (3000, "ms")
+    assert (load["value"], load["unit"]) == (2, "kg")
+    bound = [node["bind"] for node in recipe["serviceGraphs"][0]["nodes"] if "bind" in node]
+    assert bound == [{"pause": {"lit": 120_000}}]

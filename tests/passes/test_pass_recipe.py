@@ -207,6 +207,32 @@ def test_capabilities_of_the_same_mode_are_needed_together():
     assert model.recipe.tasks[0].equipment == (both,)
 
 
+def test_tagged_values_may_have_units():
+    model = derive_thesis_model(
+        'tag.duration="9 s" tag.minPower="1 kW" tag.maxPower="1500"', 'tag.duration="1.5 min"'
+    )
+    assert [(mode.duration, mode.power) for mode in model.recipe.tasks[0].equipment] == [
+        (90_000, None),
+        (9000, Range(1000, 1500)),
+    ]
+
+
+def test_the_value_type_of_a_tag_may_state_its_unit():
+    application = (
+        'Application f1.c stereotype="Capability" tag.duration="{}"\n'
+        "          -> subject f1\n          -> instance-of timed"
+    )
+    own_stereotype = (
+        'Stereotype timed "Capability"\n    Property timed.d "duration"\n'
+        '      -> typed-by seconds\n  DataType seconds "Seconds"\n    -> references sec\n'
+        '  Unit sec "second" symbol="s"\n  Class Robot'
+    )
+    text = THESIS.replace("Class Robot", own_stereotype, 1)
+    for value, milliseconds in (("9", 9000), ("250 ms", 250)):
+        model = derive_model(text.format(capability=application.format(value), second=""))
+        assert model.recipe.tasks[0].equipment[1].duration == milliseconds
+
+
 def test_a_dependency_on_several_machines_needs_all_of_them():
     text = samples.recipe(supplier="robot press").replace(
         '  Activity r "Build"', '  Class press "Press" level="machine"\n  Activity r "Build"'

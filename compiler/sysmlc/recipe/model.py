@@ -78,6 +78,7 @@ class MachineVariable(Struct, frozen=True):
     value: Scalar | None = None
     node: str = ""
     elements: tuple[str, ...] = ()
+    unit: str = ""
 
 
 class Machine(Struct, frozen=True):
@@ -103,6 +104,7 @@ class Material(Struct, frozen=True):
     no_wait: bool = False
     properties: tuple[tuple[str, Scalar], ...] = ()
     element: str = ""
+    property_units: tuple[tuple[str, str], ...] = ()
 
 
 class MaterialUse(Struct, frozen=True):
@@ -355,6 +357,8 @@ class Model(Struct, frozen=True):
     functions: tuple[Function, ...] = ()
     service_graphs: tuple[FlowGraph, ...] = ()
     function_graphs: tuple[FlowGraph, ...] = ()
+    sources: tuple[str, ...] = ()
+    """Ids of further elements of the model from which values come, such as dependencies."""
 
     @property
     def graphs(self) -> tuple[FlowGraph, ...]:

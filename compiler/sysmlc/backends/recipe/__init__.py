@@ -8,7 +8,7 @@ from msgspec import Struct
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.recipe.document import describe_model
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.ir import Graph
+from sysmlc.ir import Graph, query
 from sysmlc.recipe.model import Model
 from sysmlc.support.output import Output, assign_file_names, encode_json
 
@@ -29,7 +29,10 @@ class RecipeBackend(Struct, frozen=True):
     is_default: bool = True
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
-        """Add one file for each recipe; its trace contains the elements of all its parts."""
+        """Add one file for each recipe.
+
+        Its trace contains the elements of all its parts and the stereotypes applied to them.
+        """
         models = graph.derived(Model)
         names = assign_file_names(model.recipe.id for model in models)
         for model in models:
@@ -39,8 +42,14 @@ class RecipeBackend(Struct, frozen=True):
                 continue
             text = encode_json(describe_model(model, options.inputs), 2)
             path = f"recipes/{names[model.recipe.id]}.json"
-            trace = _iter_traced_elements(model)
-            output.add(path, text, trace, self.name, name=model.recipe.id)
+            traced = list(dict.fromkeys((*_iter_traced_elements(model), *model.sources)))
+            traced += _list_applications(graph, traced)
+            output.add(path, text, traced, self.name, name=model.recipe.id)
+
+
+def _list_applications(graph: Graph, ids: Iterable[str]) -> list[str]:
+    elements = (element for id in ids if (element := graph.get(id)) is not None)
+    return [item.id for element in elements for item in query.applications(graph, element)]
 
 
 class _Traced(Protocol):

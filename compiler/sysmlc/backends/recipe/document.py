@@ -223,8 +223,8 @@ def _describe_machine(machine: Machine) -> Json:
 def _describe_machine_variable(variable: MachineVariable) -> Json:
     type_ = {} if variable.type is None else {"type": describe_type(variable.type)}
     value = {} if variable.value is None else {"value": variable.value}
-    members = _drop_absent({"node": variable.node, "elements": list(variable.elements)})
-    return {"name": variable.name, **type_, **value, **members}
+    members = {"unit": variable.unit, "node": variable.node, "elements": list(variable.elements)}
+    return {"name": variable.name, **type_, **value, **_drop_absent(members)}
 
 
 def _describe_material(material: Material) -> Json:
@@ -236,6 +236,7 @@ def _describe_material(material: Material) -> Json:
         "buffer": material.buffer,
         "noWait": material.no_wait,
         "properties": dict(material.properties),
+        "propertyUnits": dict(material.property_units),
     }
     return {**_drop_absent(members), **describe_trace(material.element)}
 

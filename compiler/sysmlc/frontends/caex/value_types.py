@@ -2,13 +2,14 @@
 
 from functools import lru_cache
 
-from sysmlc.frontends.caex import rules, units
+from sysmlc.frontends.caex import rules
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.data_types import PRIMITIVES, local_name
 from sysmlc.frontends.caex.document import Document, Node
 from sysmlc.frontends.caex.types import Type
 from sysmlc.frontends.caex.vocabulary import BASE_ATTRIBUTE
 from sysmlc.ir import AttrValue, Edge, Element, Kind, Reference, list_items
+from sysmlc.support import units
 
 _PRIMITIVE_TYPES = "http://www.omg.org/spec/UML/20161101/PrimitiveTypes.xmi#"
 _HREFS = {name: _PRIMITIVE_TYPES + name for name in ("String", *PRIMITIVES.values())}

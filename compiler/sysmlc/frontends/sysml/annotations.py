@@ -7,7 +7,7 @@ SysML v2 has no construct; the back end ``sysml`` writes it.
 from collections.abc import Callable, Collection, Iterator
 from typing import TYPE_CHECKING
 
-from sysmlc.frontends.sysml import nodes, preserved_facts, values
+from sysmlc.frontends.sysml import nodes, preserved_facts, quantities, values
 from sysmlc.frontends.sysml.libraries import PROFILE, RECIPES
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.language.tree import Node
@@ -201,7 +201,8 @@ def _set_tag(lowering: "Lowering", application: Element, attribute: str, value: 
     element = lowering.element_of(nodes.find_target(value, "Membership"))
     tagged: AttrValue
     if constant is not None:
-        tagged = _write_tag(lowering, constant)
+        unit = quantities.unit_symbol(lowering, value)
+        tagged = _write_tag(lowering, constant, f" {unit}" if unit else "")
     elif element is not None:
         tagged = element.id
     else:
@@ -209,13 +210,16 @@ def _set_tag(lowering: "Lowering", application: Element, attribute: str, value: 
     lowering.graph.set(application, **{attribute: tagged})
 
 
-def _write_tag(lowering: "Lowering", value: AttrValue) -> AttrValue:
-    """Return a tagged value as text; the qualified name of an element becomes its id."""
+def _write_tag(lowering: "Lowering", value: AttrValue, unit: str = "") -> AttrValue:
+    """Return a tagged value as text; the qualified name of an element becomes its id.
+
+    The unit of a quantity follows its number (``9 s``), as models in SysML v1 write it.
+    """
     if isinstance(value, tuple):
-        return tuple(_write_tag(lowering, item) for item in value)
+        return tuple(_write_tag(lowering, item, unit) for item in value)
     if isinstance(value, bool):
         return "true" if value else "false"
-    text = str(value)
+    text = f"{value}{unit}"
     return lowering.id_of(text) or text if "::" in text else text
 
 

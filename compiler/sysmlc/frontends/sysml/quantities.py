@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import expressions, nodes
 from sysmlc.ir import AttrValue, Edge, Element
-from sysmlc.ir.query.classifiers import unit_of
+from sysmlc.ir.query.classifiers import strip_qualifiers, unit_of
 from sysmlc.language.text.lexer import quote_name
 from sysmlc.language.tree import Node
 
@@ -45,6 +45,12 @@ def set_unit(lowering: "Lowering", element: Element, key: str, expression: Node)
         lowering.graph.set(element, **{f"{key}_unit": names})
     elif not _is_unit_of_type(lowering, element, units[0]):
         lowering.graph.set(element, **{f"{key}_unit": names[0]})
+
+
+def unit_symbol(lowering: "Lowering", expression: Node) -> str:
+    """Return the symbol of the unit of a quantity, ``s`` for ``9 [SI::s]``; '' without one."""
+    unit = next(filter(None, _list_units(expression)), None)
+    return "" if unit is None else strip_qualifiers(_write_unit(lowering, unit))
 
 
 def has_unit(expression: Node) -> bool:

@@ -50,7 +50,8 @@ def _write_time(lowering: "Lowering", expression: Node) -> str:
     """Return a point in time or a duration as text: ``5 s``."""
     unit = values.unit_of(expression)
     number = values.constant_of(expression)
-    if unit and number is not None:
+    # In a text of SysML v1 "m" is a minute, here it is the metre.
+    if unit and unit != "m" and number is not None:
         return f"{number} {unit}"
     return values.expression_text(expression, lowering)
 

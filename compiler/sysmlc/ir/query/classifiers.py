@@ -168,6 +168,11 @@ def name_value_unit(graph: Graph, element: Element, key: str) -> str:
     unit_element = graph.get(unit)
     if unit_element is not None and unit_element.kind in _UNIT_KINDS:
         return str(unit_element.attrs.get("symbol") or unit_element.name)
+    return strip_qualifiers(unit)
+
+
+def strip_qualifiers(unit: str) -> str:
+    """Return the expression of a unit without qualifiers and quotes: ``m/s`` for ``SI::'m/s'``."""
     return _QUALIFIER.sub("", unit).replace("'", "")
 
 

@@ -15,6 +15,7 @@ from sysmlc.passes.recipe.profile import (
     find_followers,
     find_profile_stereotypes,
     find_stated_levels,
+    read_tags,
 )
 from sysmlc.recipe.model import FlowGraph, Parameter, ValueType
 
@@ -219,8 +220,7 @@ class Context(Struct, frozen=True):
 
     def tags(self, element: Element, stereotype: str) -> Tags:
         """Return the tagged values of a stereotype of the profile; empty if it is not applied."""
-        application = self.find_application(element, stereotype)
-        return Tags({} if application is None else application.attrs)
+        return read_tags(self.graph, self.find_application(element, stereotype))
 
     # -- ids -----------------------------------------------------------------------------------
 

@@ -14,15 +14,16 @@ from sysmlc.logic.feature_writes import find_bound_name
 from sysmlc.passes.recipe.context import Context, is_inlined
 from sysmlc.passes.recipe.expressions import (
     build_parameter,
+    convert_value,
     find_feature,
     is_data,
     is_input,
     read_expression,
-    read_time,
     resolve_literals,
+    unit_name,
 )
-from sysmlc.recipe.expression import make_variable, map_operands, variable_name
-from sysmlc.recipe.model import Parameter
+from sysmlc.recipe.expression import make_opaque, make_variable, map_operands, variable_name
+from sysmlc.recipe.model import Parameter, Scalar
 
 _DOTTED = re.compile(r"[^\W\d]\w*\.[^\W\d]\w*")
 """A name ``action.pin`` or ``parameter.feature`` in an expression."""
@@ -214,7 +215,7 @@ class DataFlow(Struct, frozen=True, dict=True):
             return self.read(value)
         unit = name_value_unit(self.context.graph, pin, "value")
         if isinstance(value, bool | int | float):
-            return read_time(f"{value} {unit}") if unit else Literal(value)
+            return self._read_quantity(pin, value, unit) if unit else Literal(value)
         for flow in query.incoming(self.context.graph, pin):
             source = self.source_of(flow)
             if source is not None:
@@ -222,6 +223,12 @@ class DataFlow(Struct, frozen=True, dict=True):
         # A pin without value and flow reads the variable that an output pin of its name assigns.
         name = self.context.label(pin)
         return make_variable(name) if name in self.declared else None
+
+    def _read_quantity(self, pin: Element, number: Scalar, unit: str) -> Expression:
+        """Return a number in the unit of the pin's type; without one, a time in milliseconds."""
+        target = unit_name(self.context, pin) or "ms"
+        converted = convert_value(number, unit, target)
+        return make_opaque(f"{number} {unit}") if converted is None else Literal(converted)
 
     def _parameter_name(self, node: Element) -> str:
         parameter = self.context.graph.target(node, Edge.REFERENCES)

@@ -4,12 +4,15 @@ A dotted name refers to a feature, which has a type, a unit and a default value.
 """
 
 from collections.abc import Iterator
+from fractions import Fraction
 
 from sysmlc.ir import Element, Kind, query
+from sysmlc.ir.query.classifiers import name_value_unit, unit_of
 from sysmlc.logic.expressions import expression as source
 from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
 from sysmlc.logic.machines.transitions import parse_milliseconds
 from sysmlc.passes.recipe.context import Context
+from sysmlc.passes.recipe.profile import shorten
 from sysmlc.recipe.expression import (
     make_opaque,
     make_variable,
@@ -18,6 +21,7 @@ from sysmlc.recipe.expression import (
     variable_name,
 )
 from sysmlc.recipe.model import EnumType, ListType, Parameter, ReferenceType, Scalar, ValueType
+from sysmlc.support.units import convert
 
 # Recipe expressions have no xor; on Booleans it equals !=.
 _OPERATORS = {"%": "mod", "xor": "!="}
@@ -67,6 +71,9 @@ def _translate_expression(  # noqa: PLR0911 - one for each kind
             return _make_call(function_name, *args)
         case source.Conditional(condition, then, otherwise):
             return _make_call("if", condition, then, otherwise)
+        case source.Index(source.Literal(), _):
+            # A quantity: executors have no units.
+            return make_opaque(source.print_expression(expression))
         case source.Unary() | source.Index():
             return map_operands(expression, _translate_expression)
         case _:
@@ -189,10 +196,34 @@ def build_parameter(context: Context, element: Element) -> Parameter:
     """Return the recipe parameter for a parameter, pin or property."""
     parameter = context.parameters.get(element.id)
     if parameter is None:
-        type_, measure = value_type(context, element), unit_name(context, element)
-        parameter = Parameter(context.label(element), type_, measure, default_value(element))
+        unit, value = read_default(context, element)
+        parameter = Parameter(context.label(element), value_type(context, element), unit, value)
         context.parameters[element.id] = parameter
     return parameter
+
+
+def read_default(
+    context: Context, element: Element
+) -> tuple[str, Scalar | tuple[Scalar, ...] | None]:
+    """Return the unit of an element, and its default value in this unit.
+
+    The unit is that of the value type; without one, times are in milliseconds. A value in a unit
+    that cannot be converted keeps its own.
+    """
+    unit, value = unit_name(context, element), default_value(element)
+    own_unit = name_value_unit(context.graph, element, "default")
+    if not own_unit or own_unit == unit:
+        return unit, value
+    converted = convert_value(value, own_unit, unit or "ms")
+    return (own_unit, value) if converted is None else (unit or "ms", converted)
+
+
+def convert_value(value: object, unit: str, target: str) -> int | float | None:
+    """Return a number in the unit *target*, or None if it cannot be converted."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return None
+    number = convert(Fraction(str(value)), unit, target)
+    return None if number is None else shorten(number)
 
 
 def is_data(context: Context, element: Element) -> bool:
@@ -261,19 +292,22 @@ def unit_name(context: Context, element: Element) -> str:
     type_ = query.type_of(context.graph, element)
     tagged = None if type_ is None else query.tag(context.graph, type_, "unit")
     unit_element = context.graph.get(tagged) if isinstance(tagged, str) else None
+    if unit_element is None and not tagged:
+        unit_element = unit_of(context.graph, element)
     return unit_element.name if unit_element is not None else str(tagged or "")
 
 
-def literal_default(element: Element) -> Scalar | None:
-    """Return the default value if it is a single literal, or else None."""
-    default = default_value(element)
+def literal_default(context: Context, element: Element) -> Scalar | None:
+    """Return the default value as ``read_default`` does if it is a single literal, or else None."""
+    _, default = read_default(context, element)
     return default if isinstance(default, bool | int | float | str) else None
 
 
 def default_value(element: Element) -> Scalar | tuple[Scalar, ...] | None:
     """Return the default value if it is a literal or a list of literals, or else None."""
     default = element.attrs.get("default")
-    if element.attrs.get("default_language") is not None:
+    # The values of a list with several units have no common unit.
+    if "default_language" in element.attrs or isinstance(element.attrs.get("default_unit"), tuple):
         return None
     if isinstance(default, tuple):
         items = tuple(item for item in default if isinstance(item, bool | int | float | str))

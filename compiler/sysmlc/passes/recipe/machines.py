@@ -3,12 +3,18 @@
 from collections.abc import Iterable, Iterator
 
 from msgspec import Struct
+from msgspec.structs import replace
 
 from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.passes.recipe.context import Context
-from sysmlc.passes.recipe.expressions import is_data, literal_default, read_optional
-from sysmlc.passes.recipe.profile import Tags
-from sysmlc.recipe.model import Machine, Material, Mode, OpcUa, Provider, Range
+from sysmlc.passes.recipe.expressions import (
+    is_data,
+    literal_default,
+    read_default,
+    read_optional,
+)
+from sysmlc.passes.recipe.profile import read_tags
+from sysmlc.recipe.model import Machine, Material, Mode, OpcUa, Provider, Range, Scalar
 from sysmlc.recipe.plant import is_in_plant
 
 
@@ -38,19 +44,25 @@ def find_machine(context: Context, element: Element | None) -> Element | None:
 
 def relations_by_dependency(context: Context, client: Element) -> Iterator[Relation]:
     """Yield dependencies, allocations and associations from a task or service to machines."""
-    for dependency in context.graph.sources(client, Edge.CLIENT):
-        is_allocation = (
-            dependency.role == "allocate"
-            or context.find_application(dependency, "Capability") is not None
-        )
+    for dependency in list_allocations(context, client):
         suppliers = [
             supplier
             for supplier in context.graph.targets(dependency, Edge.SUPPLIER)
             if not _is_plant_location(context, supplier)
         ]
-        if is_allocation and suppliers:
+        if suppliers:
             yield Relation(dependency, tuple(suppliers))
     yield from _relations_by_association(context, client)
+
+
+def list_allocations(context: Context, client: Element) -> list[Element]:
+    """Return the allocations and the dependencies with «Capability» of a task or service."""
+    return [
+        dependency
+        for dependency in context.graph.sources(client, Edge.CLIENT)
+        if dependency.role == "allocate"
+        or context.find_application(dependency, "Capability") is not None
+    ]
 
 
 def _is_plant_location(context: Context, supplier: Element) -> bool:
@@ -214,7 +226,7 @@ def build_opcua(context: Context, element: Element) -> OpcUa | None:
     )
     if application is None:
         return None
-    tags = Tags(application.attrs)
+    tags = read_tags(context.graph, application)
     return OpcUa(
         tags.call_kind("kind") or "call",
         tags.text("object") or tags.text(_ADDRESS_SPACE_TAGS[0]),
@@ -230,7 +242,7 @@ def build_opcua(context: Context, element: Element) -> OpcUa | None:
 def find_opcua_node(context: Context, variable: Element) -> str:
     """Return the text of a variable's OPC UA node id, or the empty string."""
     application = _find_opcua_application(context, variable)
-    tags = Tags({} if application is None else application.attrs)
+    tags = read_tags(context.graph, application)
     texts = (tags.text(name) for name in ("node", _ADDRESS_SPACE_TAGS[1], "object"))
     return next((text for text in texts if text), "")
 
@@ -261,20 +273,29 @@ def build_machine(context: Context, element: Element) -> Machine:
 
 def build_material(context: Context, element: Element) -> Material:
     """Return the material of an element, with its attributes as properties."""
-    tags = context.tags(element, "Material")
+    unit = find_material_unit(context, element)
+    tags = replace(context.tags(element, "Material"), material_unit=unit)
+    properties = sorted(_list_properties(context, element), key=_property_order)
     return Material(
         context.name(element),
         tags.amount("available"),
-        tags.text("unit"),
+        unit,
         tags.text("position"),
         tags.integer("buffer"),
         bool(tags.flag("noWait")),
-        tuple(sorted(_list_properties(context, element), key=_property_order)),
+        tuple((name, value) for name, value, _ in properties),
         element.id,
+        tuple((name, measure) for name, _, measure in properties if measure),
     )
 
 
-def _property_order(named_value: tuple[str, object]) -> tuple[str, str]:
+def find_material_unit(context: Context, material: Element) -> str:
+    """Return the unit of a material: its tag ``unit``, else the unit of the available amount."""
+    tags = context.tags(material, "Material")
+    return tags.text("unit") or tags.unit("available")
+
+
+def _property_order(named_value: tuple[str, Scalar, str]) -> tuple[str, str]:
     """Return the sort key of a property: its name and the text of its value.
 
     Values of one name, such as ``1`` and ``red``, may not be comparable.
@@ -282,11 +303,11 @@ def _property_order(named_value: tuple[str, object]) -> tuple[str, str]:
     return named_value[0], str(named_value[1])
 
 
-def _list_properties(
-    context: Context, element: Element
-) -> Iterator[tuple[str, bool | int | float | str]]:
+def _list_properties(context: Context, element: Element) -> Iterator[tuple[str, Scalar, str]]:
+    """Yield the name, the value and the unit of each attribute with a constant value."""
     for feature in query.features(context.graph, element):
-        default = literal_default(feature)
+        default = literal_default(context, feature)
         if feature.kind is Kind.PROPERTY and default is not None and is_data(context, feature):
             value_element = context.graph.get(default) if isinstance(default, str) else None
-            yield feature.name, default if value_element is None else value_element.name
+            value = default if value_element is None else value_element.name
+            yield feature.name, value, read_default(context, feature)[0]

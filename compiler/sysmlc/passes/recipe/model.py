@@ -14,16 +14,26 @@ from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.logic.expressions.expression import Expression
 from sysmlc.passes.recipe.context import Context, segment_word
 from sysmlc.passes.recipe.data_flow import DataFlow
-from sysmlc.passes.recipe.expressions import find_member, literal_default, value_type
+from sysmlc.passes.recipe.expressions import find_member, literal_default, read_default, value_type
 from sysmlc.passes.recipe.graphs import refine
-from sysmlc.passes.recipe.machines import build_machine, build_material, find_opcua_node
+from sysmlc.passes.recipe.machines import (
+    build_machine,
+    build_material,
+    find_opcua_node,
+    list_allocations,
+)
 from sysmlc.passes.recipe.nodes import find_refinement, list_flows
-from sysmlc.passes.recipe.services import build_function, build_service
+from sysmlc.passes.recipe.services import (
+    build_function,
+    build_service,
+    find_service_relations,
+)
 from sysmlc.passes.recipe.tasks import (
     Step,
     build_task,
     find_material,
     find_precedence,
+    find_task_relations,
     list_steps,
     read_limits,
 )
@@ -86,8 +96,30 @@ def build_model(context: Context, activity: Element) -> Model:
         _sort_by_id(functions),
         _sort_by_id(closure.service_graphs.values()),
         _sort_by_id(closure.function_graphs.values()),
+        tuple(sorted(set(_iter_sources(context, activity, steps, closure)))),
     )
     return derive(_add_machine_variables(context, model))
+
+
+def _iter_sources(
+    context: Context, activity: Element, steps: list[Step], closure: _Closure
+) -> Iterator[str]:
+    """Yield the ids of the relations to machines, and of the nodes and flows of the recipe.
+
+    A dependency whose supplier is missing is no relation, but the recipe lacks what it states.
+    """
+    clients = [element for step in steps for element in (step.node, step.definition) if element]
+    for step in steps:
+        for relation in find_task_relations(context, activity, step):
+            yield relation.element.id
+    for definition, callers in closure.services.values():
+        clients += [definition, *callers]
+        for relation in find_service_relations(context, definition, callers):
+            yield relation.element.id
+    for client in clients:
+        yield from (dependency.id for dependency in list_allocations(context, client))
+    for element in (*context.nodes(activity), *list_flows(context, activity)):
+        yield element.id
 
 
 def _build_recipe(
@@ -315,7 +347,7 @@ def _list_elements(context: Context, type_: Element, feature: Element) -> tuple[
 
 
 def _has_data(context: Context, feature: Element) -> bool:
-    return literal_default(feature) is not None or bool(find_opcua_node(context, feature))
+    return literal_default(context, feature) is not None or bool(find_opcua_node(context, feature))
 
 
 def _build_variable(
@@ -323,5 +355,10 @@ def _build_variable(
 ) -> MachineVariable:
     node = find_opcua_node(context, feature)
     return MachineVariable(
-        name, value_type(context, feature), literal_default(feature), node, elements
+        name,
+        value_type(context, feature),
+        literal_default(context, feature),
+        node,
+        elements,
+        read_default(context, feature)[0],
     )

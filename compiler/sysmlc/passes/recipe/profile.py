@@ -1,14 +1,17 @@
 """Recipe levels and tagged values of the shipped profile, metamodels/sysmlc.profile.uml."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from fractions import Fraction
 
 from msgspec import Struct
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.ir.query.classifiers import name_value_unit, unit_of
 from sysmlc.passes.classify import vocabulary
 from sysmlc.passes.classify.lineage import Profiles
 from sysmlc.passes.classify.vocabulary import Family
 from sysmlc.recipe.model import Range
+from sysmlc.support.units import convert, split_quantity
 
 NAMESPACE = "urn:sysmlc:profile:1"
 """Namespace of the shipped profile, metamodels/sysmlc.profile.uml."""
@@ -111,6 +114,15 @@ def find_followers(graph: Graph, first: Iterable[str]) -> set[str]:
     return reached
 
 
+UNITS = {
+    **dict.fromkeys(("duration", "minDuration", "maxDuration", "timeout"), "ms"),
+    **dict.fromkeys(("minPower", "maxPower"), "W"),
+}
+"""Unit in which the recipe has the number of a tag; a number without a unit is in this unit."""
+
+_NUMERIC_TAGS = (*UNITS, "priority", "maxIterations", "quantity", "available", "buffer")
+
+
 class Tags(Struct, frozen=True):
     """Tagged values of an application, read as the types of the profile.
 
@@ -118,6 +130,10 @@ class Tags(Struct, frozen=True):
     """
 
     attrs: Mapping[str, object]
+    units: Mapping[str, str] = {}
+    """Units that the value types of tags state; a unit in a tagged value takes precedence."""
+    material_unit: str = ""
+    """Unit in which the recipe has amounts of the material to which the tags belong."""
 
     def text(self, name: str) -> str:
         """Return the first text of a tag, or the empty string."""
@@ -135,17 +151,31 @@ class Tags(Struct, frozen=True):
         return [id for text in self.texts(name) for id in text.split()]
 
     def flag(self, name: str) -> bool | None:
-        """Return a truth value."""
-        text = self.text(name).lower()
-        return None if not text else text == "true"
+        """Return a truth value, or None."""
+        return {"true": True, "false": False}.get(self.text(name).lower())
+
+    def unit(self, name: str) -> str:
+        """Return the unit in which the model states the number of a tag, or the empty string."""
+        quantity = split_quantity(self.text(name))
+        return self.units.get(name, "") if quantity is None else quantity[1]
+
+    def target_unit(self, name: str) -> str:
+        """Return the unit in which the recipe has the number of a tag, or the empty string."""
+        is_amount = name in ("available", "quantity")
+        return self.material_unit if is_amount else UNITS.get(name, "")
 
     def amount(self, name: str) -> int | float | None:
-        """Return a number that is not negative, or None."""
-        value = read_number(self.text(name))
-        return value if value is not None and value >= 0 else None
+        """Return a number that is not negative, in the unit of the recipe, or None."""
+        text, stated, target = self.text(name), self.unit(name), self.target_unit(name)
+        quantity = split_quantity(text)
+        number = read_number(text) if quantity is None else shorten(quantity[0])
+        if number is not None and stated and stated != target:
+            converted = convert(Fraction(str(number)), stated, target)
+            number = None if converted is None else shorten(converted)
+        return number if number is not None and number >= 0 else None
 
     def integer(self, name: str) -> int | None:
-        """Return a whole number that is not negative, or None."""
+        """Return a whole number that is not negative, in the unit of the recipe, or None."""
         value = self.amount(name)
         return int(value) if value is not None and value == int(value) else None
 
@@ -168,6 +198,46 @@ class Tags(Struct, frozen=True):
         """Return the range of two tags; if only one is present, it is both bounds."""
         values = [v for v in (self.amount(low), self.amount(high)) if v is not None]
         return Range(values[0], values[-1]) if values else None
+
+
+def read_tags(graph: Graph, application: Element | None) -> Tags:
+    """Return the tagged values of an application; none for None."""
+    if application is None:
+        return Tags({})
+    stereotype = graph.target(application, Edge.INSTANCE_OF)
+    family = [] if stereotype is None else [stereotype, *query.generals(graph, stereotype)]
+    tags = [feature for classifier in family for feature in query.features(graph, classifier)]
+    stated = ((tag.name, unit_of(graph, tag)) for tag in reversed(tags))
+    units = {name: str(unit.attrs.get("symbol") or unit.name) for name, unit in stated if unit}
+    return Tags({**application.attrs, **_find_constants(graph, application)}, units)
+
+
+def _find_constants(graph: Graph, application: Element) -> dict[str, str]:
+    """Return the values of the numeric tags that refer to attributes, by the key of the tag.
+
+    An attribute without a constant number is represented by its name.
+    """
+    constants: dict[str, str] = {}
+    for key in (f"tag.{name}" for name in _NUMERIC_TAGS):
+        element = graph.get(str(application.attrs.get(key, "")))
+        if element is not None:
+            attribute = "value" if element.kind is Kind.INSTANCE else "default"
+            constants[key] = _format_constant(graph, element, attribute) or element.name
+    return constants
+
+
+def _format_constant(graph: Graph, element: Element, attribute: str) -> str:
+    """Return the constant number of an element with its unit, or the empty string."""
+    number = element.attrs.get(attribute)
+    is_number = isinstance(number, int | float) and not isinstance(number, bool)
+    if not is_number or element.attrs.get(f"{attribute}_kind") == "initial":
+        return ""
+    return f"{number} {name_value_unit(graph, element, attribute)}".rstrip()
+
+
+def shorten(number: Fraction) -> int | float:
+    """Return a number as an integer if it is whole, else as a float."""
+    return int(number) if number.denominator == 1 else float(number)
 
 
 def read_number(text: str) -> int | float | None:

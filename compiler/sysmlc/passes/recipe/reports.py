@@ -1,15 +1,21 @@
 """Reports of the recipe pass: unreadable tags, levels by position and omitted content."""
 
 from collections.abc import Callable, Iterator
+from fractions import Fraction
+from typing import Any
+
+from msgspec.structs import replace
 
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.ir import Element, Kind
+from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.passes.recipe.context import Context
 from sysmlc.passes.recipe.data_flow import DataFlow, find_bound_feature
 from sysmlc.passes.recipe.graphs import refine
-from sysmlc.passes.recipe.profile import NAMESPACE, Tags
-from sysmlc.passes.recipe.tasks import list_steps
+from sysmlc.passes.recipe.machines import find_material_unit
+from sysmlc.passes.recipe.profile import Tags, read_tags
+from sysmlc.passes.recipe.tasks import find_material, list_steps
 from sysmlc.recipe.model import Model
+from sysmlc.support.units import convert, find_unit
 
 UNREADABLE_TAG = rule(
     "SM622",
@@ -19,46 +25,117 @@ UNREADABLE_TAG = rule(
     help="correct the tagged value",
 )
 
+UNIT_MISFIT = rule(
+    "SM643",
+    "recipe-unit-misfit",
+    Severity.ERROR,
+    "'{tag}' of «{stereotype}» on '{element}' is '{value}', but {problem}",
+    help="{advice}",
+)
+UNKNOWN_UNIT = rule(
+    "SM644",
+    "recipe-unit-unknown",
+    Severity.WARNING,
+    "'{tag}' of «{stereotype}» on '{element}' is '{value}': unit '{unit}' is unknown, "
+    "and the value is ignored",
+    help="write the value in a usual unit, such as ms, s, min, h, W, kW, g, kg or L",
+)
+
 _Expectation = tuple[str, Callable[[Tags, str], object]]
 _WHOLE_NUMBER: _Expectation = ("a whole number, 0 or more", Tags.integer)
 _AMOUNT: _Expectation = ("a number, 0 or more", Tags.amount)
 _ENDPOINT: _Expectation = ("an address opc.tcp://...", Tags.endpoint)
-_TIMES = ("duration", "minDuration", "maxDuration", "timeout")
+_FLAG: _Expectation = ("true or false", Tags.flag)
+_TIME: _Expectation = ("a whole number of milliseconds, 0 or more", Tags.integer)
 _EXPECTATIONS: dict[str, _Expectation] = {
-    **dict.fromkeys((*_TIMES, "priority", "buffer", "maxIterations"), _WHOLE_NUMBER),
+    **dict.fromkeys(("duration", "minDuration", "maxDuration", "timeout"), _TIME),
+    **dict.fromkeys(("priority", "buffer", "maxIterations"), _WHOLE_NUMBER),
     **dict.fromkeys(("minPower", "maxPower", "quantity"), _AMOUNT),
+    **dict.fromkeys(("interruptible", "noWait"), _FLAG),
     "endpoint": _ENDPOINT,
     "kind": ("call, read, write or subscribe", Tags.call_kind),
     "use": ("consumed, produced or carried", Tags.material_use),
 }
+_EXPECTATIONS_BY_STEREOTYPE: dict[str, dict[str, _Expectation]] = {
+    "Capability": {"available": _FLAG},
+    "Material": {"available": _AMOUNT},
+}
+_NUMBERS = (_WHOLE_NUMBER, _AMOUNT, _TIME)
 
 
 def check_tags(context: Context, sink: Sink) -> None:
-    """Report tagged values that are ignored because they have another form than expected."""
-    for application, stereotype in _list_applications(context):
-        tags = Tags(application.attrs)
-        for name, (expected, reading) in _EXPECTATIONS.items():
-            value = tags.text(name)
-            # `use` of a MachineFunction lists resources; `use` of a Material is one of three words.
-            is_resource = stereotype == "MachineFunction" and name == "use"
-            if value and not is_resource and reading(tags, name) is None:
-                owner = context.graph.owner(application) or application
-                sink.report(
-                    UNREADABLE_TAG,
-                    context.graph.subject(owner),
-                    tag=name,
-                    stereotype=stereotype,
-                    element=context.name(owner),
-                    value=value,
-                    expected=expected,
-                )
+    """Report tagged values with a wrong unit, and those that are ignored for their form."""
+    for application, names in context.stereotypes.items():
+        _check_application(context, context.graph[application], names, sink)
 
 
-def _list_applications(context: Context) -> Iterator[tuple[Element, str]]:
-    """Yield the applications of stereotypes of the shipped profile, with their names."""
-    for application in context.graph.of_kind(Kind.APPLICATION):
-        if application.attrs.get("namespace") == NAMESPACE:
-            yield application, str(application.attrs.get("stereotype", ""))
+def _check_application(
+    context: Context, application: Element, stereotypes: tuple[str, ...], sink: Sink
+) -> None:
+    tags = read_tags(context.graph, application)
+    owner = context.graph.target(application, Edge.SUBJECT) or application
+    if "Material" in stereotypes:
+        tags = replace(tags, material_unit=_find_unit_of_material(context, owner))
+    expectations = dict(_EXPECTATIONS)
+    for stereotype in stereotypes:
+        expectations |= _EXPECTATIONS_BY_STEREOTYPE.get(stereotype, {})
+    for name, expectation in expectations.items():
+        # `use` of a MachineFunction lists resources; `use` of a Material is one of three words.
+        is_resource = "MachineFunction" in stereotypes and name == "use"
+        if tags.text(name) and not is_resource:
+            _check_tag(context, application, tags, name, expectation, sink)
+
+
+def _check_tag(
+    context: Context,
+    application: Element,
+    tags: Tags,
+    name: str,
+    expectation: _Expectation,
+    sink: Sink,
+) -> None:
+    owner = context.graph.target(application, Edge.SUBJECT) or application
+    subject = context.graph.subject(owner)
+    value, target = tags.text(name), tags.target_unit(name)
+    unit = tags.unit(name) if expectation in _NUMBERS else ""
+    facts: dict[str, Any] = {
+        "tag": name,
+        "stereotype": str(application.attrs.get("stereotype", "")),
+        "element": context.name(owner),
+        "value": value if unit in value else f"{value} {unit}",
+    }
+    expected, read_value = expectation
+    if unit and unit != target and find_unit(unit) is None:
+        sink.report(UNKNOWN_UNIT, subject, **facts, unit=unit)
+    elif unit and convert(Fraction(1), unit, target) is None:
+        problem, advice = _describe_misfit(unit, target)
+        sink.report(UNIT_MISFIT, subject, **facts, problem=problem, advice=advice)
+    elif read_value(tags, name) is None:
+        sink.report(UNREADABLE_TAG, subject, **facts, expected=expected)
+
+
+def _find_unit_of_material(context: Context, element: Element) -> str:
+    """Return the unit of a material, or of the material that a flow or object node refers to."""
+    if element.kind is Kind.OBJECT_FLOW:
+        material = find_material(context, element)
+    else:
+        material = query.type_of(context.graph, element) or element
+    return "" if material is None else find_material_unit(context, material)
+
+
+def _describe_misfit(unit: str, target: str) -> tuple[str, str]:
+    """Return why a unit does not fit the expected one, which may be none, and what to do."""
+    known_unit, expected = find_unit(unit), find_unit(target)
+    quantity = "" if known_unit is None else known_unit.quantity
+    if not target:
+        advice = "write a number without a unit, or state the unit of the material"
+        return "no unit is expected there", advice
+    if expected is None:
+        return f"the material is counted in '{target}'", f"write the number in '{target}'"
+    return (
+        f"'{unit}' is a unit of {quantity}, not of {expected.quantity}",
+        f"write a unit of {expected.quantity}, or a number without a unit, which is in {target}",
+    )
 
 
 BY_POSITION = rule(

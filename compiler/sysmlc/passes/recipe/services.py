@@ -30,7 +30,7 @@ def build_service(context: Context, definition: Element, callers: list[Element])
     """
     level = context.level(definition) or _level_of_callers(context, callers)
     is_machine = level == "machine service"
-    offers = build_providers(context, _find_relations(context, definition, callers))
+    offers = build_providers(context, find_service_relations(context, definition, callers))
     is_machine = is_machine or (not level and bool(offers))
     stereotype = "MachineService" if is_machine else "InfrastructureService"
     tags = context.tags(_find_holder(context, definition, callers, stereotype), stereotype)
@@ -66,7 +66,7 @@ def _find_holder(
     )
 
 
-def _find_relations(
+def find_service_relations(
     context: Context, definition: Element, callers: list[Element]
 ) -> Iterator[Relation]:
     """Yield the relations of a service to the machines that offer it.

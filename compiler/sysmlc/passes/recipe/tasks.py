@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterator
 
 from msgspec import Struct
+from msgspec.structs import replace
 
 from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.logic.machines.transitions import parse_milliseconds
@@ -14,6 +15,7 @@ from sysmlc.passes.recipe.machines import (
     Relation,
     build_modes,
     find_machine,
+    find_material_unit,
     relations_by_dependency,
     relations_by_partition,
     relations_by_pins,
@@ -53,7 +55,7 @@ def build_task(context: Context, recipe: Element, step: Step, data: DataFlow) ->
         step.node.name or holder.name,
         tags.integer("maxDuration"),
         build_material_uses(context, recipe, step),
-        build_modes(context, _find_relations(context, recipe, step)),
+        build_modes(context, find_task_relations(context, recipe, step)),
         "" if step.refinement is None else context.name(step.refinement),
         read_optional(tags.text("pre")),
         read_optional(tags.text("post")),
@@ -70,7 +72,7 @@ def build_task(context: Context, recipe: Element, step: Step, data: DataFlow) ->
 # -- machines ----------------------------------------------------------------------------------
 
 
-def _find_relations(context: Context, recipe: Element, step: Step) -> Iterator[Relation]:
+def find_task_relations(context: Context, recipe: Element, step: Step) -> Iterator[Relation]:
     """Yield the relations of a task to machines.
 
     These are the relations of its node, or else of its definition, or else its machine arguments.
@@ -149,7 +151,8 @@ def _read_use(context: Context, flow: Element, step: Step) -> Iterator[tuple[Ele
         for holder in (flow, neighbour)
         if holder and context.find_application(holder, "Material")
     ]
-    tags = [context.tags(holder, "Material") for holder in holders]
+    unit = find_material_unit(context, material)
+    tags = [replace(context.tags(holder, "Material"), material_unit=unit) for holder in holders]
     quantity = next((amount for holder in tags if (amount := holder.amount("quantity"))), None)
     use = next((use for holder in tags if (use := holder.material_use("use"))), "")
     default = "consumed" if target is step.node else "produced"

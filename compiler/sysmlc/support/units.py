@@ -1,0 +1,177 @@
+"""Units of measurement: symbols, spellings, codes of UN/ECE Rec. 20, factors.
+
+CAEX declares no system of units: the XML attribute Unit is free text. MTP files write the codes.
+"""
+
+import re
+from fractions import Fraction
+from typing import NamedTuple
+
+
+class Unit(NamedTuple):
+    """A unit: its symbol, name, quantity (ISO 80000) and UN/ECE code.
+
+    ``factor`` times a number gives the number in the first unit of the quantity with factor 1; it
+    is empty if no factor converts the unit exactly.
+    """
+
+    symbol: str
+    name: str
+    quantity: str
+    code: str = ""
+    factor: str = "1"
+
+
+UNITS = (
+    Unit("1", "one", "dimensionless", "C62"),
+    Unit("%", "per cent", "ratio", "P1", "1/100"),
+    Unit("m", "metre", "length", "MTR"),
+    Unit("km", "kilometre", "length", "KMT", "1000"),
+    Unit("dm", "decimetre", "length", "DMT", "1/10"),
+    Unit("cm", "centimetre", "length", "CMT", "1/100"),
+    Unit("mm", "millimetre", "length", "MMT", "1/1000"),
+    Unit("µm", "micrometre", "length", "4H", "1/1000000"),
+    Unit("m²", "square metre", "area", "MTK"),
+    Unit("mm²", "square millimetre", "area", "MMK", "1/1000000"),
+    Unit("m³", "cubic metre", "volume", "MTQ"),
+    Unit("L", "litre", "volume", "LTR", "1/1000"),
+    Unit("mL", "millilitre", "volume", "MLT", "1/1000000"),
+    Unit("kg", "kilogram", "mass", "KGM"),
+    Unit("g", "gram", "mass", "GRM", "1/1000"),
+    Unit("mg", "milligram", "mass", "MGM", "1/1000000"),
+    Unit("t", "tonne", "mass", "TNE", "1000"),
+    Unit("s", "second", "time", "SEC"),
+    Unit("ms", "millisecond", "time", "C26", "1/1000"),
+    Unit("µs", "microsecond", "time", "B98", "1/1000000"),
+    Unit("min", "minute", "time", "MIN", "60"),
+    Unit("h", "hour", "time", "HUR", "3600"),
+    Unit("d", "day", "time", "DAY", "86400"),
+    Unit("m/s", "metre per second", "speed", "MTS"),
+    Unit("mm/s", "millimetre per second", "speed", "C16", "1/1000"),
+    Unit("km/h", "kilometre per hour", "speed", "KMH", "5/18"),
+    Unit("m/min", "metre per minute", "speed", "2X", "1/60"),
+    Unit("m/s²", "metre per second squared", "acceleration", "MSK"),
+    Unit("rad", "radian", "angle", "C81"),
+    Unit("°", "degree", "angle", "DD", ""),
+    Unit("rad/s", "radian per second", "angular velocity", "2A"),
+    Unit("rpm", "revolutions per minute", "rotational frequency", "RPM", "1/60"),
+    Unit("Hz", "hertz", "frequency", "HTZ"),
+    Unit("kHz", "kilohertz", "frequency", "KHZ", "1000"),
+    Unit("N", "newton", "force", "NEW"),
+    Unit("kN", "kilonewton", "force", "B47", "1000"),
+    Unit("N·m", "newton metre", "torque", "NU"),
+    Unit("Pa", "pascal", "pressure", "PAL"),
+    Unit("kPa", "kilopascal", "pressure", "KPA", "1000"),
+    Unit("MPa", "megapascal", "pressure", "MPA", "1000000"),
+    Unit("bar", "bar", "pressure", "BAR", "100000"),
+    Unit("mbar", "millibar", "pressure", "MBR", "100"),
+    Unit("J", "joule", "energy", "JOU"),
+    Unit("kJ", "kilojoule", "energy", "KJO", "1000"),
+    Unit("MJ", "megajoule", "energy", "3B", "1000000"),
+    Unit("Wh", "watt hour", "energy", "WHR", "3600"),
+    Unit("kWh", "kilowatt hour", "energy", "KWH", "3600000"),
+    Unit("W", "watt", "power", "WTT"),
+    Unit("kW", "kilowatt", "power", "KWT", "1000"),
+    Unit("mW", "milliwatt", "power", "C31", "1/1000"),
+    Unit("MW", "megawatt", "power", "MAW", "1000000"),
+    Unit("V", "volt", "electric potential", "VLT"),
+    Unit("mV", "millivolt", "electric potential", "2Z", "1/1000"),
+    Unit("A", "ampere", "electric current", "AMP"),
+    Unit("mA", "milliampere", "electric current", "4K", "1/1000"),
+    Unit("Ω", "ohm", "electric resistance", "OHM"),
+    Unit("K", "kelvin", "thermodynamic temperature", "KEL"),
+    Unit("°C", "degree Celsius", "thermodynamic temperature", "CEL", ""),
+    Unit("m³/h", "cubic metre per hour", "volume flow rate", "MQH", "1/3600"),
+    Unit("m³/s", "cubic metre per second", "volume flow rate", "MQS"),
+    Unit("L/min", "litre per minute", "volume flow rate", "L2", "1/60000"),
+    Unit("L/h", "litre per hour", "volume flow rate", "E32", "1/3600000"),
+    Unit("kg/h", "kilogram per hour", "mass flow rate", "E93", "1/3600"),
+    Unit("kg/s", "kilogram per second", "mass flow rate", "KGS"),
+    Unit("kg/m³", "kilogram per cubic metre", "density", "KMQ"),
+    Unit("dB", "decibel", "level", "2N", ""),
+    Unit("bit/s", "bit per second", "transfer rate", "B10"),
+    Unit("Mbit/s", "megabit per second", "transfer rate", "E20", "1000000"),
+    Unit("B", "byte", "storage capacity", "AD"),
+)
+
+_SPELLINGS = {
+    "Celsius": "°C",
+    "degC": "°C",
+    "ºC": "°C",
+    "m^3/h": "m³/h",
+    "m3/h": "m³/h",
+    "m^3": "m³",
+    "m3": "m³",
+    "m^2": "m²",
+    "m2": "m²",
+    "m/s^2": "m/s²",
+    "m/s2": "m/s²",
+    "kg/m^3": "kg/m³",
+    "l": "L",
+    "ml": "mL",
+    "l/min": "L/min",
+    "l/h": "L/h",
+    "Nm": "N·m",
+    "deg": "°",
+    "Ohm": "Ω",
+    "sec": "s",
+    "secs": "s",
+    "msec": "ms",
+    "us": "µs",
+    "μs": "µs",
+    "mins": "min",
+    "hr": "h",
+    "hrs": "h",
+    "kW·h": "kWh",
+    "W·h": "Wh",
+    "um": "µm",
+    "μm": "µm",
+    "1/min": "rpm",
+    "mbps": "Mbit/s",
+    "Mbps": "Mbit/s",
+    "Mbit/sec": "Mbit/s",
+    "percent": "%",
+}
+"""Other spellings of symbols in files of users."""
+
+TYPE_NAMES = frozenset({"string", "xs:string", "xs:anyUnit", "anyUnit", "double", "xs:double"})
+"""Names of types that exporters write in the place of a unit."""
+
+# A symbol takes precedence over a name, and a name over a code.
+_UNITS_BY_TEXT = {
+    **{unit.code: unit for unit in UNITS if unit.code},
+    **{unit.name: unit for unit in UNITS},
+    **{unit.symbol: unit for unit in UNITS},
+}
+
+
+_PLURALS = {f"{unit.name}s": unit for unit in UNITS}
+_QUANTITY = re.compile(
+    r"\s*([+-]?\d{1,30}(?:\.\d{1,30})?(?:[eE][+-]?\d{1,2})?)\s*\[?\s*((?:[^\W\d]|[°%µμ])[^\[\]]*?)\s*\]?\s*"
+)
+
+
+def find_unit(text: str) -> Unit | None:
+    """Return the unit that a text means: a symbol, another spelling of one, a name or a code."""
+    text = re.sub(r"\s*([/·])\s*", r"\1", text.replace("⋅", "·").replace("*", "·"))
+    return _UNITS_BY_TEXT.get(_SPELLINGS.get(text, text)) or _PLURALS.get(text)
+
+
+def split_quantity(text: str) -> tuple[Fraction, str] | None:
+    """Return the number and the unit of a text such as ``9 s`` or ``9 [s]``; None without both."""
+    match = _QUANTITY.fullmatch(text)
+    return None if match is None else (Fraction(match[1]), match[2])
+
+
+def convert(number: Fraction, unit: str, target: str) -> Fraction | None:
+    """Return the number in the unit *target*; None for units of other quantities or without."""
+    if unit == target:
+        return number
+    source, goal = find_unit(unit), find_unit(target)
+    if source is None or goal is None or source.quantity != goal.quantity:
+        return None
+    if source.symbol == goal.symbol:
+        return number
+    if not (source.factor and goal.factor):
+        return None
+    return number * Fraction(source.factor) / Fraction(goal.factor)
