@@ -7,6 +7,7 @@ import os
 import pytest
 
 from sysmlc.cli import session, watch
+from sysmlc.driver.registry import list_backend_names
 
 OUTPUTS = ["coverage.json", "graph.json", "manifest.json", "trace.json"]
 
@@ -324,3 +325,23 @@ def test_other_commands_do_not_write_through_a_link(project):
     result = project.run("synth", "gate.ltl", "-o", "gen")
     assert (result.exit_code, "is a link or in the way; remove it" in result.stderr) == (2, True)
     assert project.snapshot() == before
+
+
+GATE = """\
+package Plant { private import ScalarValues::*; part def Gate {
+  in attribute ready : Boolean;
+  state def Behaviour { entry; then shut; state shut; state open;
+    transition first shut if ready then open; transition first open if not ready then shut; }
+  exhibit state behaviour : Behaviour; }
+  requirement def Safe { doc /* The gate is safe. */ } }
+"""
+
+
+def test_stale_outputs_of_all_back_ends_are_removed_from_a_shared_folder(project):
+    project.write("gate.sysml", GATE)
+    before = list_names(project.folder)
+    names = ",".join(list_backend_names())
+    assert project.run("build", "gate.sysml", "-o", ".", "--emit", names).exit_code == 0
+    assert {"monitors", "contracts", "aml"} <= set(list_names(project.folder))
+    assert project.run("build", "gate.sysml", "-o", ".", "--emit", "graph").exit_code == 0
+    assert sorted({*before, *OUTPUTS}) == list_names(project.folder)

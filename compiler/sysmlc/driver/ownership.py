@@ -26,7 +26,10 @@ _MAX_SIZE = 16 << 20
 _MAX_NAME = 255
 """Bytes of a name in a folder; no usual file system has longer names."""
 _FOLDERS = frozenset(
-    {"aml", "contracts", "diagrams", "recipes", "requirements", "sysml", "sysmlx", "uml"}
+    [
+        *("aml", "contracts", "diagrams", "monitors", "recipes", "requirements"),
+        *("sysml", "sysmlx", "uml"),
+    ]
 )
 _FILES = frozenset(
     {"coverage.json", "graph.ir", "graph.json", "graph.xmi", "platform.json", "trace.json"}
