@@ -47,6 +47,7 @@ def test_letters_of_all_scripts_stay_and_blanks_become_underscores(name, file_na
         ("葛\U000e0100", "葛%F3%A0%84%80"),
         ("blank\u3164", "blank%E3%85%A4"),
         ("Gate ", "Gate%20"),
+        ("-rf x-y", "%2Drf_x-y"),
         ("Gate.", "Gate"),
         ("\udcff", "%ED%B3%BF"),
         ("", "_"),

@@ -40,6 +40,8 @@ MODEL = machine(
         ("_a_ snake_case __b__", r"\_a\_ snake_case \_\_b\_\_"),
         ("&lt; &#60; a & b", "&amp;lt; &amp;#60; a & b"),
         ("# a", r"\# a"),
+        ("track #", r"track \#"),
+        ("C# and ##", r"C# and \##"),
         ("1. a", r"1\. a"),
         ("1.5 mm", "1.5 mm"),
         ("> a", r"\> a"),

@@ -13,10 +13,10 @@ _BLANK_LETTERS = frozenset("\u034f\u115f\u1160\u17b4\u17b5\u3164\uffa0")
 """Letters and marks that may occur in names but are displayed as nothing."""
 
 _MARKDOWN = re.compile(
-    r"[\\`*|~]|<(?=[A-Za-z/!?])|\](?=[(\[])|(?<![^\W_])_|_(?![^\W_])|&(?=#?\w+;)"
+    r"[\\`*|~]|<(?=[A-Za-z/!?])|\](?=[(\[])|(?<![^\W_])_|_(?![^\W_])|&(?=#?\w+;)|(?<= )#(?=#*$)"
 )
 """Characters that CommonMark interprets within a line: '<' where a tag can start, ']' where the
-target of a link can follow, '_' unless it stands between letters."""
+target of a link can follow, '_' unless it stands between letters, '#' at the end of a heading."""
 _BLOCK = re.compile(r"[#=+>\[-]|([0-9]+)[.)](?=\s|$)")
 """The start of a line that CommonMark reads as a heading, rule, quotation, list item or target."""
 _SURROGATE = re.compile("[\ud800-\udfff]")

@@ -190,6 +190,9 @@ def _encode(name: str) -> str:
     # Windows drops blanks at the end of a name, so that they stay apart from an underscore.
     body = text.rstrip()
     encoded = _SPECIAL.sub(_encode_special, body) + "".join(map(_escape, text[len(body) :])) or "_"
+    # A program would read a name with a hyphen at the start as an option.
+    if encoded.startswith("-"):
+        encoded = f"%2D{encoded[1:]}"
     # Windows reserves these names with any suffix.
     if encoded.split(".")[0].lower() in _RESERVED_ON_WINDOWS:
         encoded = f"_{encoded}"

@@ -44,14 +44,14 @@ class ReqTableBackend(Struct, frozen=True):
             for name, table in tables.items():
                 path = f"requirements/{file_names[name]}.requirements"
                 trace = tuple(table.trace())
-                output.add(f"{path}.csv", format_csv(table), trace, self.name, name=name)
+                output.add(f"{path}.csv", format_csv(table), trace, self.name, name=table.name)
                 try:
                     text = templates.render(_TEMPLATE, page=_make_page(table))
                 except TemplateError as fault:
                     sink.report(BAD_TEMPLATE, Subject(_TEMPLATE), fault=fault)
                     continue
                 if text:
-                    output.add(f"{path}.md", text, trace, self.name, name=name)
+                    output.add(f"{path}.md", text, trace, self.name, name=table.name)
         requirements = [row.element for table in tables.values() for row in table.rows]
         _report_open_requirements(graph, requirements, sink)
 
