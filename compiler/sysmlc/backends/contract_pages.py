@@ -156,6 +156,10 @@ class _PageBuilder:
     def _build_variable(self, variable: Variable) -> Row:
         name = escape_code(variable.name, in_table=True)
         domain = escape_markdown(describe(variable.domain))
+        if variable.is_range_assumed:
+            domain += " (assumed)"
+        if variable.condition:
+            domain += f", stands for `{escape_code(variable.condition, in_table=True)}`"
         return Row(name, domain, *self._label_element(variable.origin))
 
     def _build_sections(self, conjuncts: Iterable[Conjunct]) -> tuple[Section, ...]:

@@ -177,6 +177,7 @@ def _format_result(result: "CheckedContract", is_verbose: bool) -> "Iterator[str
 
 
 def _summarise_requirements(result: "CheckedContract") -> str:
+    from sysmlc.logic.basis import Basis
     from sysmlc.synthesis.requirement_verdicts import describe_needs
 
     answers = [str(requirement.answer) for requirement in result.requirements]
@@ -185,17 +186,20 @@ def _summarise_requirements(result: "CheckedContract") -> str:
     if "not-decided" in answers:
         count = answers.count("not-decided")
         return f", {count} of {len(answers)} requirements not decided"
+    ranges = dict.fromkeys(text for item in result.requirements for text in item.basis.ranges)
+    within = Basis(tuple(ranges)).within
     needed = (ending for requirement in result.requirements for ending in requirement.needed)
     condition = describe_needs(needed)
     if condition:
-        return f", satisfies its requirements if {condition}"
-    return ", satisfies its requirements" if answers else ""
+        return f", satisfies its requirements if {condition}{within}"
+    return f", satisfies its requirements{within}" if answers else ""
 
 
 # -- verdicts on requirements ----------------------------------------------------------------------
 
 _WORDS = {
     "holds": "holds",
+    "holds-within-assumed-ranges": "holds",
     "holds-if-actions-end": "holds if its actions end",
     "broken": "broken",
     "not-decided": "not decided",
@@ -209,12 +213,17 @@ def describe_verdicts(result: "CheckedContract", is_verbose: bool) -> Iterator[s
 
     With *is_verbose* those that hold are shown, too.
     """
+    from sysmlc.logic.basis import Basis
     from sysmlc.synthesis.witnesses import print_temporal
 
     for verdict in result.requirements:
         if is_verbose or verdict.answer != "holds":
             name = f"{verdict.conjunct.viewpoint}: " if verdict.conjunct.viewpoint else ""
             words = f"holds if {verdict.condition}" if verdict.condition else _WORDS[verdict.answer]
+            if verdict.answer == "not-decided" and verdict.basis != Basis():
+                words = f"not decided: {verdict.reason}"
+            else:
+                words += verdict.basis.within
             yield f"  {name}{words}: {print_temporal(verdict.conjunct)}"
 
 
@@ -294,6 +303,7 @@ def list_behaviours(results: "Iterable[CheckedContract]") -> list[dict[str, obje
             "never_true": result.findings.list_unreachable(PlaceKind.GUARD),
             "never_changed": result.findings.list_unreachable(PlaceKind.FEATURE),
             "write_conflicts": list(result.findings.conflicts),
+            "assumed_ranges": list(result.findings.assumed_ranges),
         }
         for result in results
         if result.findings is not None
@@ -318,6 +328,8 @@ def _list_entries(
             "needs": [ending.text for ending in verdict.needed],
             "witness": trace and export_run(trace),
             "reason": verdict.reason or verdict.vacuity or None,
+            "assumed_ranges": list(verdict.basis.ranges),
+            "unread_conditions": list(verdict.basis.conditions),
         }
     if not verdicts:
         reason = requirement.reason or _NO_BEHAVIOUR.format(component=requirement.component)
@@ -330,4 +342,6 @@ def _list_entries(
             "needs": [],
             "witness": None,
             "reason": f"{reason}; the recipe decides it: {decided.reason}" if decided else reason,
+            "assumed_ranges": [],
+            "unread_conditions": [],
         }

@@ -56,6 +56,10 @@ class Variable(Struct, frozen=True):
     domain: Domain
     origin: str = ""
     is_auxiliary: bool = False
+    is_range_assumed: bool = False
+    """Whether the compiler assumes the range, because the model states none (SM410)."""
+    condition: str = ""
+    """The text of the condition without formula that the input stands for (SM411), if it does."""
 
 
 def equals(variable: Variable, value: Formula, *, is_next: bool = False) -> Formula:

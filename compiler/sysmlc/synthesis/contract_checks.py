@@ -7,6 +7,7 @@ from msgspec.structs import replace
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.logic import formula as f
+from sysmlc.logic.basis import Basis
 from sysmlc.logic.components.derivation import ComponentBehaviour
 from sysmlc.logic.contract import Conjunct, Contract, Owner
 from sysmlc.logic.printing import print_formula
@@ -24,6 +25,7 @@ from sysmlc.synthesis.requirement_verdicts import (
     BehaviourCheck,
     BehaviourFindings,
     RequirementVerdict,
+    find_place_basis,
     report_unreachable,
 )
 from sysmlc.synthesis.rules import CONFLICT, VACUOUS
@@ -297,8 +299,12 @@ def _find_behaviour_findings(
             notes=describe_named_run(conflict.trace, conflict.conjunct, behaviour.atoms),
             component=component,
             variable=conflict.variable,
+            condition="" if conflict.basis == Basis() else f", perhaps: {conflict.basis.reason}",
         )
-    return BehaviourFindings(tuple(conflict.variable for conflict in conflicts), unreachable)
+    certain = tuple(item.variable for item in conflicts if item.basis == Basis())
+    bases = (find_place_basis(item, behaviour, requirements) for item in unreachable)
+    ranges = dict.fromkeys(text for basis in bases for text in basis.ranges)
+    return BehaviourFindings(certain, unreachable, tuple(ranges))
 
 
 def _find_undischarged(

@@ -14,6 +14,7 @@ from msgspec.structs import replace
 
 from sysmlc.diagnostics import Sink
 from sysmlc.logic import formula as f
+from sysmlc.logic.basis import Basis, describe_basis, find_basis, is_doubtful
 from sysmlc.logic.classification import is_safety
 from sysmlc.logic.components.derivation import ComponentBehaviour
 from sysmlc.logic.components.places import PlaceInBehaviour, PlaceKind
@@ -35,6 +36,7 @@ from sysmlc.synthesis import rules
 from sysmlc.synthesis.algebra.fair_systems import DomainError, Trace
 from sysmlc.synthesis.algebra.refinement import RunSearch
 from sysmlc.synthesis.bdd.limits import LimitError
+from sysmlc.synthesis.certain_runs import AUXILIARY, CertainRuns, find_certain_runs
 from sysmlc.synthesis.decision import Options, Place
 from sysmlc.synthesis.games.game import OutsideGr1Error
 from sysmlc.synthesis.witnesses import describe_problem, manager_factory
@@ -44,6 +46,7 @@ class Answer(StrEnum):
     """The answer to the question whether a behaviour satisfies a conjunct."""
 
     HOLDS = "holds"
+    HOLDS_WITHIN_RANGES = "holds-within-assumed-ranges"
     HOLDS_IF_ACTIONS_END = "holds-if-actions-end"
     BROKEN = "broken"
     NOT_DECIDED = "not-decided"
@@ -54,7 +57,8 @@ class RequirementVerdict(Struct, frozen=True):
 
     ``needed`` are the derived assumptions without which a conjunct that holds would not.
     ``vacuity`` is the reason why a conjunct that holds says nothing about the behaviour; it is
-    empty for other conjuncts.
+    empty for other conjuncts. ``basis`` are the assumed ranges within which a conjunct holds, or
+    the assumed ranges and the conditions without formula because of which it is not decided.
     """
 
     conjunct: Conjunct
@@ -63,6 +67,7 @@ class RequirementVerdict(Struct, frozen=True):
     trace: Trace | None = None
     needed: tuple[Conjunct, ...] = ()
     vacuity: str = ""
+    basis: Basis = Basis()
 
     @property
     def condition(self) -> str:
@@ -87,22 +92,27 @@ def _explain_needs(needed: Sequence[Conjunct]) -> str:
 
 
 class WriteConflict(Struct, frozen=True):
-    """A feature to which two writers give different values in one step, and a run that shows it."""
+    """A feature to which two writers give different values in one step, and a run that shows it.
+
+    Whether the run is one of the model depends on the ``basis``, if it is not empty.
+    """
 
     variable: str
     conjunct: Conjunct
     trace: Trace
+    basis: Basis = Basis()
 
 
 class BehaviourFindings(Struct, frozen=True):
     """Faults of a behaviour that are found without a requirement.
 
     ``conflicts`` are the features to which two writers may give different values in one step,
-    ``unreachable`` the places that no run reaches.
+    ``unreachable`` the places that no run within the ``assumed_ranges`` reaches.
     """
 
     conflicts: tuple[str, ...] = ()
     unreachable: tuple[PlaceInBehaviour, ...] = ()
+    assumed_ranges: tuple[str, ...] = ()
 
     def list_unreachable(self, kind: PlaceKind) -> list[str]:
         """Return the names of the places of a kind that no run reaches."""
@@ -150,7 +160,12 @@ class BehaviourCheck:
         derived = [conjunct for conjunct in contract.assumptions if conjunct.is_derived]
         is_described = behaviour.undescribed.isdisjoint
         self._endings = tuple(c for c in derived if is_described(_names_of((c,))))
-        self._search = RunSearch((contract, requirements), manager_factory(options))
+        self._contracts = (contract, requirements)
+        self._shown_names = {atom.replaced: atom.variable.name for atom in behaviour.atoms}
+        variables = (*contract.variables, *requirements.variables)
+        self._has_doubts = any(is_doubtful(variable) for variable in variables)
+        auxiliary = (AUXILIARY,) if self._has_doubts else ()
+        self._search = RunSearch((*self._contracts, *auxiliary), manager_factory(options))
 
     def decide_requirements(self) -> Iterator[RequirementVerdict]:
         """Yield the verdict about each conjunct that the author requires."""
@@ -174,9 +189,14 @@ class BehaviourCheck:
                 differ = f.negate(equal_values(domains[name], first.value, second.value))
                 coincide = f.both(first.condition, second.condition, differ)
                 conjunct = Conjunct(f.negate(coincide), Class.SAFETY, second.origin)
-                trace = None if coincide == f.FALSE else self._find_violation((), conjunct)
+                if coincide == f.FALSE or self._entails((), conjunct):
+                    continue
+                trace, basis = self._find_violation((), conjunct)
+                if trace is None and basis != Basis():
+                    facts = self._list_facts((), conjunct)
+                    trace = self._find_run(CertainRuns(), facts, conjunct)
                 if trace is not None:
-                    yield WriteConflict(name, conjunct, trace)
+                    yield WriteConflict(name, conjunct, trace, basis)
                     break
 
     def find_unreachable(self) -> Iterator[PlaceInBehaviour]:
@@ -202,19 +222,43 @@ class BehaviourCheck:
             reason = "no run of the behaviour satisfies the assumptions of the requirement"
             return RequirementVerdict(conjunct, Answer.NOT_DECIDED, reason)
         if self._entails((), conjunct):
-            vacuity = self._explain_vacuity(conjunct, ())
-            return RequirementVerdict(conjunct, Answer.HOLDS, vacuity=vacuity)
+            return self._confirm(conjunct, ())
         endings = () if is_safety(as_ltl(conjunct)) else self._endings
         if endings and self._entails(endings, conjunct):
-            needed = self._minimise(endings, conjunct)
-            return RequirementVerdict(
-                conjunct,
-                Answer.HOLDS_IF_ACTIONS_END,
-                _explain_needs(needed),
-                needed=needed,
-                vacuity=self._explain_vacuity(conjunct, endings),
-            )
+            return self._confirm(conjunct, endings)
         return self._refute(conjunct, endings)
+
+    def _confirm(self, conjunct: Conjunct, endings: tuple[Conjunct, ...]) -> RequirementVerdict:
+        """Return the verdict about a conjunct that all runs with some derived assumptions satisfy.
+
+        Conditions without formula are free inputs, so that it holds whatever their values are.
+        """
+        basis = Basis(self.find_basis((conjunct,)).ranges)
+        if not self._has_runs_in_ranges(conjunct, endings):
+            return RequirementVerdict(conjunct, Answer.NOT_DECIDED, basis.reason, basis=basis)
+        needed = self._minimise(endings, conjunct) if endings else ()
+        vacuity = self._explain_vacuity(conjunct, endings)
+        answer = Answer.HOLDS_WITHIN_RANGES if basis.ranges else Answer.HOLDS
+        return RequirementVerdict(
+            conjunct,
+            Answer.HOLDS_IF_ACTIONS_END if endings else answer,
+            _explain_needs(needed),
+            needed=needed,
+            vacuity=vacuity and vacuity + basis.within,
+            basis=basis,
+        )
+
+    def _has_runs_in_ranges(self, conjunct: Conjunct, endings: tuple[Conjunct, ...]) -> bool:
+        """Whether some run never stops a value at a bound of an assumed range.
+
+        A safety conjunct is about the beginnings of runs, which stay in the ranges.
+        """
+        if not self._has_doubts or is_safety(as_ltl(conjunct)):
+            return True
+        runs = find_certain_runs(self._behaviour, self._requirements, (conjunct,))
+        unclamped = (f.negate(clamp) for _, clamp in runs.clamps)
+        facts = tuple(Conjunct(formula, Class.SAFETY, "") for formula in unclamped)
+        return not facts or self._search.has_runs((*self._list_facts(endings, conjunct), *facts))
 
     def _minimise(self, endings: tuple[Conjunct, ...], conjunct: Conjunct) -> tuple[Conjunct, ...]:
         """Return a subset of the derived assumptions that still proves the conjunct.
@@ -285,11 +329,13 @@ class BehaviourCheck:
                 for name in sorted(self._behaviour.gaps)
             )
         facts = (*self._unproven, *endings, *waits)
-        trace = self._find_violation(facts, conjunct)
-        if trace is None:
-            reason = self._explain_gap(gap) if gap else self._explain_unproven()
-            return RequirementVerdict(conjunct, Answer.NOT_DECIDED, reason)
-        return RequirementVerdict(conjunct, Answer.BROKEN, trace=trace)
+        trace, basis = self._find_violation(facts, conjunct)
+        if trace is not None:
+            return RequirementVerdict(conjunct, Answer.BROKEN, trace=trace)
+        if basis != Basis():
+            return RequirementVerdict(conjunct, Answer.NOT_DECIDED, basis.reason, basis=basis)
+        reason = self._explain_gap(gap) if gap else self._explain_unproven()
+        return RequirementVerdict(conjunct, Answer.NOT_DECIDED, reason)
 
     def _find_gap(self, conjunct: Conjunct) -> str | None:
         """Return a variable that the model restricts more than the behaviour does, if any.
@@ -324,9 +370,42 @@ class BehaviourCheck:
     def _entails(self, endings: tuple[Conjunct, ...], conjunct: Conjunct) -> bool:
         return self._search.entails(self._list_facts(endings, conjunct), conjunct)
 
-    def _find_violation(self, facts: tuple[Conjunct, ...], conjunct: Conjunct) -> Trace | None:
-        """Return a run of the behaviour with additional facts that violates the conjunct."""
-        return self._search.find_violation(self._list_facts(facts, conjunct), conjunct)
+    def _find_violation(
+        self, facts: tuple[Conjunct, ...], conjunct: Conjunct
+    ) -> tuple[Trace | None, Basis]:
+        """Return a certain run of the behaviour with additional facts that violates the conjunct.
+
+        If there is none, the basis tells because of what the runs that violate it are not certain.
+        """
+        all_facts = self._list_facts(facts, conjunct)
+        if not self._has_doubts:
+            return self._search.find_violation(all_facts, conjunct), Basis()
+        runs = find_certain_runs(self._behaviour, self._requirements, (conjunct, *facts))
+        trace = self._find_run(runs, all_facts, conjunct)
+        if trace is not None:
+            return trace, Basis()
+        for name in reversed(runs.doubts):
+            fewer = runs.without(name)
+            try:
+                if self._find_run(fewer, all_facts, conjunct) is None:
+                    runs = fewer
+            except LimitError:
+                break
+        return None, describe_basis(self._contracts, runs.doubts, self._shown_names)
+
+    def _find_run(
+        self, runs: CertainRuns, facts: tuple[Conjunct, ...], conjunct: Conjunct
+    ) -> Trace | None:
+        restriction = runs.restrict(facts, conjunct)
+        if restriction is None:
+            return None
+        trace = self._search.find_violation((*facts, *restriction), conjunct)
+        return trace and runs.drop_values(trace)
+
+    def find_basis(self, conjuncts: Iterable[Conjunct]) -> Basis:
+        """Return the assumed ranges and conditions without formula that affect conjuncts."""
+        reads = self._behaviour.list_reads()
+        return find_basis(self._contracts, _names_of(conjuncts), self._shown_names, reads)
 
     def _list_facts(self, facts: tuple[Conjunct, ...], about: Conjunct) -> tuple[Conjunct, ...]:
         """Return what all runs satisfy that a question is *about*, with further *facts*.
@@ -373,7 +452,18 @@ def report_unreachable(
                     place(unreached.origin),
                     component=component,
                     name=unreached.name,
+                    within=find_place_basis(unreached, behaviour, requirements).within,
                 )
+
+
+def find_place_basis(
+    place: PlaceInBehaviour, behaviour: ComponentBehaviour, requirements: Contract
+) -> Basis:
+    """Return the assumed ranges within which no run reaches a place."""
+    names = f.variable_names(place.is_active, place.within)
+    shown_names = {atom.replaced: atom.variable.name for atom in behaviour.atoms}
+    contracts = (behaviour.contract, requirements)
+    return Basis(find_basis(contracts, names, shown_names, behaviour.list_reads()).ranges)
 
 
 def _names_of(conjuncts: Iterable[Conjunct]) -> set[str]:

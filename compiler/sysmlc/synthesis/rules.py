@@ -135,14 +135,14 @@ CONFLICT = rule(
     "SM558",
     "conflicting-writes",
     Severity.WARNING,
-    "two behaviours of '{component}' give '{variable}' different values in one step",
+    "two behaviours of '{component}' give '{variable}' different values in one step{condition}",
     help="let the behaviours exclude one another, or let only one of them assign it",
 )
 UNREACHABLE = rule(
     "SM559",
     "never-active",
     Severity.WARNING,
-    "no run of '{component}' reaches '{name}'",
+    "no run of '{component}' reaches '{name}'{within}",
     help="correct the way to it, remove it, or require that it is never reached",
 )
 
@@ -175,27 +175,27 @@ NEVER_TAKEN = rule(
     "SM517",
     "transition-never-taken",
     Severity.WARNING,
-    "no run of '{component}' takes {name}, although runs reach its source",
+    "no run of '{component}' takes {name}, although runs reach its source{within}",
     help="correct its guard or trigger, or what comes first; or remove the transition",
 )
 NEVER_ACCEPTED = rule(
     "SM516",
     "event-never-accepted",
     Severity.INFO,
-    "no run of '{component}' accepts {name}, although runs wait for it",
+    "no run of '{component}' accepts {name}, although runs wait for it{within}",
     help="let a part send it, or correct the guard or what is taken before; or remove the trigger",
 )
 GUARD_NEVER_HOLDS = rule(
     "SM518",
     "guard-never-holds",
     Severity.INFO,
-    "guard '{name}' never holds in '{component}' when a run reaches it",
+    "guard '{name}' never holds in '{component}' when a run reaches it{within}",
     help="correct the guard or what it reads, or remove the flow",
 )
 NEVER_CHANGED = rule(
     "SM519",
     "feature-never-changes",
     Severity.INFO,
-    "'{name}' of '{component}' is assigned, but no run changes its value",
+    "'{name}' of '{component}' is assigned, but no run changes its value{within}",
     help="correct the assignments, or make it a constant",
 )

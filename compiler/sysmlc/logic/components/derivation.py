@@ -16,6 +16,7 @@ from sysmlc.logic.activities.assumptions import derive_assumptions
 from sysmlc.logic.activities.derivation import derive_run_update, derive_token_updates
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
 from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.basis import Reads
 from sysmlc.logic.components.component import Component
 from sysmlc.logic.components.late_reads import LateValues
 from sysmlc.logic.components.machines import MachineWrite, find_unread_features
@@ -68,6 +69,17 @@ class ComponentBehaviour(Struct, frozen=True):
     atoms: tuple[Atom, ...] = ()
     constituents: frozenset[str] = frozenset()
     is_of_parts: bool = False
+    clamps: tuple[tuple[str, Formula], ...] | None = None
+    """Variables with assumed ranges, and when a value is stopped at a bound; None if not known."""
+    reads: tuple[Reads, ...] = ()
+    """Variables that machines decide, and those with assumed ranges that they read for them."""
+
+    def list_reads(self) -> tuple[Reads, ...]:
+        """Return ``reads``; if they are not known, each variable depends on all assumed ranges."""
+        if self.clamps is not None:
+            return self.reads
+        assumed = (item.name for item in self.contract.variables if item.is_range_assumed)
+        return ((frozenset(item.name for item in self.contract.variables), frozenset(assumed)),)
 
 
 def describe_component(component: Component, name: str) -> ComponentBehaviour:
@@ -149,9 +161,21 @@ class _Description:
             replace(atom, meaning=substitute(atom.meaning, ends))
             for atom in iter_atoms(self.component, formulas, contract.variables, wiring.accepted)
         )
-        inner = self.component.list_constituents()
+        clamps = tuple(
+            (name, substitute(condition, ends))
+            for machine in self.machines
+            for name, condition in machine.iter_clamps()
+        )
         return ComponentBehaviour(
-            contract, gaps | undescribed, frozenset(undescribed), shared, places, atoms, inner
+            contract,
+            gaps | undescribed,
+            frozenset(undescribed),
+            shared,
+            places,
+            atoms,
+            self.component.list_constituents(),
+            clamps=clamps,
+            reads=tuple(reads for machine in self.machines for reads in machine.iter_reads()),
         )
 
     def _list_shared_writers(

@@ -9,6 +9,7 @@ from msgspec.structs import replace
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic import formula as f
+from sysmlc.logic.basis import Reads
 from sysmlc.logic.components.objects import (
     ComponentError,
     ComponentObject,
@@ -29,6 +30,7 @@ from sysmlc.logic.machines.derivation import (
 from sysmlc.logic.machines.machine import Assign, Machine, Transition, Vertex, element_id
 from sysmlc.logic.machines.moves import (
     Exploration,
+    Move,
     explore_machine,
     is_active_formula,
     is_chosen_formula,
@@ -154,15 +156,40 @@ class PlacedMachine(Struct, frozen=True):
         """Yield the writes of features by the transitions of the machine."""
         for move in self.exploration.moves:
             for path in move.paths:
-                choices = (
-                    is_chosen_formula(*pick)
-                    for pick in iter_choices_on_path(self.exploration, move, path)
-                )
-                condition = self.rename(f.both(move.fires, path.when, *choices))
+                condition = self._path_formula(move, path)
                 for name, value in path.values.items():
                     if name not in self.slots:
                         continue
                     yield MachineWrite(self.slots[name], condition, self.rename(value))
+
+    def _path_formula(self, move: Move, path: Path) -> Formula:
+        """The machine takes a path of a move in this step."""
+        choices = (
+            is_chosen_formula(*pick) for pick in iter_choices_on_path(self.exploration, move, path)
+        )
+        return self.rename(f.both(move.fires, path.when, *choices))
+
+    def iter_reads(self) -> Iterator[Reads]:
+        """Yield the properties with assumed ranges on which variables of the machine depend."""
+        own = {self.variables[name] for name in self.variables.keys() - self.slots.keys()}
+        own |= {self.variables[name] for name in self.machine.assigned}
+        for target, names in self.machine.reads.items():
+            decided = {self.variables[target]} if target else own
+            yield frozenset(decided), frozenset(self.variables[name] for name in names)
+
+    def iter_clamps(self) -> Iterator[tuple[str, Formula]]:
+        """Yield each feature with an assumed range, and when a value is stopped at its bound."""
+        starts = ((f.TRUE, path) for path in self.exploration.starts)
+        steps = (
+            (self._path_formula(move, path), path)
+            for move in self.exploration.moves
+            for path in move.paths
+            if path.saturated
+        )
+        for condition, path in (*starts, *steps):
+            for name, _ in path.saturated:
+                if name in self.machine.assumed:
+                    yield self.variables[name], condition
 
     # -- states ------------------------------------------------------------------------------------
 

@@ -8,6 +8,7 @@ import re
 from collections.abc import Iterator
 
 from msgspec import Struct
+from msgspec.structs import replace
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic.composition.structure import Channels, End, iter_links, iter_usages, join_path
@@ -322,7 +323,11 @@ class ObjectTree:
         deciding = sorted(joined, key=lambda pair: pair[1].direction == "in")
         defaults = (feature.default for _, feature in deciding if feature.default is not None)
         return FeatureSlot(
-            Variable(variable, Owner.SYSTEM, domains[0], first.element.id),
+            replace(
+                first.make_variable(Owner.SYSTEM),
+                name=variable,
+                is_range_assumed=all(feature.is_assumed for _, feature in joined),
+            ),
             next(defaults, None),
             tuple(feature.element for _, feature in joined),
             all(self._is_input(feature) for _, feature in joined)

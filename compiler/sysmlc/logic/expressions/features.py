@@ -6,7 +6,14 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.ir import AttrValue, Element, Graph, Kind, query
-from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, IntegerDomain
+from sysmlc.logic.contract import (
+    BooleanDomain,
+    Domain,
+    EnumerationDomain,
+    IntegerDomain,
+    Owner,
+    Variable,
+)
 from sysmlc.logic.domains import contains, describe
 from sysmlc.logic.expressions.elaboration import ElaborationError, Fault
 from sysmlc.logic.expressions.expression import (
@@ -53,6 +60,13 @@ class Feature(Struct, frozen=True):
     """``in``, ``out`` or ``inout`` as the owner sees it; empty if the feature has none."""
     has_several_values: bool = False
     """Whether the multiplicity allows other than one value; such a feature has no domain."""
+
+    def make_variable(self, owner: Owner) -> Variable:
+        """Return the variable of a feature with a finite domain."""
+        assert self.domain is not None, f"'{self.variable}' has no finite domain"
+        return Variable(
+            self.variable, owner, self.domain, self.element.id, is_range_assumed=self.is_assumed
+        )
 
 
 def make_feature(

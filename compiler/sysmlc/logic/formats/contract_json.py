@@ -133,7 +133,14 @@ def _read_variable(name: str, declaration: object, offset: int) -> Variable:
         owner_offset = owner.offset if isinstance(owner, LocatedText) else declaration.offset
         raise ShapeError(f"the owner of '{name}' is neither 'env' nor 'sys'", owner_offset)
     domain = read_domain(name, declaration.get("type"), declaration.offset)
-    return Variable(name, _OWNERS[owner], domain, text_at(declaration, "origin"))
+    return Variable(
+        name,
+        _OWNERS[owner],
+        domain,
+        text_at(declaration, "origin"),
+        is_range_assumed=declaration.get("assumed") is True and isinstance(domain, IntegerDomain),
+        condition=text_at(declaration, "condition"),
+    )
 
 
 def check_name(name: str, offset: int) -> None:
@@ -258,18 +265,24 @@ def print_contract(contract: Contract) -> str:
         "format": FORMAT,
         "name": contract.component,
         "origin": contract.origin,
-        "variables": {
-            variable.name: {
-                "owner": str(variable.owner),
-                "type": encode_domain(variable.domain),
-                "origin": variable.origin,
-            }
-            for variable in contract.variables
-        },
+        "variables": {variable.name: _encode_variable(variable) for variable in contract.variables},
         "assumptions": _group_by_class(contract.assumptions),
         "guarantees": _group_by_class(contract.guarantees),
     }
     return encode_json(document, 2)
+
+
+def _encode_variable(variable: Variable) -> dict[str, object]:
+    entry: dict[str, object] = {
+        "owner": str(variable.owner),
+        "type": encode_domain(variable.domain),
+        "origin": variable.origin,
+    }
+    if variable.is_range_assumed:
+        entry["assumed"] = True
+    if variable.condition:
+        entry["condition"] = variable.condition
+    return entry
 
 
 def _group_by_class(conjuncts: Iterable[Conjunct]) -> dict[str, list[dict[str, str]]]:

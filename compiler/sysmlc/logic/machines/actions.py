@@ -3,6 +3,8 @@
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from msgspec.structs import replace
+
 from sysmlc.diagnostics import Rule, Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph
 from sysmlc.logic import formula as f
@@ -117,6 +119,8 @@ class ReadingContext:
     auxiliary: dict[str, Variable] = field(default_factory=dict)
     """Variables that are not properties, such as inputs and timers, by a unique key."""
     read_variables: dict[str, None] = field(default_factory=dict)
+    reads: dict[str, dict[str, None]] = field(default_factory=dict)
+    """The features that the values of each feature read; those that conditions read, by ""."""
     assigned_variables: dict[str, None] = field(default_factory=dict)
     output_names: dict[str, None] = field(default_factory=dict)
 
@@ -148,19 +152,27 @@ class ReadingContext:
         """Return the name of the Boolean input with this key; create the input on first use."""
         return self.variable_for(key, name, Owner.ENVIRONMENT, BooleanDomain(), origin)
 
+    def condition_for(self, text: str, name: str, origin: str) -> str:
+        """Return the name of the input for a condition without formula; create it on first use."""
+        key = f"condition {text}"
+        variable = self.input_for(key, name, origin)
+        self.auxiliary[key] = replace(self.auxiliary[key], condition=text or name)
+        return variable
+
     def output_for(self, key: str, name: str, origin: str) -> str:
         """Return the name of the Boolean output with this key; create the output on first use."""
         output = self.variable_for(key, name, Owner.SYSTEM, BooleanDomain(), origin)
         self.output_names[output] = None
         return output
 
-    def record_reads(self, expression: Expression) -> None:
-        """Record the features that the expression reads."""
+    def record_reads(self, expression: Expression, target: str = "") -> None:
+        """Record the features that a condition reads, or the value of a variable *target*."""
         for part in walk_expression(expression):
             name = name_of(part)
             feature = self.context.features.get(name) if name else None
             if feature is not None:
                 self.read_variables[feature.variable] = None
+                self.reads.setdefault(target, {})[feature.variable] = None
                 report_range(self.graph, feature, self.sink)
 
 
@@ -221,7 +233,7 @@ def _replace_by_input(
     *read: Expression,
 ) -> Expression:
     """Report an invalid condition and return the name of the Boolean input that replaces it."""
-    variable = reading.input_for(f"condition {text}", text or what, element.id)
+    variable = reading.condition_for(text, text or what, element.id)
     rule, reason, name, advice = NOT_UNDERSTOOD, str(error), "", _SYNTAX_ADVICE
     if isinstance(error, ElaborationError):
         rule, reason = _classify_fault(reading, error, element, text, *read)
@@ -373,7 +385,7 @@ def _read_assignment(
             context=reading.context.name or "the context",
         )
         return Raise(_effect_output(reading, text, behaviour), behaviour.id)
-    reading.record_reads(statement.value)
+    reading.record_reads(statement.value, feature.variable)
     reading.assigned_variables[feature.variable] = None
     report_range(reading.graph, feature, reading.sink)
     return Assign(feature.variable, statement.value, behaviour.id)

@@ -195,6 +195,9 @@ class Machine(Struct, frozen=True):
     late: dict[str, str] = field(default_factory=dict)
     """The variables for the values of properties after do behaviours have assigned them in the
     present step, by property; the machine of a component alone has them."""
+    reads: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    """The properties without a range that the values of each property read; those that conditions
+    read, by "". A formula names them only where its value is not the same in the whole range."""
 
     def find_variable(self, name: str) -> Variable:
         """Return the variable called *name*."""

@@ -201,10 +201,12 @@ def _assemble(draft: MachineDraft, top: tuple[str, ...]) -> Machine:
     features = {feature.variable: feature for feature in reading.context.features.values()}
     assigned = tuple(name for name in features if name in reading.assigned_variables)
     defaults = {name: features[name].default for name in assigned}
+    properties = _property_variables(reading)
+    assumed = [variable.name for variable in properties if variable.is_range_assumed]
     return Machine(
         draft.machine.id,
         draft.machine.name,
-        (*_event_variable(draft), *_property_variables(reading), *reading.auxiliary.values()),
+        (*_event_variable(draft), *properties, *reading.auxiliary.values()),
         draft.vertices,
         draft.regions,
         draft.outgoing,
@@ -213,8 +215,12 @@ def _assemble(draft: MachineDraft, top: tuple[str, ...]) -> Machine:
         {name: value for name, value in defaults.items() if value is not None},
         tuple(reading.output_names),
         assigned,
-        tuple(name for name in assigned if features[name].is_assumed),
+        tuple(name for name in assigned if name in assumed),
         draft.memories,
+        reads={
+            target: tuple(name for name in names if name in assumed)
+            for target, names in reading.reads.items()
+        },
     )
 
 
@@ -233,5 +239,5 @@ def _property_variables(reading: ReadingContext) -> list[Variable]:
         is_read = feature.variable in reading.read_variables and not feature.is_constant
         if feature.domain is not None and (is_assigned or is_read):
             owner = Owner.SYSTEM if is_assigned else Owner.ENVIRONMENT
-            variables.append(Variable(feature.variable, owner, feature.domain, feature.element.id))
+            variables.append(feature.make_variable(owner))
     return variables

@@ -231,9 +231,7 @@ def scope_of(context: Context, behaviour_variables: Iterable[Variable]) -> Scope
         if feature.is_constant and feature.default is not None:
             constants[feature.variable] = feature.default
         elif feature.domain is not None:
-            feature_variables[feature.variable] = Variable(
-                feature.variable, find_owner(feature), feature.domain, feature.element.id
-            )
+            feature_variables[feature.variable] = feature.make_variable(find_owner(feature))
     by_name = {variable.name: variable for variable in behaviour_variables}
     return Scope(context, feature_variables | by_name, constants)
 

@@ -101,9 +101,7 @@ def _make_call(service: Service) -> tuple[_ServiceCall, list[Variable]]:
 
 
 def _make_variable(feature: Feature) -> Variable:
-    assert feature.domain is not None, "only features with finite domains are in conditions"
-    owner = Owner.ENVIRONMENT if is_input(feature) else Owner.SYSTEM
-    return Variable(feature.variable, owner, feature.domain, feature.element.id)
+    return feature.make_variable(Owner.ENVIRONMENT if is_input(feature) else Owner.SYSTEM)
 
 
 def _derive_assumptions(call: _ServiceCall) -> Iterator[Conjunct]:

@@ -5,6 +5,8 @@ Names and conditions are read with the common expression grammar.
 
 from collections.abc import Iterable, Mapping
 
+from msgspec.structs import replace
+
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic import formula as f
@@ -187,7 +189,7 @@ class Scope:
         ):
             if feature is not None and feature.domain is not None:
                 report_range(self._graph, feature, self._sink)
-                return Variable(name, Owner.ENVIRONMENT, feature.domain, feature.element.id)
+                return feature.make_variable(Owner.ENVIRONMENT)
         return None
 
 
@@ -250,6 +252,7 @@ class Inputs:
         name = self._by_text.get(text)
         if name is None:
             name = self._declare(identifier(text, "condition"), BooleanDomain(), origin)
+            self.variables[name] = replace(self.variables[name], condition=text)
             self._by_text[text] = name
         subject = self.graph.subject(origin)
         self._sink.report(

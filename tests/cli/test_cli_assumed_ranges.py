@@ -1,0 +1,241 @@
+"""Verdicts that rest on an assumption of the compiler name it.
+
+An Integer without a range is taken as 0..15 (SM410); a condition without formula is a free input
+(SM411). Neither is a fact of the model.
+"""
+
+import json
+
+import pytest
+
+
+@pytest.fixture
+def check(workspace, all_passes):
+    """Return a function from a block and formulas to the printed verdicts, in order."""
+
+    def run(block, *formulas):
+        workspace.write("model.sysml", _require(block, formulas))
+        result = workspace.sysmlc("contracts", "check", "-v", "model.sysml")
+        lines = [line.strip() for line in result.stdout.splitlines()]
+        return [line for line in lines if line.startswith("R")]
+
+    return run
+
+
+@pytest.fixture
+def report(workspace, all_passes):
+    """Return a function from a block and formulas to the JSON document about it."""
+
+    def run(block, *formulas):
+        workspace.write("model.sysml", _require(block, formulas))
+        result = workspace.sysmlc("contracts", "check", "--format", "json", "model.sysml")
+        return json.loads(result.stdout)
+
+    return run
+
+
+def _require(block, formulas):
+    requirements = (
+        f"requirement def R{number} {{ subject b : B; "
+        f'require constraint {{ language "ltl" /* {formula} */ }} }}'
+        for number, formula in enumerate(formulas)
+    )
+    head = ("package P {", "private import ScalarValues::*;", "item def Go;", "item def Stop;")
+    return "\n".join((*head, f"part def B {{ {block} }}", *requirements, "}"))
+
+
+# -- ranges --------------------------------------------------------------------------------------
+
+LEVEL = """
+in attribute level : Integer;
+exhibit state M {
+    entry; then B;
+    state B;
+    state A;
+    transition first B if level < 0 then A;
+}"""
+
+
+def test_what_holds_within_an_assumed_range_says_so(check):
+    assert check(LEVEL, "G (state=B -> G state=B)", "G (state=A -> G state=A)") == [
+        "R0: holds within level in 0..15 (assumed): G (state=B -> G state=B)",
+        "R1: holds within level in 0..15 (assumed): G (state=A -> G state=A)",
+    ]
+
+
+def test_the_json_document_lists_assumed_ranges(report):
+    document = report(LEVEL, "G (state=B -> G state=B)")
+    (entry,) = document["requirements"]
+    assert entry["verdict"] == "holds-within-assumed-ranges"
+    assert entry["assumed_ranges"] == ["level in 0..15"]
+    (behaviour,) = document["behaviours"]
+    assert behaviour["unreachable"] == ["A"]
+    assert behaviour["assumed_ranges"] == ["level in 0..15"]
+
+
+def test_findings_about_unreachable_places_name_the_range(report):
+    findings = report(LEVEL, "G (state=B -> G state=B)")["diagnostics"]
+    messages = {finding["code"]: finding["message"] for finding in findings}
+    within = " within level in 0..15 (assumed)"
+    assert messages["SM559"].endswith(f"reaches 'A'{within}")
+    assert messages["SM517"].endswith(f"although runs reach its source{within}")
+
+
+def test_a_declared_range_is_a_fact(check):
+    block = LEVEL.replace(";", "; assert constraint { level >= 0 and level <= 15 }", 1)
+    assert check(block, "G state=B") == ["R0: holds: G (state=B)"]
+
+
+def test_an_integer_that_does_not_matter_is_not_named(check):
+    block = """
+    in attribute level : Integer;
+    attribute x : Integer := 0;
+    exhibit state M {
+        entry; then B;
+        state B;
+        transition first B accept Go do assign x := level then B;
+    }"""
+    assert check(block, "G state=B", "G x <= 15") == [
+        "R0: holds: G (state=B)",
+        "R1: holds within level in 0..15 and x in 0..15 (assumed): G (x<=15)",
+    ]
+
+
+COUNTER = """
+attribute count : Integer := 0;
+exhibit state M {
+    entry; then A;
+    state A;
+    transition first A accept Go do assign count := count + 1 then A;
+}"""
+
+
+def test_a_run_within_the_assumed_range_breaks_a_requirement(check):
+    formulas = "G (count <= 3)", "G (event=Go -> X (count = 1))"
+    assert [line[:10] for line in check(COUNTER, *formulas)] == ["R0: broken", "R1: broken"]
+
+
+def test_a_bound_of_an_assumed_range_neither_proves_nor_refutes(check):
+    formulas = "G (event=Go & count = 15 -> X (count = 16))", "G (count > 14 -> X (count = 15))"
+    stopped, proved = check(COUNTER, *formulas)
+    assert stopped.startswith("R0: not decided: it depends on count in 0..15 (assumed): ")
+    assert proved.startswith("R1: holds within count in 0..15 (assumed): ")
+
+
+def test_a_promise_that_holds_only_at_the_bound_is_not_decided(check):
+    block = COUNTER.replace("accept Go ", "")
+    promised, broken = check(block, "F G (count = 15)", "G (count <= 3)")
+    assert promised.startswith("R0: not decided: it depends on count in 0..15 (assumed): ")
+    assert broken.startswith("R1: broken: ")
+
+
+def test_a_range_in_a_part_has_the_name_of_the_author(check):
+    block = """
+    part tank {
+        in attribute level : Integer;
+        exhibit state M {
+            entry; then B; state B; state A; transition first B if level < 0 then A;
+        }
+    }"""
+    (line,) = check(block, "G tank.state=B")
+    assert line.startswith("R0: holds within tank.level in 0..15 (assumed): ")
+
+
+# -- conditions ----------------------------------------------------------------------------------
+
+ROOM = """
+attribute temp : Real;
+exhibit state M {
+    entry; then A;
+    state A;
+    state B;
+    state C;
+    transition first A if temp < 18.0 then B;
+    transition first A if temp >= 18.0 then C;
+    transition first C accept Go then A;
+}"""
+
+
+def test_a_run_that_depends_on_an_unread_condition_decides_nothing(check):
+    assert check(
+        ROOM, "F !(state=A)", "G !(state=B)", "G !(state=C)", "G (state=B -> X state=B)"
+    ) == [
+        "R0: not decided: it depends on 'temp < 18.0': F !state=A",
+        "R1: not decided: it depends on 'temp < 18.0': G (!state=B)",
+        "R2: not decided: it depends on 'temp >= 18.0': G (!state=C)",
+        "R3: holds: G (state=B -> state'=B)",
+    ]
+
+
+def test_a_run_that_depends_on_an_unread_condition_is_no_error(check, workspace):
+    check(ROOM, "F !(state=A)")
+    result = workspace.sysmlc("contracts", "check", "model.sysml")
+    assert result.exit_code == 0
+    assert "SM560" not in result.stderr + result.stdout
+
+
+def test_the_json_document_lists_unread_conditions(report):
+    document = report(ROOM, "F !(state=A)")
+    (entry,) = document["requirements"]
+    assert entry["verdict"] == "not-decided"
+    assert entry["unread_conditions"] == ["temp < 18.0"]
+    assert entry["reason"] == "it depends on 'temp < 18.0'"
+    messages = [d["message"] for d in document["diagnostics"] if d["code"] == "SM562"]
+    assert [message.rpartition(": ")[2] for message in messages] == ["it depends on 'temp < 18.0'"]
+
+
+def test_a_run_whatever_a_condition_does_breaks_a_requirement(report):
+    block = ROOM.replace("first A if temp < 18.0 then B", "first A accept Stop then B")
+    block = block.replace("first A if temp >= 18.0", "first A accept Go if temp >= 18.0")
+    document = report(block, "G !(state=B)", "G !(state=C)")
+    assert [entry["verdict"] for entry in document["requirements"]] == ["broken", "not-decided"]
+    steps = document["requirements"][0]["witness"]["steps"]
+    assert all("temp" not in name for step in steps for name in step)
+
+
+def test_a_change_of_an_unread_condition_decides_nothing(check):
+    block = """
+    attribute temp : Real;
+    exhibit state M {
+        entry; then A;
+        state A;
+        state B;
+        state C;
+        transition first A accept when temp < 18.0 then B;
+        transition first A accept Go then C;
+    }"""
+    lines = check(block, "G !(state=B)", "G !(state=C)", "G (state=C -> G state=C)")
+    assert lines[0] == "R0: not decided: it depends on 'temp < 18.0': G (!state=B)"
+    assert lines[1:] == ["R1: broken: G (!state=C)", "R2: holds: G (state=C -> G state=C)"]
+
+
+def test_a_decision_with_unread_guards_decides_nothing(check):
+    block = """
+    attribute temp : Real;
+    attribute hot : Boolean := false;
+    perform action run {
+        first start;
+        then action look;
+        then decide choose;
+            if temp > 20.5 then heat;
+            if temp <= 20.5 then done;
+        action heat assign hot := true;
+        first heat then done;
+    }"""
+    lines = check(block, "G !hot", "G !running(look)")
+    assert lines == [
+        "R0: not decided: it depends on 'temp > 20.5': G (!hot)",
+        "R1: broken: G !running(look)",
+    ]
+
+
+def test_a_violation_in_a_part_does_not_depend_on_conditions_of_another(check):
+    block = """
+    part room { attribute temp : Real; exhibit state M {
+        entry; then A; state A; state B; transition first A if temp < 18.0 then B;
+        transition first A if temp >= 18.0 then B;
+    } }
+    part door { exhibit state M {
+        entry; then Shut; state Shut; state Open; transition first Shut accept Go then Open;
+    } }"""
+    assert check(block, "G door.state=Shut") == ["R0: broken: G door.state=Shut"]

@@ -1,0 +1,42 @@
+"""No answer without a reservation is contradicted by a block that is played in a wider range."""
+
+import json
+from random import Random
+
+import pytest
+from assumed_blocks import LEVELS, REQUIRED, ExploredBlock, make_block, write_block
+from click.testing import CliRunner
+
+from long_runs import quick_first
+from sysmlc.cli import group
+
+BLOCKS = 8
+
+
+@pytest.mark.parametrize("seed", quick_first(range(40), 2))
+def test_answers_without_reservation_hold_in_a_wider_range(seed, tmp_path):
+    random = Random(seed)
+    path = tmp_path / "block.sysml"
+    for _ in range(BLOCKS):
+        block = make_block(random)
+        text = write_block(block)
+        path.write_text(text, "utf-8")
+        arguments = ["contracts", "check", "--format", "json", str(path)]
+        result = CliRunner().invoke(group.sysmlc, arguments, catch_exceptions=False)
+        document = json.loads(result.stdout)
+        wide, narrow = ExploredBlock(block, LEVELS[0], LEVELS[-1]), ExploredBlock(block, 0, 15)
+        for formula, entry in zip(REQUIRED, document["requirements"], strict=True):
+            answer = entry["verdict"], bool(entry["assumed_ranges"])
+            if answer == ("holds", False):
+                assert not wide.violates(formula), (formula, text)
+            elif answer == ("holds-within-assumed-ranges", True):
+                assert not narrow.violates(formula), (formula, text)
+            elif answer == ("broken", False):
+                assert wide.violates(formula), (formula, text)
+            else:
+                assert entry["verdict"] == "not-decided", (formula, text)
+                assert entry["reason"], (formula, text)
+        for behaviour in document["behaviours"]:
+            explored = narrow if behaviour["assumed_ranges"] else wide
+            states = {state for state, _ in explored.reached}
+            assert states.isdisjoint(name[-1] for name in behaviour["unreachable"]), text
