@@ -239,3 +239,60 @@ def test_a_violation_in_a_part_does_not_depend_on_conditions_of_another(check):
         entry; then Shut; state Shut; state Open; transition first Shut accept Go then Open;
     } }"""
     assert check(block, "G door.state=Shut") == ["R0: broken: G door.state=Shut"]
+
+
+# -- contracts -----------------------------------------------------------------------------------
+
+LAMP = """{{"format": "sysmlc-contract/1", "name": "Lamp", "origin": "",
+ "variables": {{
+  "hot": {{"owner": "env", "type": "bool", "origin": "", "condition": "temp > 80.0"}},
+  "level": {{"owner": "sys", "type": [0, 15], "origin": "", "assumed": true}},
+  "lamp": {{"owner": "sys", "type": "bool", "origin": ""}}}},
+ "assumptions": {{"init": [], "safety": [], "liveness": [], "other": []}},
+ "guarantees": {{"init": [], "liveness": [], "other": [], "safety": [
+  {{"formula": "{}", "class": "safety", "origin": "", "text": ""}}]}}}}"""
+
+
+def write_lamp(workspace, name, formula):
+    workspace.write(f"{name}.contract.json", LAMP.format(formula))
+
+
+def test_a_contract_names_its_assumed_ranges(workspace, all_passes):
+    write_lamp(workspace, "lamp", "lamp' <-> hot'")
+    result = workspace.sysmlc("synth", "lamp.contract.json", "--realizable")
+    assert result.stdout.startswith("Lamp: realizable within level in 0..15 (assumed) (")
+    assert result.exit_code == 0
+
+
+def test_an_unread_condition_makes_no_contract_unrealizable(workspace, all_passes):
+    write_lamp(workspace, "lamp", "lamp <-> hot'")
+    result = workspace.sysmlc("synth", "lamp.contract.json", "--realizable")
+    assert "Lamp: not decided" in result.stdout
+    message = "a system can satisfy the contract of 'Lamp': it depends on 'temp > 80.0'"
+    assert message in result.stdout + result.stderr
+    assert result.exit_code == 2
+
+
+def test_a_refinement_names_what_it_rests_on(workspace, all_passes):
+    write_lamp(workspace, "strong", "lamp' <-> hot'")
+    write_lamp(workspace, "weak", "lamp' -> hot'")
+    files = "weak.contract.json", "strong.contract.json"
+    result = workspace.sysmlc("contracts", "refine", *files)
+    assert result.stdout == "Lamp refines Lamp within level in 0..15 (assumed)\n"
+    result = workspace.sysmlc("contracts", "refine", *files[::-1], "--format", "json")
+    (entry,) = json.loads(result.stdout)["requirements"]
+    assert entry["verdict"] == "not-decided"
+    assert entry["unread_conditions"] == ["temp > 80.0"]
+    assert result.exit_code == 2
+
+
+def test_contract_files_and_pages_mark_ranges_and_conditions(workspace, all_passes):
+    block = ROOM.replace("state C;", "state C; transition first C accept Stop if level < 3 then B;")
+    workspace.write("model.sysml", _require(f"in attribute level : Integer;{block}", ()))
+    assert workspace.sysmlc("model.sysml", "-o", "out").exit_code == 0
+    contract = json.loads(workspace.read("out/contracts/P.B.contract.json"))
+    assert contract["variables"]["level"]["assumed"] is True
+    assert contract["variables"]["temp_18_0"]["condition"] == "temp < 18.0"
+    page = workspace.read("out/contracts/P.B.md")
+    assert "| `level` | 0..15 (assumed) |" in page
+    assert "| `temp_18_0` | Boolean, stands for `temp < 18.0` |" in page

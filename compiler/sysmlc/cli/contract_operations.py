@@ -147,8 +147,12 @@ def refine_command(
     settings = session.Settings(**setting_values)
     whole, part = _read_both((abstract, concrete), language, settings)
     comparisons, obstacle = _compare(whole, part, seconds)
-    runs = [(item.conjunct, item.trace) for item in comparisons if item.trace is not None]
-    is_decided = not obstacle
+    runs = [
+        (item.conjunct, item.trace)
+        for item in comparisons
+        if item.trace is not None and item.is_decided
+    ]
+    is_decided = not obstacle and all(item.is_decided for item in comparisons)
     if output is not None:
         parties = (Party(part.contract.component, part.contract),)
         name = part.contract.component
@@ -160,7 +164,8 @@ def refine_command(
     _print_findings([whole.file, part.file], settings, {"requirements": entries})
     if is_decided or runs:
         verb = "does not refine" if runs else "refines"
-        line = f"{part.contract.component} {verb} {whole.contract.component}"
+        within = comparisons[0].basis.range_text if comparisons else ""
+        line = f"{part.contract.component} {verb} {whole.contract.component}{within}"
         terminal.echo(line, err=not reports.allows_sentences(settings))
     ctx.exit(1 if runs else 0 if is_decided else 2)
 
@@ -193,6 +198,16 @@ def _compare(
             if compared.trace is None:
                 continue
             owner = concrete if compared.is_assumption else abstract
+            if not compared.is_decided:
+                verb = "assumes no more than" if compared.is_assumption else "guarantees"
+                owner.file.sink.report(
+                    rules.DEPENDS,
+                    owner.find_subject(compared.conjunct),
+                    question=f"'{concrete.contract.component}' {verb} "
+                    f"'{print_temporal(compared.conjunct)}'",
+                    reason=compared.basis.reason,
+                )
+                continue
             owner.file.sink.report(
                 rules.ASSUMES_MORE if compared.is_assumption else rules.GUARANTEES_LESS,
                 owner.find_subject(compared.conjunct),
@@ -212,6 +227,7 @@ def _list_verdicts(
     abstract: Operand, concrete: Operand, comparisons: "list[Comparison]", obstacle: str
 ) -> "Iterator[dict[str, object]]":
     """Yield an entry for each conjunct; those after an obstacle are not decided."""
+    from sysmlc.logic.basis import Basis
     from sysmlc.synthesis.witnesses import print_temporal
 
     sides = [(concrete, conjunct) for conjunct in concrete.contract.assumptions]
@@ -219,9 +235,13 @@ def _list_verdicts(
     for number, (owner, conjunct) in enumerate(sides):
         is_decided = number < len(comparisons)
         trace = comparisons[number].trace if is_decided else None
-        verdict, reason = "holds", None
+        basis = comparisons[number].basis if is_decided else Basis()
+        verdict = "holds-within-assumed-ranges" if basis.ranges else "holds"
+        reason = None
         if not is_decided:
             verdict, reason = "not-decided", obstacle
+        elif not comparisons[number].is_decided:
+            verdict, reason, trace = "not-decided", basis.reason, None
         elif trace is not None:
             verdict = "broken"
             reason = (
@@ -238,6 +258,8 @@ def _list_verdicts(
             "needs": [],
             "witness": trace and {"steps": [*map(dict, trace.steps)], "loop": trace.loop},
             "reason": reason,
+            "assumed_ranges": list(basis.ranges),
+            "unread_conditions": list(basis.conditions) if verdict == "not-decided" else [],
         }
 
 

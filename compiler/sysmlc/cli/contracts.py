@@ -172,7 +172,8 @@ def _format_result(result: "CheckedContract", is_verbose: bool) -> "Iterator[str
     text = words[verdict.is_realizable]
     if result.is_checked_by_behaviour and verdict.is_realizable is None:
         text = "checked one by one"
-    yield f"{verdict.component}: {text}{_summarise_requirements(result)}"
+    within = "" if verdict.is_realizable is None else verdict.basis.range_text
+    yield f"{verdict.component}: {text}{within}{_summarise_requirements(result)}"
     yield from describe_verdicts(result, is_verbose)
 
 
@@ -187,7 +188,7 @@ def _summarise_requirements(result: "CheckedContract") -> str:
         count = answers.count("not-decided")
         return f", {count} of {len(answers)} requirements not decided"
     ranges = dict.fromkeys(text for item in result.requirements for text in item.basis.ranges)
-    within = Basis(tuple(ranges)).within
+    within = Basis(tuple(ranges)).range_text
     needed = (ending for requirement in result.requirements for ending in requirement.needed)
     condition = describe_needs(needed)
     if condition:
@@ -223,7 +224,7 @@ def describe_verdicts(result: "CheckedContract", is_verbose: bool) -> Iterator[s
             if verdict.answer == "not-decided" and verdict.basis != Basis():
                 words = f"not decided: {verdict.reason}"
             else:
-                words += verdict.basis.within
+                words += verdict.basis.range_text
             yield f"  {name}{words}: {print_temporal(verdict.conjunct)}"
 
 

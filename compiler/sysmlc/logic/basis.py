@@ -24,7 +24,7 @@ class Basis(Struct, frozen=True):
     conditions: tuple[str, ...] = ()
 
     @property
-    def within(self) -> str:
+    def range_text(self) -> str:
         """The phrase behind an answer about all runs; empty if no range is assumed."""
         return f" within {_enumerate(self.ranges)} (assumed)" if self.ranges else ""
 
@@ -36,10 +36,10 @@ class Basis(Struct, frozen=True):
         return f"it depends on {_enumerate((*conditions[:_SHOWN], *ranges), len(conditions))}"
 
     @property
-    def doubt(self) -> str:
+    def reservation(self) -> str:
         """The phrase behind a finding that may rest on both; empty without them."""
         reason = Basis(conditions=self.conditions).reason if self.conditions else ""
-        return f"{self.within}{reason and f'; {reason}'}"
+        return f"{self.range_text}{reason and f'; {reason}'}"
 
 
 def _enumerate(texts: Sequence[str], count: int = 0) -> str:

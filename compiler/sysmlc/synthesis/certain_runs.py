@@ -55,7 +55,7 @@ class CertainRuns(Struct, frozen=True):
         )
         return tuple(dict.fromkeys(names))
 
-    def without(self, name: str) -> "CertainRuns":
+    def ignore(self, name: str) -> "CertainRuns":
         """Return the restriction that ignores a variable."""
         return CertainRuns(
             tuple(condition for condition in self.conditions if condition[0] != name),

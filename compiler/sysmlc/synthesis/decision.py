@@ -15,6 +15,7 @@ from msgspec.structs import replace
 
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic import formula as f
+from sysmlc.logic.basis import Basis, find_basis
 from sysmlc.logic.contract import Class, Conjunct, Contract, Domain, IntegerDomain
 from sysmlc.logic.formula import Apply, Const, Op, Var
 from sysmlc.logic.printing import print_formula
@@ -80,6 +81,8 @@ class Verdict(Struct, frozen=True):
     is_realizable: bool | None
     """None if that is not decided."""
     figures: Figures | None = None
+    basis: Basis = Basis()
+    """The ranges that are assumed and the conditions without formula in the contract."""
 
     @property
     def exit_code(self) -> int:
@@ -90,7 +93,8 @@ class Verdict(Struct, frozen=True):
         """Return the verdict on one line, with figures."""
         words = {None: "not decided", True: "realizable", False: "unrealizable"}
         figures = f" ({self.figures.text()})" if self.figures else ""
-        return f"{self.component}: {words[self.is_realizable]}{figures}"
+        within = "" if self.is_realizable is None else self.basis.range_text
+        return f"{self.component}: {words[self.is_realizable]}{within}{figures}"
 
 
 class Decision(Struct, frozen=True):
@@ -132,6 +136,11 @@ def decide_game(contract: Contract, place: Place, sink: Sink, options: Options) 
         seconds = time.process_time() - start_time
         _report_limit(contract, problem, seconds, current_activity[0], place, sink)
         return Decision(Verdict(contract.component, None))
+    basis = find_basis((contract,))
+    if not solution.is_realizable and basis.conditions:
+        question = f"a system can satisfy the contract of '{contract.component}'"
+        sink.report(rules.DEPENDS, place(contract.origin), question=question, reason=basis.reason)
+        return Decision(Verdict(contract.component, None))
     if not solution.is_realizable:
         reasons = tuple(explain_unrealizability(game, contract)) if options.is_explained else ()
         sink.report(
@@ -139,9 +148,10 @@ def decide_game(contract: Contract, place: Place, sink: Sink, options: Options) 
             place(contract.origin),
             notes=reasons,
             component=contract.component,
+            within=basis.range_text,
         )
     figures = _collect_figures(contract, game, solution)
-    verdict = Verdict(contract.component, solution.is_realizable, figures)
+    verdict = Verdict(contract.component, solution.is_realizable, figures, basis)
     return Decision(verdict, encoded, solution.arena)
 
 

@@ -244,7 +244,7 @@ class BehaviourCheck:
             Answer.HOLDS_IF_ACTIONS_END if endings else answer,
             _explain_needs(needed),
             needed=needed,
-            vacuity=vacuity and vacuity + basis.within,
+            vacuity=vacuity and vacuity + basis.range_text,
             basis=basis,
         )
 
@@ -385,7 +385,7 @@ class BehaviourCheck:
         if trace is not None:
             return trace, Basis()
         for name in reversed(runs.doubts):
-            fewer = runs.without(name)
+            fewer = runs.ignore(name)
             try:
                 if self._find_run(fewer, all_facts, conjunct) is None:
                     runs = fewer
@@ -452,7 +452,7 @@ def report_unreachable(
                     place(unreached.origin),
                     component=component,
                     name=unreached.name,
-                    within=find_place_basis(unreached, behaviour, requirements).within,
+                    within=find_place_basis(unreached, behaviour, requirements).range_text,
                 )
 
 

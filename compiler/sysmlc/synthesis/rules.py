@@ -20,7 +20,7 @@ UNREALIZABLE = rule(
     "SM532",
     "contract-unrealizable",
     Severity.ERROR,
-    "no system can satisfy the contract of '{component}'",
+    "no system can satisfy the contract of '{component}'{within}",
     help="weaken the guarantees, or assume more of the environment",
 )
 NO_MACHINE = rule(
@@ -55,7 +55,7 @@ NO_ENVIRONMENT = rule(
     "SM533",
     "assumptions-unsatisfiable",
     Severity.ERROR,
-    "the assumptions of '{component}' are unsatisfiable",
+    "the assumptions of '{component}' are unsatisfiable{within}",
     help="weaken the assumptions; no run satisfies all of them",
 )
 DEADLOCK = rule(
@@ -63,7 +63,7 @@ DEADLOCK = rule(
     "environment-deadlock",
     Severity.WARNING,
     "the environment of '{component}' can reach a state in which its assumptions allow "
-    "no next step: {detail}",
+    "no next step: {detail}{within}",
     help="write the assumption about the next step (x' instead of x), so that the state is "
     "never reached",
 )
@@ -71,14 +71,14 @@ NOT_SEPARATED = rule(
     "SM535",
     "not-well-separated",
     Severity.WARNING,
-    "'{component}' can force its environment to violate the assumptions{detail}",
+    "'{component}' can force its environment to violate the assumptions{detail}{within}",
     help="assume only what the environment can satisfy whatever the component does",
 )
 NO_FRAME = rule(
     "SM536",
     "output-without-frame",
     Severity.WARNING,
-    "output '{name}' of '{component}' may change freely {detail}",
+    "output '{name}' of '{component}' may change freely {detail}{within}",
     help="add a guarantee for the steps in which it stays unchanged ({name}'={name})",
 )
 WRONG_OWNER = rule(
@@ -92,7 +92,8 @@ NO_FAIRNESS = rule(
     "SM538",
     "fairness-missing",
     Severity.WARNING,
-    "'{component}' could satisfy its contract if its environment did not wait forever{detail}",
+    "'{component}' could satisfy its contract if its environment did not wait forever{detail}"
+    "{within}",
     help="add a liveness assumption",
 )
 INITIAL_INPUT = rule(
@@ -113,14 +114,14 @@ IDLE = rule(
     "SM541",
     "vacuous-win",
     Severity.WARNING,
-    "'{component}' satisfies its contract without ever acting",
+    "'{component}' satisfies its contract without ever acting{within}",
     help="guarantee something that only an action achieves",
 )
 NEEDLESS = rule(
     "SM542",
     "fairness-not-needed",
     Severity.WARNING,
-    "'{component}' satisfies its liveness guarantees without the fairness assumptions",
+    "'{component}' satisfies its liveness guarantees without the fairness assumptions{within}",
     help="relate the guarantees to the assumptions, or remove the assumptions",
 )
 
@@ -162,6 +163,13 @@ ASSUMES_MORE = rule(
     Severity.ERROR,
     "'{concrete}' assumes '{formula}', which the assumptions of '{abstract}' do not imply{context}",
     help="assume less, or let the abstract contract assume it, too; the run shows an environment",
+)
+DEPENDS = rule(
+    "SM547",
+    "depends-on-unread-condition",
+    Severity.WARNING,
+    "it is not decided whether {question}: {reason}",
+    help="use values that have a formula: Booleans, enumerations, or Integers with a range",
 )
 NOT_COMPARABLE = rule(
     "SM529",

@@ -14,6 +14,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.logic import formula as f
+from sysmlc.logic.basis import Basis, find_basis
 from sysmlc.logic.contract import Class, Conjunct, Contract
 from sysmlc.logic.reduction.contract_reduction import as_ltl, is_gr1
 from sysmlc.synthesis.algebra.fair_systems import (
@@ -224,12 +225,19 @@ class Failure(Struct, frozen=True):
 class Comparison(Struct, frozen=True):
     """A conjunct that refinement is about, and a run that violates it, or None if it is entailed.
 
-    ``is_assumption`` has the meaning of that of ``Failure``.
+    ``is_assumption`` has the meaning of that of ``Failure``. ``basis`` are the assumed ranges and
+    the conditions without formula in both contracts.
     """
 
     conjunct: Conjunct
     is_assumption: bool
     trace: Trace | None
+    basis: Basis = Basis()
+
+    @property
+    def is_decided(self) -> bool:
+        """Whether the answer holds whatever the values of conditions without formula are."""
+        return self.trace is None or not self.basis.conditions
 
 
 def compare_conjuncts(
@@ -242,13 +250,13 @@ def compare_conjuncts(
     the concrete guarantees entail the abstract guarantees. The conjuncts are in any LTL. Raises
     DomainError, OutsideGr1Error, NotReducibleError, LimitError.
     """
-    search = RunSearch((concrete, abstract), new_manager)
+    search, basis = RunSearch((concrete, abstract), new_manager), find_basis((concrete, abstract))
     facts = abstract.assumptions
     for assumption in concrete.assumptions:
-        yield Comparison(assumption, True, search.find_violation(facts, assumption))
+        yield Comparison(assumption, True, search.find_violation(facts, assumption), basis)
     facts = (*abstract.assumptions, *concrete.guarantees)
     for guarantee in abstract.guarantees:
-        yield Comparison(guarantee, False, search.find_violation(facts, guarantee))
+        yield Comparison(guarantee, False, search.find_violation(facts, guarantee), basis)
 
 
 def find_refinement_failures(

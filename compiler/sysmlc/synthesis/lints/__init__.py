@@ -6,6 +6,7 @@ Lints of the text come first, then those that explore runs and solve games.
 from collections.abc import Callable, Iterator
 
 from sysmlc.diagnostics import Sink, Subject
+from sysmlc.logic.basis import find_basis
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
 from sysmlc.synthesis import rules
@@ -41,6 +42,7 @@ def lint(
     what they leave open. Raises OutsideGr1Error for a contract that GR(1) cannot express,
     LimitError.
     """
+    within = find_basis((contract,)).reservation
     for finding in _find_all(contract, create_manager):
         if has_behaviour and finding.rule in _LEFT_OPEN:
             continue
@@ -53,6 +55,7 @@ def lint(
             formula=formula,
             name=finding.name,
             detail=finding.detail,
+            within=within,
         )
 
 
