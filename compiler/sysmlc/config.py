@@ -92,17 +92,20 @@ def find_project_root(start: Path) -> Path:
     return folder
 
 
-def find_boundary(output: Path) -> Path:
+def find_boundary(output: Path, inputs: Iterable[Path] = ()) -> Path:
     """Return the folder outside which ``-o output`` must not write: the project around *output*.
 
     A user may name any folder. But if the path, as it is written, lies in a project, its symbolic
-    links may come from the repository, so that they must not lead out of the project. Outside of
-    projects the result is *output* itself.
+    links may come from the repository, so that they must not lead out of the project. The project
+    of an input is one even if it has neither ``sysmlc.toml`` nor ``.git``. Outside of projects the
+    result is *output* itself.
     """
-    for folder in Path(os.path.abspath(output)).parents:  # noqa: PTH100 - links stay as written
+    path = Path(os.path.abspath(output))  # noqa: PTH100 - links stay as written
+    for folder in path.parents:
         if (folder / FILE_NAME).is_file() or (folder / ".git").exists():
             return folder
-    return output
+    roots = [root for root in map(find_project_root, inputs) if root in path.parents]
+    return max(roots, key=lambda root: len(root.parts), default=output)
 
 
 def find_config_file(start: Path) -> Path | None:

@@ -147,7 +147,11 @@ def test_parts_of_a_block_are_composed_and_violating_runs_are_drawn(workspace, a
         "Line::Cell: realizable\nLine::Cell: its 2 parts together violate its contract\n"
     )
     assert "error[SM595 part-assumption-open]: part 'picker' of 'Line::Cell'" in result.stderr
-    assert workspace.list_files("out") == ["Line.Cell.run1.puml", "Line.Cell.run2.puml"]
+    assert workspace.list_files("out") == [
+        "Line.Cell.run1.puml",
+        "Line.Cell.run2.puml",
+        "manifest.results.json",
+    ]
 
 
 def test_errors_of_the_model_are_reported_when_it_has_no_contracts(workspace, all_passes):

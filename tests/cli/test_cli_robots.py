@@ -42,6 +42,7 @@ def test_a_successful_mission_is_exit_code_0_and_described_in_files(workspace, r
         "Plant::Hall: 6 cells, 2 robots, 2 targets: done in 7 steps at most, from 1 start\n"
     )
     assert workspace.list_files() == [
+        "manifest.results.json",
         "robots/Plant.Hall.md",
         "robots/Plant.Hall.mission.contract.json",
         "robots/Plant.Hall.robot.machine.json",

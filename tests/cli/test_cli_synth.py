@@ -140,7 +140,11 @@ def test_machines_are_written_to_the_output_folder(workspace):
     result = workspace.sysmlc("synth", "lamp.gr1.json", "-o", "out")
     assert result.exit_code == 0
     assert result.stdout.endswith("; machine: 2 states, 3 moves, checked\n")
-    assert workspace.list_files() == ["lamp.machine.json", "lamp.machine.puml"]
+    assert workspace.list_files() == [
+        "lamp.machine.json",
+        "lamp.machine.puml",
+        "manifest.results.json",
+    ]
 
 
 def test_an_unrealizable_contract_has_no_machine_but_an_unrealizable_core(workspace):
@@ -159,6 +163,7 @@ def test_a_counter_strategy_is_written_and_is_a_valid_model(workspace):
         "lamp.counter-run.puml",
         "lamp.counter.puml",
         "lamp.counter.sysml",
+        "manifest.results.json",
     ]
     assert workspace.sysmlc("check", "out/lamp.counter.sysml").exit_code == 0
 

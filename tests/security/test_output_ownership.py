@@ -318,12 +318,12 @@ def test_other_commands_do_not_write_through_a_link(project):
     project.write("gate.ltl", "G (request -> F grant)\n")
     project.write("gate.part", ".inputs request\n.outputs grant\n")
     assert project.run("synth", "gate.ltl", "-o", "gen").exit_code == 0
-    (machine,) = (project.folder / "gen").glob("*.json")
+    (machine,) = (project.folder / "gen").glob("*.machine.json")
     machine.unlink()
     machine.symlink_to("../plant.ir")
     before = project.snapshot()
     result = project.run("synth", "gate.ltl", "-o", "gen")
-    assert (result.exit_code, "is a link or in the way; remove it" in result.stderr) == (2, True)
+    assert (result.exit_code, "is not written: it is a link" in result.stderr) == (2, True)
     assert project.snapshot() == before
 
 

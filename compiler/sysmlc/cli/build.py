@@ -41,12 +41,7 @@ Examples:
     is_flag=True,
     help="Write nothing; list the files that are not up to date, and exit with 1 if there are any.",
 )
-@click.option(
-    "--force",
-    "is_forced",
-    is_flag=True,
-    help="Replace files that sysmlc did not write, or that were edited after it wrote them.",
-)
+@options.force
 @click.pass_context
 def command(
     ctx: click.Context,

@@ -13,6 +13,7 @@ from sysmlc.support.escapes import escape_undecodable
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
+    from sysmlc.backends.base import InputFile
     from sysmlc.cli.session import Settings
     from sysmlc.config import Config
     from sysmlc.diagnostics import Sink, Subject
@@ -36,6 +37,7 @@ class ContractFile(Struct, frozen=True):
     place: "Place"
     findings: "tuple[Finding, ...]"
     sources: "tuple[Source, ...]"
+    inputs: "tuple[InputFile, ...]"
     root: Path
     is_whole: bool = True
     """Whether every contract of the file could be read."""
@@ -124,6 +126,7 @@ def _read_model(file: Path, config: "Config", settings: "Settings") -> ContractF
         place,
         findings,
         compilation.sources,
+        compilation.inputs,
         compilation.root,
         behaviours={behaviour.contract.component: behaviour for behaviour in behaviours},
         requirements=tuple(list_stated_requirements(compilation.graph, contracts, reasons)),
@@ -132,6 +135,7 @@ def _read_model(file: Path, config: "Config", settings: "Settings") -> ContractF
 
 
 def _read_specification(file: Path, language: str, config: "Config") -> ContractFile:
+    from sysmlc.backends.base import InputFile
     from sysmlc.cli.session import fail
     from sysmlc.diagnostics import Sink
     from sysmlc.logic import formats
@@ -157,7 +161,10 @@ def _read_specification(file: Path, language: str, config: "Config") -> Contract
         contract if contract.component else replace(contract, component=name) for contract in read
     )
     is_whole = not sink.has_errors()
-    return ContractFile(contracts, (), sink, _locate_in_text, (), (source,), Path.cwd(), is_whole)
+    inputs = (InputFile(source.name, source.sha256, "contract"),)
+    return ContractFile(
+        contracts, (), sink, _locate_in_text, (), (source,), inputs, Path.cwd(), is_whole
+    )
 
 
 def _read_part_file(file: Path, formula: bytes) -> str:
@@ -195,14 +202,16 @@ def show_results(
     settings: "Settings",
     lines: "Iterable[str]",
     details: "Mapping[str, object] | None" = None,
+    refusals: "Sequence[Finding]" = (),
 ) -> None:
     """Print the findings about a file and its contracts, then a line for each contract.
 
-    The format JSON contains the *details*, such as the verdicts about requirements.
+    The format JSON contains the *details*, such as the verdicts about requirements. *refusals* are
+    the reasons why no results were written.
     """
     from sysmlc.cli import reports
 
-    reports.print_findings(list_findings(read), settings, dict(details or {}))
+    reports.print_findings([*list_findings(read), *refusals], settings, dict(details or {}))
     for line in lines:
         terminal.echo(line, err=not reports.allows_sentences(settings))
 

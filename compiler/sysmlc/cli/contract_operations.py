@@ -3,7 +3,7 @@
 An operand is a file, or ``FILE#COMPONENT`` for one contract of a file with several.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from sysmlc.cli.session import Settings
     from sysmlc.config import Config
     from sysmlc.diagnostics import Subject
+    from sysmlc.diagnostics.renderers import Finding
     from sysmlc.logic.contract import Conjunct, Contract
     from sysmlc.synthesis.algebra.refinement import Comparison
 
@@ -66,15 +67,17 @@ def _read_operand(text: str, language: str, config: "Config", settings: "Setting
 
 
 def _print_findings(
-    files: "list[ContractFile]", settings: "Settings", details: Mapping[str, object] = _NO_DETAILS
+    files: "list[ContractFile]",
+    settings: "Settings",
+    details: Mapping[str, object] = _NO_DETAILS,
+    refusals: "Sequence[Finding]" = (),
 ) -> None:
     from sysmlc.cli import reports
     from sysmlc.cli.contract_files import list_findings
 
     unique = {id(file): file for file in files}.values()
-    reports.print_findings(
-        [item for file in unique for item in list_findings(file)], settings, details
-    )
+    findings = [item for file in unique for item in list_findings(file)]
+    reports.print_findings([*findings, *refusals], settings, details)
 
 
 def _report_obstacle(problem: Exception, work: str, first: Operand, second: Operand) -> None:
@@ -153,21 +156,22 @@ def refine_command(
         if item.trace is not None and item.is_decided
     ]
     is_decided = not obstacle and all(item.is_decided for item in comparisons)
+    refusals: list[Finding] = []
     if output is not None:
         parties = (Party(part.contract.component, part.contract),)
         name = part.contract.component
-        reports.write_files(
-            witness_files(Witness(name, conjunct, trace, parties) for conjunct, trace in runs),
-            output,
+        witnesses = (Witness(name, conjunct, trace, parties) for conjunct, trace in runs)
+        refusals = reports.publish_results(
+            "contracts", witness_files(witnesses), output, [whole.file, part.file], settings
         )
     entries = [*_list_verdicts(whole, part, comparisons, obstacle)]
-    _print_findings([whole.file, part.file], settings, {"requirements": entries})
+    _print_findings([whole.file, part.file], settings, {"requirements": entries}, refusals)
     if is_decided or runs:
         verb = "does not refine" if runs else "refines"
         within = comparisons[0].basis.range_text if comparisons else ""
         line = f"{part.contract.component} {verb} {whole.contract.component}{within}"
         terminal.echo(line, err=not reports.allows_sentences(settings))
-    ctx.exit(1 if runs else 0 if is_decided else 2)
+    ctx.exit(2 if refusals else 1 if runs else 0 if is_decided else 2)
 
 
 def _compare(
@@ -281,6 +285,7 @@ def _add_operation(
         metavar="FILE",
         help="Write the contract there, in the format of the ending.  [default: print JSON]",
     )
+    @options.force
     @_LANGUAGE
     @options.question_limit(default=10.0)
     @options.reporting
@@ -304,10 +309,12 @@ def _add_operation(
             session.fail(f"with --format {settings.form}, give the contract a file with -o")
         operands = _read_both((first, second), language, settings)
         contract = _operate(_load_operation(name), operands, participle, seconds)
-        _print_findings([operand.file for operand in operands], settings)
+        files = [operand.file for operand in operands]
         if contract is None:
+            _print_findings(files, settings)
             ctx.exit(2)
-        _write_result(contract, output, format_name)
+        if not _write_result(contract, output, format_name, files, settings):
+            ctx.exit(2)
 
     return operation_command
 
@@ -356,8 +363,15 @@ def _choose_format(output: Path | None) -> str:
     return next(iter(matches), "contract")
 
 
-def _write_result(contract: "Contract", output: Path | None, format_name: str) -> None:
-    from sysmlc.cli.reports import write_files
+def _write_result(
+    contract: "Contract",
+    output: Path | None,
+    format_name: str,
+    operands: "list[ContractFile]",
+    settings: "Settings",
+) -> bool:
+    """Print the findings and write the contract; return whether it was written."""
+    from sysmlc.cli.reports import publish_results
     from sysmlc.cli.session import fail
     from sysmlc.logic import formats
     from sysmlc.logic.printing import print_formula
@@ -365,17 +379,24 @@ def _write_result(contract: "Contract", output: Path | None, format_name: str) -
     try:
         text = formats.write(contract, format_name)
     except formats.NotExpressibleError as problem:
+        _print_findings(operands, settings)
         formula = f"'{print_formula(problem.conjunct.formula)}'" if problem.conjunct else "it"
         fail(f"the contract cannot be written for {format_name}: {formula}: {problem.reason}")
     if output is None:
+        _print_findings(operands, settings)
         terminal.echo_text(text.removesuffix("\n"))
-        return
-    write_files([(output.name, text)], output.parent)
+        return True
+    files = [(output.name, text)]
+    refusals = publish_results("contracts", files, output.parent, operands, settings)
+    _print_findings(operands, settings, refusals=refusals)
+    if refusals:
+        return False
     counts = (len(contract.assumptions), "assumptions"), (len(contract.guarantees), "guarantees")
     summary = ", ".join(
         f"{count} {word if count != 1 else word.removesuffix('s')}" for count, word in counts
     )
     terminal.echo(f"{contract.component}: {summary}")
+    return True
 
 
 COMMANDS = (

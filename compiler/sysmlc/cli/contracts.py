@@ -15,6 +15,7 @@ from sysmlc.cli.recorded_runs import accept_command
 if TYPE_CHECKING:
     from sysmlc.cli.contract_files import ContractFile
     from sysmlc.cli.session import Settings
+    from sysmlc.diagnostics.renderers import Finding
     from sysmlc.logic.contract import Composite
     from sysmlc.logic.requirements.statements import StatedRequirement
     from sysmlc.recipe.recipe_times import LimitVerdict
@@ -100,7 +101,7 @@ def _check(
     output: Path | None,
 ) -> int:
     from sysmlc.cli.contract_files import select_contracts, show_results
-    from sysmlc.cli.reports import write_files
+    from sysmlc.cli.reports import publish_results
     from sysmlc.synthesis.composition_check import check_compositions
     from sysmlc.synthesis.contract_checks import check_contracts
     from sysmlc.synthesis.witnesses import witness_files
@@ -123,10 +124,13 @@ def _check(
     requirements = [
         item for item in contract_file.requirements if component in ("", item.component)
     ]
+    refusals: Sequence[Finding] = ()
     if output is not None:
         runs = [run for result in alone for run in result.witnesses]
         runs += (run for result in together for run in result.witnesses)
-        write_files(witness_files(runs), output)
+        refusals = publish_results(
+            "contracts", witness_files(runs), output, [contract_file], settings
+        )
     show_results(
         contract_file,
         settings,
@@ -140,7 +144,10 @@ def _check(
             "requirements": list_verdicts(requirements, alone, contract_file.time_verdicts),
             "behaviours": list_behaviours(alone),
         },
+        refusals,
     )
+    if refusals:
+        return 2
     return _find_exit_code(contract_file, alone, is_checked=bool(alone or together))
 
 

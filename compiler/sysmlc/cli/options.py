@@ -52,14 +52,25 @@ def _set_color(ctx: click.Context, _param: click.Parameter, value: str) -> None:
 
 
 def folder(help: str) -> Callable[[_F], _F]:
-    """The option ``-o``: the folder for files that a command writes besides its report."""
-    return click.option(
+    """The options ``-o``, the folder for files besides the report of a command, and ``--force``."""
+    output = click.option(
         "-o",
         "--output",
         type=click.Path(path_type=Path, file_okay=False),
         metavar="DIR",
         help=help,
     )
+    return lambda function: output(force(function))
+
+
+def force(function: _F) -> _F:
+    """The option ``--force``."""
+    return click.option(
+        "--force",
+        "is_forced",
+        is_flag=True,
+        help="Replace files that sysmlc did not write, or that were edited after it wrote them.",
+    )(function)
 
 
 def question_limit(default: float) -> Callable[[_F], _F]:

@@ -6,7 +6,7 @@ import re
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import click
 from msgspec.structs import replace
@@ -241,19 +241,44 @@ def has_color(stream: object) -> bool:
 # -- result files ------------------------------------------------------------------------------
 
 
-def write_files(files: Iterable[tuple[str, str]], folder: Path) -> None:
-    """Write pairs of path in *folder* and text; exit with code 2 if one cannot be written."""
-    from sysmlc.cli.session import fail
-    from sysmlc.support.atomic_files import write_if_changed
-    from sysmlc.support.output import OutputPathError, find_obstacle
+class ReadUnit(Protocol):
+    """What a command has read: a compilation, or a file with contracts."""
 
+    @property
+    def root(self) -> Path:
+        """The folder that the paths of the inputs are relative to."""
+
+    @property
+    def inputs(self) -> "tuple[InputFile, ...]":
+        """The files that were read."""
+
+
+def publish_results(
+    command: str,
+    files: Iterable[tuple[str, str]],
+    folder: Path,
+    units: "Sequence[ReadUnit]",
+    settings: "Settings",
+) -> "list[Finding]":
+    """Write pairs of path in *folder* and text, with the manifest of results.
+
+    Return the reasons why nothing was written, if it was refused; the exit code is then 2.
+    """
+    from sysmlc.cli.session import fail
+    from sysmlc.config import find_boundary
+    from sysmlc.diagnostics.renderers import make_report
+    from sysmlc.driver import Target, collect_results, publish
+    from sysmlc.support.output import OutputPathError
+
+    texts = dict(files)
+    if not texts:
+        return []
+    paths = [unit.root / file.path.partition("!")[0] for unit in units for file in unit.inputs]
+    inputs = [file for unit in units for file in unit.inputs]
+    boundary = find_boundary(folder, paths)
+    target = Target(folder, boundary, tuple(paths), settings.is_forced, command)
     try:
-        for path, text in files:
-            obstacle = find_obstacle(folder, path)
-            if obstacle is not None:
-                fail(f"cannot write to '{folder}': '{obstacle}' is a link or in the way; remove it")
-            write_if_changed(folder / path, text)
+        publication = publish(collect_results(command, Path(), inputs, texts), target)
     except OutputPathError as problem:
         fail(str(problem))
-    except OSError as problem:
-        fail(f"cannot write to '{folder}': {problem.strerror or problem}")
+    return localize(Path.cwd(), make_report(publication.diagnostics, ()).findings)

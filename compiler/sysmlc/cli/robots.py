@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from sysmlc.config import Config
+    from sysmlc.diagnostics.renderers import Finding
     from sysmlc.driver import Compilation
     from sysmlc.robots.crew_cache import CrewCache
     from sysmlc.robots.outcome import Outcome
@@ -101,7 +102,7 @@ def _run_studies(
     crew_cache: "CrewCache | None",
 ) -> int:
     from sysmlc.cli import reports, session
-    from sysmlc.cli.reports import write_files
+    from sysmlc.cli.reports import publish_results
     from sysmlc.diagnostics import Severity, Sink, Subject
     from sysmlc.diagnostics.renderers import make_report
     from sysmlc.robots.outcome import run_study
@@ -120,15 +121,17 @@ def _run_studies(
         run_study(study, place, sink, decision_options, has_relations, crew_cache)
         for study in studies
     ]
+    refusals: list[Finding] = []
     if output is not None:
-        write_files([file for outcome in outcomes for file in study_files(outcome)], output)
+        files = [file for outcome in outcomes for file in study_files(outcome)]
+        refusals = publish_results("robots", files, output, [compilation], settings)
     of_model = reports.list_findings(compilation, only_errors=not settings.verbose)
     findings = reports.localize(compilation.root, make_report(sink, compilation.sources).findings)
-    reports.print_findings([*of_model, *findings], settings)
+    reports.print_findings([*of_model, *findings, *refusals], settings)
     for outcome in outcomes:
         terminal.echo(summarise_outcome(outcome), err=not reports.allows_sentences(settings))
     has_errors = any(d.severity is Severity.ERROR for d in sink)
-    return max(code, _compute_exit_code(outcomes, has_errors))
+    return 2 if refusals else max(code, _compute_exit_code(outcomes, has_errors))
 
 
 def _open_crew_cache(models: "Sequence[Path]", config: "Config") -> "CrewCache | None":

@@ -48,6 +48,8 @@ class Settings(Struct, frozen=True):
     overlay: tuple[Path, ...] = ()
     library: str = ""
     has_cache: bool = True
+    is_forced: bool = False
+    """Whether results may replace files that sysmlc did not write."""
 
     @property
     def is_plain(self) -> bool:

@@ -4,12 +4,22 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+from msgspec import Struct
 
 from sysmlc.cli import options, terminal
 from sysmlc.support.escapes import escape_undecodable
 
 if TYPE_CHECKING:
+    from sysmlc.backends.base import InputFile
+    from sysmlc.diagnostics.renderers import Finding
     from sysmlc.sources import Source
+
+
+class _Scenario(Struct, frozen=True):
+    """The file of a scenario as a unit that was read."""
+
+    root: Path
+    inputs: "tuple[InputFile, ...]"
 
 
 @click.command(
@@ -47,8 +57,8 @@ def command(
     Exit code 0: they are equal; 1: they differ, or the scenario is invalid or not decided; 2: a
     file cannot be read.
     """
+    from sysmlc.backends.base import InputFile
     from sysmlc.cli import reports, session
-    from sysmlc.cli.reports import write_files
     from sysmlc.diagnostics import Sink
     from sysmlc.diagnostics.renderers import make_report
     from sysmlc.simulation import run_scenarios
@@ -60,16 +70,24 @@ def command(
     sink = Sink(config.rules)
     result = run_scenarios(compilation.graph, source, sink) if compilation.exit_code() < 2 else None
     findings = reports.list_findings(compilation, only_errors=not settings.verbose)
-    reports.print_findings([*findings, *make_report(sink, [source]).findings], settings)
+    findings += make_report(sink, [source]).findings
+    refusals: list[Finding] = []
+    if result is not None:
+        file = InputFile(source.name, source.sha256, "scenario")
+        units: list[reports.ReadUnit] = [compilation, _Scenario(Path.cwd(), (file,))]
+        report, diagram = result.as_junit(), result.sequence_diagram()
+        if junit is not None and report:
+            files = [(junit.name, report)]
+            refusals += reports.publish_results("simulate", files, junit.parent, units, settings)
+        if output is not None and diagram:
+            files = [(f"{scenario.stem}.seq.puml", diagram)]
+            refusals += reports.publish_results("simulate", files, output, units, settings)
+    reports.print_findings([*findings, *refusals], settings)
     if result is not None:
         terminal.echo_text(result.as_text(), nl=False, err=not reports.allows_sentences(settings))
-        _save(junit, result.as_junit())
-        diagram = result.sequence_diagram()
-        if output is not None and diagram:
-            write_files([(f"{scenario.stem}.seq.puml", diagram)], output)
     passed = result is not None and result.passed
     code = reports.exit_code_of(compilation, config, settings)
-    ctx.exit(max(code, 0 if passed else 1))
+    ctx.exit(2 if refusals else max(code, 0 if passed else 1))
 
 
 def _read(scenario: Path) -> "Source":
@@ -83,15 +101,3 @@ def _read(scenario: Path) -> "Source":
         return Source(name, read_whole(scenario, name, DOCUMENT_LIMITS))
     except SourceError as problem:
         fail(f"cannot read scenario '{scenario}': {problem.message}")
-
-
-def _save(target: Path | None, text: str) -> None:
-    from sysmlc.cli.session import fail
-    from sysmlc.support.atomic_files import write_if_changed
-
-    if target is None or not text:
-        return
-    try:
-        write_if_changed(target, text)
-    except OSError as problem:
-        fail(f"cannot write {target}: {problem.strerror}")

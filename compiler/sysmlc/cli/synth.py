@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from sysmlc.cli.contract_files import ContractFile
     from sysmlc.cli.session import Settings
     from sysmlc.config import Config
+    from sysmlc.diagnostics.renderers import Finding
     from sysmlc.synthesis.controller_synthesis import Synthesis
     from sysmlc.synthesis.decision import Deadline, Options, Verdict
 
@@ -188,7 +189,7 @@ def _synthesize(
     form: str,
 ) -> int:
     from sysmlc.cli.contract_files import select_contracts
-    from sysmlc.cli.reports import write_files
+    from sysmlc.cli.reports import publish_results
     from sysmlc.synthesis.controller_files import TABLE, write_controllers
     from sysmlc.synthesis.controller_synthesis import Form, synthesise_controller
 
@@ -201,11 +202,11 @@ def _synthesize(
         for contract in contracts
     ]
     written = write_controllers(controllers, contract_file.place, contract_file.sink, form)
+    refusals: Sequence[Finding] = ()
     if output is not None:
-        write_files(
-            (*written.files, *_find_counter_strategies(contract_file, controllers, options)), output
-        )
-    return _report(contract_file, settings, written.results)
+        files = (*written.files, *_find_counter_strategies(contract_file, controllers, options))
+        refusals = publish_results("synth", files, output, [contract_file], settings)
+    return _report(contract_file, settings, written.results, refusals)
 
 
 def _find_counter_strategies(
@@ -255,11 +256,14 @@ def _report(
     contract_file: "ContractFile",
     settings: "Settings",
     verdicts: "Sequence[Verdict | Synthesis | Deadline]",
+    refusals: "Sequence[Finding]" = (),
 ) -> int:
     """Print findings and verdicts; return the exit code."""
     from sysmlc.cli.contract_files import show_results
 
-    show_results(contract_file, settings, (verdict.text() for verdict in verdicts))
+    show_results(contract_file, settings, (verdict.text() for verdict in verdicts), None, refusals)
+    if refusals:
+        return 2
     code = max((verdict.exit_code for verdict in verdicts), default=2)
     has_errors = any(finding.diagnostic.is_error for finding in contract_file.findings)
     return max(code, int(has_errors)) if contract_file.is_whole else 2

@@ -53,7 +53,7 @@ def select(
             tuple(files),
             output / unit.name if output and len(declared) > 1 else output or folder / unit.output,
             emit or unit.emit or config.emit,
-            find_boundary(output) if output else config.root or Path.cwd(),
+            find_boundary(output, models) if output else config.root or Path.cwd(),
             unit.name,
         )
         for unit, files in declared
@@ -63,7 +63,7 @@ def select(
     rest = tuple(m for m in models if not any(_is_same_file(m, file) for file in listed))
     if rest:
         plain = output or (folder / config.output if config.folder else Path(config.output))
-        boundary = find_boundary(output) if output else config.root or Path.cwd()
+        boundary = find_boundary(output, models) if output else config.root or Path.cwd()
         chosen.append(Selection(rest, plain, emit or config.emit, boundary))
     if not chosen:
         raise click.UsageError("name a model, or list [[model]] units in sysmlc.toml")
@@ -138,7 +138,7 @@ def open_units(
     units = _give_unique_names(_open_project(models, config, settings, output))
     if output is None:
         return units
-    boundary = find_boundary(output)
+    boundary = find_boundary(output, models)
     if len(units) == 1:
         # The unit may belong to a project below the named folder, with an output folder of its own.
         is_placed = units[0].boundary == boundary

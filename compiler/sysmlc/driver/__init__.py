@@ -8,7 +8,13 @@ from sysmlc.driver.compilation import (
     compile_model,
     open_unit,
 )
-from sysmlc.driver.outcome import Outcome, format_manifest, format_trace, summarize
+from sysmlc.driver.outcome import (
+    Outcome,
+    collect_results,
+    format_manifest,
+    format_trace,
+    summarize,
+)
 from sysmlc.driver.publishing import Publication, Target, compare, publish
 from sysmlc.driver.registry import (
     BackendError,
@@ -31,6 +37,7 @@ __all__ = [
     "Publication",
     "Request",
     "Target",
+    "collect_results",
     "compare",
     "compile_model",
     "format_manifest",

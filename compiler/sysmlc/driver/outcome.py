@@ -141,6 +141,17 @@ def summarize(compilation: Compilation, has_files: bool = True) -> Outcome:
     )
 
 
+def collect_results(
+    command: str, root: Path, inputs: Iterable[InputFile], texts: Mapping[str, str]
+) -> Outcome:
+    """Return the outcome of a command that writes only its own results, such as ``synth``.
+
+    It counts as incomplete, so that results of earlier runs are not removed.
+    """
+    files = (OutputFile(path, command, compute_text_digest(texts[path])) for path in sorted(texts))
+    return Outcome(root, tuple(inputs), (), tuple(files), texts, is_complete=False)
+
+
 def _collect_texts(compilation: Compilation) -> dict[str, str]:
     texts = {artefact.path: artefact.text for artefact in compilation.list_published()}
     return texts | {COVERAGE: _format_coverage(compilation), TRACE: format_trace(compilation)}

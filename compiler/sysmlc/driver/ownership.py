@@ -17,8 +17,16 @@ from msgspec import Struct
 from sysmlc.support.output import OutputPathError, check_output_path, find_obstacle, read_mode
 
 MANIFEST = "manifest.json"
-PENDING = "manifest.pending.json"
-"""The manifest of a build that has not ended: it becomes the manifest when all files are there."""
+RESULTS = "manifest.results.json"
+"""The manifest of what other commands than ``build`` wrote; a build does not remove these files."""
+
+
+def pending_name(manifest: str) -> str:
+    """Return the name of a manifest until all its files are there."""
+    return manifest.replace(".json", ".pending.json")
+
+
+MANIFESTS = frozenset({*(MANIFEST, RESULTS), *map(pending_name, (MANIFEST, RESULTS))})
 FORMAT = "sysmlc-manifest/2"
 _FORMATS = "sysmlc-manifest/"
 _MAX_SIZE = 16 << 20
@@ -48,7 +56,7 @@ class ForeignManifestError(Exception):
 
 def is_output_folder(folder: Path) -> bool:
     """Whether sysmlc wrote *folder*, so that the models in it are outputs and not inputs."""
-    for name in (MANIFEST, PENDING):
+    for name in (MANIFEST, pending_name(MANIFEST)):
         try:
             if not stat.S_ISREG(read_mode(folder / name) or 0):
                 continue
@@ -93,7 +101,7 @@ def _parse_entry(entry: object) -> tuple[str, str] | None:
     if not isinstance(entry, dict):
         return None
     path, digest = entry.get("path"), entry.get("sha256")
-    if not isinstance(path, str) or not isinstance(digest, str) or path in (MANIFEST, PENDING):
+    if not isinstance(path, str) or not isinstance(digest, str) or path in MANIFESTS:
         return None
     try:
         check_output_path(path)
@@ -159,19 +167,23 @@ class Ownership(Struct, frozen=True):
         return sorted({*self.listed, *self.pending})
 
 
-def read_ownership(folder: Path, protected: Iterable[Path], written: Iterable[str]) -> Ownership:
-    """Read the manifests of an output folder.
+def read_ownership(
+    folder: Path, protected: Iterable[Path], written: Iterable[str], manifest: str = MANIFEST
+) -> Ownership:
+    """Read a manifest of an output folder, and the pending one of its name.
 
     A folder that also holds *protected* files or a repository belongs to others, too. There only
     paths of our back ends and those in *written* can be ours: a stranger's manifest may list any
     file of the repository with its right digest. Raises ForeignManifestError and OSError.
     """
     files = [file for file in protected if file.exists()]
-    listed, pending = _read_manifest(folder / MANIFEST), _read_manifest(folder / PENDING)
+    listed = _read_manifest(folder / manifest)
+    pending = _read_manifest(folder / pending_name(manifest))
     real = folder.resolve()
     below = [file for file in files if file.resolve().is_relative_to(real)]
     is_shared = bool(below) or (real / ".git").exists()
-    if is_shared:
+    # Results are never removed, so that their manifest may list any file.
+    if is_shared and manifest == MANIFEST:
         usual = frozenset(written)
         listed = {path: digest for path, digest in listed.items() if _is_usual(path, usual)}
         pending = {path: digest for path, digest in pending.items() if _is_usual(path, usual)}

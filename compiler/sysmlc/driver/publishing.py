@@ -14,6 +14,9 @@ these states, and what it does leads to the same folder as a build without an in
 When a build replaces the pending manifest of another one, it first removes the files of which
 only the old pending manifest has the digest, else nobody would own them in steps 2 and 3. Of two
 builds at once, one waits for the other.
+
+The other commands publish their results in the same way, with a manifest of their own name. They
+remove no results of earlier runs.
 """
 
 import errno
@@ -30,12 +33,14 @@ from sysmlc.diagnostics import Diagnostic, Place, Severity, Sink, Subject, rule
 from sysmlc.driver.outcome import Outcome, format_manifest
 from sysmlc.driver.ownership import (
     MANIFEST,
+    MANIFESTS,
     OTHER,
-    PENDING,
+    RESULTS,
     ForeignManifestError,
     Ownership,
     compute_digest,
     find_unlisted,
+    pending_name,
     read_ownership,
 )
 from sysmlc.sources import Roots
@@ -47,7 +52,7 @@ FOREIGN_FILE = rule(
     "foreign-output-file",
     Severity.ERROR,
     "'{path}' is not overwritten: {reason}",
-    help="delete or move the file, choose another folder with -o, or use 'build --force'",
+    help="delete or move the file, choose another folder with -o, or use '{command} --force'",
 )
 PROTECTED_FILE = rule(
     "SM911",
@@ -76,7 +81,7 @@ _SYNCS = 16
 
 
 class Target(Struct, frozen=True):
-    """The folder that takes the outputs of one unit.
+    """The folder that takes the outputs of one unit, or the results of another command.
 
     The folder must lie in ``boundary`` (None: anywhere). ``configurations`` are files that are
     protected like the inputs. With ``is_forced``, foreign and edited files are replaced.
@@ -86,6 +91,12 @@ class Target(Struct, frozen=True):
     boundary: Path | None = None
     configurations: tuple[Path, ...] = ()
     is_forced: bool = False
+    command: str = "build"
+
+    @property
+    def manifest(self) -> str:
+        """The name of the manifest that lists the files of the command."""
+        return MANIFEST if self.command == "build" else RESULTS
 
 
 class Publication(Struct, frozen=True):
@@ -120,7 +131,7 @@ def publish(outcome: Outcome, target: Target) -> Publication:
             with _lock_folder(target.folder):
                 plan = _plan(outcome, target, sink)
                 if not plan.refused:
-                    changed = _apply(plan, outcome, target.folder)
+                    changed = _apply(plan, outcome, target)
     except ForeignManifestError as problem:
         _report_protected(problem.file, "it is not a manifest of sysmlc", sink)
     except OSError as problem:
@@ -164,13 +175,14 @@ def _plan(outcome: Outcome, target: Target, sink: Sink) -> _Plan:
     folder = target.folder
     digests = {file.path: file.sha256 for file in outcome.files}
     inputs = [outcome.root / file.path.partition("!")[0] for file in outcome.inputs]
-    ownership = read_ownership(folder, (*target.configurations, *inputs), digests)
+    protected = (*target.configurations, *inputs)
+    ownership = read_ownership(folder, protected, digests, target.manifest)
     removals, writes, refused = [], [], []
     for path, digest in digests.items():
         current = compute_digest(folder, path)
         if current == digest:
             continue
-        if current is None or _may_replace(path, current, target, ownership, sink):
+        if _may_write(path, current, target, ownership, sink):
             writes.append(path)
             if current is not None and ownership.is_only_pending(path, current):
                 removals.append(path)
@@ -185,21 +197,27 @@ def _plan(outcome: Outcome, target: Target, sink: Sink) -> _Plan:
             removals.append(path)
         elif ownership.owns(path, current):
             kept[path] = current
-        elif current != OTHER:
+        elif current != OTHER and outcome.is_complete:
             sink.report(EDITED_STALE_FILE, _subject(folder / path), path=_show(folder / path))
     removals += _find_temporaries(folder, {*digests, *ownership.paths()})
     manifest = format_manifest(outcome, kept)
-    is_new = _read_bytes(folder / MANIFEST) != manifest.encode("utf-8")
-    has_new_manifest = is_new or (folder / PENDING).exists()
+    is_new = _read_bytes(folder / target.manifest) != manifest.encode("utf-8")
+    has_new_manifest = is_new or (folder / pending_name(target.manifest)).exists()
     return _Plan(
         tuple(removals), tuple(writes), manifest, has_new_manifest, tuple(refused), ownership
     )
 
 
-def _may_replace(path: str, current: str, target: Target, ownership: Ownership, sink: Sink) -> bool:
-    """Whether the file *path* may be overwritten; reports why not."""
+def _may_write(
+    path: str, current: str | None, target: Target, ownership: Ownership, sink: Sink
+) -> bool:
+    """Whether the file *path* may be written or overwritten; reports why not."""
     place = target.folder / path
-    if ownership.is_protected(path):
+    if path in MANIFESTS:
+        _report_protected(place, "this is the name of a manifest", sink)
+    elif current is None:
+        return True
+    elif ownership.is_protected(path):
         _report_protected(place, "it is an input or a configuration", sink)
     elif current == OTHER:
         obstacle = find_obstacle(target.folder, path) or place
@@ -209,7 +227,13 @@ def _may_replace(path: str, current: str, target: Target, ownership: Ownership, 
     else:
         is_listed = path in ownership.paths()
         reason = "it was edited after sysmlc wrote it" if is_listed else "sysmlc did not write it"
-        sink.report(FOREIGN_FILE, _subject(place), path=_show(place), reason=reason)
+        sink.report(
+            FOREIGN_FILE,
+            _subject(place),
+            path=_show(place),
+            reason=reason,
+            command=target.command,
+        )
     return False
 
 
@@ -248,18 +272,19 @@ def _read_bytes(path: Path) -> bytes | None:
         return None
 
 
-def _apply(plan: _Plan, outcome: Outcome, folder: Path) -> list[str]:
+def _apply(plan: _Plan, outcome: Outcome, target: Target) -> list[str]:
     """Carry out the steps that the docstring of the module lists; return what changed."""
+    folder, pending = target.folder, pending_name(target.manifest)
     changed = [path for path in plan.removals if _remove(folder, path)]
     if plan.has_new_manifest:
-        write(folder / PENDING, plan.manifest.encode("utf-8"))
+        write(folder / pending, plan.manifest.encode("utf-8"))
         sync(folder)
     if plan.writes:
         _write_files(folder, {path: outcome.texts[path] for path in plan.writes})
     if plan.has_new_manifest:
-        os.replace(folder / PENDING, folder / MANIFEST)  # noqa: PTH105 - a single name to intercept
+        os.replace(folder / pending, folder / target.manifest)  # noqa: PTH105 - one name to intercept
         sync(folder)
-    new_manifest = [MANIFEST] if plan.has_new_manifest else []
+    new_manifest = [target.manifest] if plan.has_new_manifest else []
     return [*dict.fromkeys([*changed, *plan.writes]), *new_manifest]
 
 

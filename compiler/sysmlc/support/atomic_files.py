@@ -9,15 +9,6 @@ _MODE = 0o644
 """Permissions of a new file, before the user's mask is applied."""
 
 
-def write_if_changed(target: Path, text: str) -> bool:
-    """Write UTF-8 text with LF if it differs from the file; return whether it was written."""
-    data = text.encode("utf-8")
-    if target.is_file() and target.read_bytes() == data:
-        return False
-    write(target, data)
-    return True
-
-
 def write(target: Path | str, data: bytes) -> None:
     """Create or replace the file *target* in one step.
 
