@@ -58,8 +58,12 @@ def test_a_schema_is_valid_and_its_id_names_its_format(name):
 def test_schemas_list_the_languages_of_the_front_ends():
     languages = [frontend.name for frontend in registry.load_frontends()] + ["overlay", "diagrams"]
     manifest, recipe = SCHEMAS["sysmlc-manifest"], SCHEMAS["sysmlc-recipe"]
-    for inputs in (manifest["properties"]["inputs"], recipe["properties"]["source"]):
-        assert inputs["items"]["properties"]["language"]["enum"] == languages
+    of_results = ["contract", "scenario"]
+    for inputs, more in (
+        (manifest["properties"]["inputs"], of_results),
+        (recipe["properties"]["source"], []),
+    ):
+        assert inputs["items"]["properties"]["language"]["enum"] == [*languages, *more]
 
 
 @pytest.mark.parametrize("name", SCHEMAS)
