@@ -37,6 +37,7 @@ NOT_COMPILED = {
     "SM207": "there is no standard library",
     "SM208": "there are 8,000 aliases",
     "SM240": "there are thousands of definitions",
+    "SM243": "there are two files",
     "SM455": "the limit is an option",
     "SM479": "the limit is an option",
     **dict.fromkeys(

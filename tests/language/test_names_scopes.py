@@ -364,3 +364,22 @@ def test_recursive_imports_may_form_a_cycle():
     assert target_name(model, "Line::Use::a") == "Line::Left::Deep::Gate"
     assert target_name(model, "Line::Use::b") == "Line::Right::Deep::Flap"
     assert target_name(model, "Line::Use::c") == "Line::Right::Deep::Flap"
+
+
+def test_a_package_that_two_files_declare_is_one_finding():
+    files = (
+        "package Films { package Phase1 { part def Robot; } }",
+        "package Films { package Phase1 { part def Crane; } }",
+        """
+        package Use {
+            private import Films::Phase1::Robot;
+            private import Films::Phase1::Crane;
+            part r : Robot;
+            part c : Crane;
+        }
+        """,
+    )
+    assert list_name_errors(*files) == [
+        "1: '1.sysml', '2.sysml' declare a package 'Films' each; its members are looked up in all "
+        "of them: declare a package in one file, or give the packages different names"
+    ]

@@ -49,6 +49,11 @@ def test_connectors_whose_ends_have_wrong_directions_are_reported(ends, codes):
     assert list_codes(run_until(LINE + print_connector("c", *ends), "flows")[1]) == codes
 
 
+def test_a_connector_to_a_port_of_another_block_has_no_side():
+    text = LINE + print_connector("c", "a.out", "in")
+    assert list_codes(run_until(text, "flows")[1]) == []
+
+
 @pytest.mark.parametrize(("ends", "codes"), [(("feed", "in"), []), (("in", "feed"), ["SM310"] * 2)])
 def test_an_item_flow_from_a_part_to_an_input_of_its_block_is_reported(ends, codes):
     text = LINE + print_connector("c", "feed", "a.in") + print_item_flow(*ends)

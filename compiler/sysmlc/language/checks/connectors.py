@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, rule
+from sysmlc.language.checks.conformance import find_direction
 from sysmlc.language.checks.findings import Finding, iter_stated, name_of
 from sysmlc.language.checks.memberships import TOO_MANY_ENDS
 from sysmlc.language.metaclasses import is_a, is_end, kinds_of
@@ -31,6 +32,13 @@ NO_FLOW_END = rule(
     "'{name}' does not name the element whose feature the flow connects",
     help="write the element, a dot, and its feature",
 )
+FLOW_DIRECTION = rule(
+    "SM242",
+    "flow-direction",
+    Severity.WARNING,
+    "the flow {way} '{name}', whose direction is {is} there",
+    help="reverse the flow, conjugate the port, or name another feature of it",
+)
 
 _ASSOCIATIONS = kinds_of("Association")
 _CONNECTORS = kinds_of("Connector") - kinds_of("Flow")
@@ -38,6 +46,10 @@ _SUCCESSIONS = kinds_of("Succession")
 _PORTS = frozenset({"PortUsage", "ReferenceUsage"})
 """Valid ends of interfaces; ``memberships`` reports others."""
 _FLOWS = kinds_of("FlowDefinition")
+_FLOW_USAGES = kinds_of("FlowUsage")
+_PORT_USAGES = kinds_of("PortUsage")
+_REDEFINITIONS = frozenset({"Redefinition"})
+_REVERSED = {"in": "out", "out": "in"}
 
 
 def check_end_types(model: Model, node: Node) -> Iterator[Finding]:
@@ -97,11 +109,59 @@ def check_flow(model: Model, node: Node) -> Iterator[Finding]:
         yield Finding(TOO_MANY_ENDS, node.start, facts)
 
 
+def check_flow_directions(model: Model, node: Node) -> Iterator[Finding]:
+    """Report a flow that leaves an ``in`` feature or enters an ``out`` feature of a part or port.
+
+    From the inside of the element with the port it is the other way round.
+    """
+    ends = [member for member in node.members if member.kind == "FlowEnd"]
+    for end, wrong, way in zip(ends, ("in", "out"), ("leaves", "enters"), strict=False):
+        path, feature = _read_flow_end(end)
+        if feature is None or not path or _is_judged_by_port(model, path):
+            continue
+        # The end of an interface is a port of another element.
+        is_inside = all(step.kind in _PORT_USAGES and not is_end(step) for step in path)
+        if find_direction(model, path[-1], feature) == (_REVERSED[wrong] if is_inside else wrong):
+            names = ".".join(name_of(model, step) for step in (*path, feature))
+            direction = find_direction(model, path[-1], feature)
+            yield Finding(FLOW_DIRECTION, end.start, {"way": way, "name": names, "is": direction})
+
+
+def _is_judged_by_port(model: Model, path: list[Node]) -> bool:
+    """Whether pass ``flows`` judges the end by the one direction of its port (SM310).
+
+    The end is not judged at all if its port is nested in another one, which may be conjugated, or
+    if it refers to such a port.
+    """
+    if path[-1].kind not in _PORT_USAGES:
+        return False
+    if any(map(_is_related, path)):
+        return True
+    members = model.members(path[-1])
+    directions = {find_direction(model, path[-1], member) for member in members}
+    return len(directions - {""}) == 1 or sum(step.kind in _PORT_USAGES for step in path) > 1
+
+
+def _read_flow_end(end: Node) -> tuple[list[Node], Node | None]:
+    """Return the features that an end of a flow names before the last dot, and the last one."""
+    path = [
+        step
+        for relation in end.relations
+        if relation.kind == "ReferenceSubsetting"
+        for step in relation.reference.targets or ()
+    ]
+    features = (
+        target for member in end.members for _, target in iter_stated(member, _REDEFINITIONS)
+    )
+    return path, next(features, None)
+
+
 END_CHECKS = (
     (_ASSOCIATIONS, check_end_types),
     (_CONNECTORS, check_related),
     (frozenset({"FlowEnd"}), check_flow_end),
     (_FLOWS, check_flow),
+    (_FLOW_USAGES, check_flow_directions),
 )
 
 

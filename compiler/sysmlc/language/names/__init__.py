@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.language.library import SHIPPED, Library
+from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.names.model import Model
 from sysmlc.language.names.unresolved import report_unresolved
 from sysmlc.language.tree import Document, Node, Reference, Relation, find_root, make_subject
@@ -47,9 +48,20 @@ HIDDEN = rule(
     "'{name}' is found although the nearest '{first}' has no '{second}'{others}",
     help="import the element itself, or begin with '$::', so that every tool finds it",
 )
+SPLIT_PACKAGE = rule(
+    "SM243",
+    "package-in-several-files",
+    Severity.INFO,
+    "{files} declare a package '{name}' each; its members are looked up in all of them",
+    help="declare a package in one file, or give the packages different names",
+)
 
 _RECURSION_LIMIT = 20_000
 """Recursion limit during resolution: names lead to names that lead to further names."""
+
+_PACKAGES = kinds_of("Package")
+_MAX_FILES = 4
+"""Files with a package of the same name that a finding lists."""
 
 
 def resolve(documents: Sequence[Document], library: Library, sink: Sink) -> Model:
@@ -76,6 +88,7 @@ def resolve_all(model: Model, sink: Sink) -> None:
             _resolve_generals(document, model)
         _report_cycles(model, sink)
         _report_hidden_meanings(model, sink)
+        _report_split_packages(model, sink)
         if model.library.is_core:
             _report_missing_library(model, sink)
     finally:
@@ -150,6 +163,23 @@ def _report_hidden_meanings(model: Model, sink: Sink) -> None:
             second=names[1],
             others=f" ({count} more such names in this file)" if count else "",
         )
+
+
+def _report_split_packages(model: Model, sink: Sink) -> None:
+    """Report each root package that several files declare, once, at the first declaration."""
+    packages: dict[str, dict[str, tuple[Document, Node]]] = {}
+    for document in model.documents:
+        for member in document.root.members:
+            if member.kind in _PACKAGES and member.name and not document.path.startswith(SHIPPED):
+                packages.setdefault(member.name, {}).setdefault(document.path, (document, member))
+    for name, declarations in packages.items():
+        if len(declarations) > 1:
+            document, package = next(iter(declarations.values()))
+            files = ", ".join(f"'{path}'" for path in list(declarations)[:_MAX_FILES])
+            more = len(declarations) - _MAX_FILES
+            files += f" and {more} more files" if more > 0 else ""
+            subject = make_subject(document, package, package.name_start)
+            sink.report(SPLIT_PACKAGE, subject, name=name, files=files)
 
 
 def _report_missing_library(model: Model, sink: Sink) -> None:

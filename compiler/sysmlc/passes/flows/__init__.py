@@ -22,7 +22,7 @@ from sysmlc.ir.query import (
     role_of,
     type_of,
 )
-from sysmlc.passes.flows.paths import check_paths
+from sysmlc.passes.flows.paths import begins_elsewhere, check_paths
 
 FLOW_AGAINST_PORT = rule(
     "SM310",
@@ -293,7 +293,8 @@ def _check_connector(graph: Graph, sink: Sink, connector: Element) -> None:
         for flow in graph.sources(connector, Edge.REALIZING)
         for port, along, _ in _list_port_ends(graph, flow)
     )
-    if not is_reported and not _has_matching_directions(graph, connector_ends):
+    has_sides = not any(begins_elsewhere(graph, connector, end) for end in connector_ends)
+    if has_sides and not is_reported and not _has_matching_directions(graph, connector_ends):
         _report_directions(graph, sink, connector, connector_ends, ports)
     _check_types(graph, sink, connector, ports)
 

@@ -31,6 +31,18 @@ def check_paths(graph: Graph, sink: Sink, connector: Element) -> None:
             )
 
 
+def begins_elsewhere(graph: Graph, connector: Element, end: Element) -> bool:
+    """Whether an end has no path and leads to a feature that the connector's owner does not have.
+
+    Nothing then tells on which side of the feature's block the connector is.
+    """
+    owner = graph.owner(connector)
+    classifier = None if owner is None else _start_of_paths(graph, owner)
+    if classifier is None or graph.targets(end, Edge.PATH) or _is_partly_known(graph, classifier):
+        return False
+    return not all(_has_feature(graph, classifier, role) for role in graph.targets(end, Edge.ROLE))
+
+
 def _find_breaks(graph: Graph, owner: Element, end: Element) -> Iterator[tuple[Element, Element]]:
     """Yield the first step of a path that is no feature of its classifier, if there is one.
 
