@@ -296,3 +296,46 @@ def test_contract_files_and_pages_mark_ranges_and_conditions(workspace, all_pass
     page = workspace.read("out/contracts/P.B.md")
     assert "| `level` | 0..15 (assumed) |" in page
     assert "| `temp_18_0` | Boolean, stands for `temp < 18.0` |" in page
+
+
+SCENARIO = """
+name: counts
+component: B
+steps:
+  - inputs: {{event: Go}}
+    repeat: {}
+  - expect: {{count: {}}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("steps", "value", "line"),
+    [
+        (3, 4, "FAILED  P::B: counts within count in 0..15 (assumed)"),
+        (16, 15, "passed  P::B: counts (17 steps) within count in 0..15 (assumed)"),
+    ],
+)
+def test_a_scenario_names_the_range_at_whose_bound_it_is(workspace, all_passes, steps, value, line):
+    workspace.write("model.sysml", _require(COUNTER, ()))
+    workspace.write("counts.yaml", SCENARIO.format(steps, value))
+    result = workspace.sysmlc("simulate", "model.sysml", "--scenario", "counts.yaml")
+    assert result.stdout.splitlines()[0] == line
+
+
+def test_a_scenario_away_from_the_bounds_passes(workspace, all_passes):
+    workspace.write("model.sysml", _require(COUNTER.replace(":= 0", ":= 1"), ()))
+    workspace.write("counts.yaml", SCENARIO.format(3, 4))
+    result = workspace.sysmlc("simulate", "model.sysml", "--scenario", "counts.yaml")
+    assert result.stdout.splitlines()[0] == "passed  P::B: counts (4 steps)"
+
+
+def test_a_recorded_run_outside_an_assumed_range_is_not_the_fault_of_the_component(
+    workspace, all_passes
+):
+    workspace.write("model.sysml", _require(COUNTER, ()))
+    rows = ["event,count,state", *(f"Go,{count},A" for count in range(18))]
+    workspace.write("run.csv", "\n".join(rows))
+    result = workspace.sysmlc("contracts", "accept", "model.sysml", "run.csv", "-c", "P::B")
+    assert "SM593" in result.stdout + result.stderr
+    assert "'count' stays between 0 and 15, which is assumed." in result.stdout + result.stderr
+    assert result.exit_code == 0

@@ -100,15 +100,20 @@ def _expose_past(contract: Contract) -> Contract:
 
 
 def _check_ranges(declared: Iterable[Variable], owner: Owner) -> Iterator[Check]:
-    """Yield a check for each integer of one side: the value lies in the range."""
+    """Yield a check for each integer of one side: the value lies in the range.
+
+    Nothing is guaranteed outside of a range that the compiler assumes.
+    """
     for variable in declared:
+        side = Owner.ENVIRONMENT if variable.is_range_assumed else variable.owner
         match variable.domain:
-            case IntegerDomain(low, high) if variable.owner is owner:
+            case IntegerDomain(low, high) if side is owner:
                 value = f.var(variable.name)
                 formula = f.both(
                     f.compare(Op.LE, f.const(low), value), f.compare(Op.LE, value, f.const(high))
                 )
-                text = f"'{variable.name}' stays between {low} and {high}."
+                source = ", which is assumed" if variable.is_range_assumed else ""
+                text = f"'{variable.name}' stays between {low} and {high}{source}."
                 yield Check(Conjunct(formula, Class.SAFETY, variable.origin, text), owner)
 
 

@@ -7,7 +7,8 @@ from collections.abc import Iterable, Mapping
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
-from sysmlc.logic.contract import Owner, Variable
+from sysmlc.logic.basis import describe_basis
+from sysmlc.logic.contract import Contract, IntegerDomain, Owner, Variable
 from sysmlc.logic.domains import contains, describe
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.machines.interpreter import Valuation
@@ -118,6 +119,7 @@ def _is_valid_entry(
         )
     elif not contains(variable.domain, entry.value):
         shown, domain = show_value(entry.value), describe(variable.domain)
+        domain += " (assumed)" if variable.is_range_assumed else ""
         sink.report(VALUE, scenario.subject(entry.location), value=shown, name=name, domain=domain)
     elif is_input and variable.owner is Owner.SYSTEM:
         sink.report(NOT_INPUT, scenario.subject(entry.location), name=name, component=component)
@@ -165,6 +167,7 @@ def _follow_runs(
                 trace,
                 difference,
                 _input_names(player),
+                range_text=_describe_bounds(player, trace),
             )
         traces = matching
     return Result(
@@ -174,7 +177,23 @@ def _follow_runs(
         traces[0],
         None,
         _input_names(player),
+        range_text=_describe_bounds(player, traces[0]),
     )
+
+
+def _describe_bounds(player: Player, trace: _Trace) -> str:
+    """Return the assumed ranges at whose bounds values of the component may have stopped."""
+    reached = [
+        variable.name
+        for variable in player.variables
+        if variable.is_range_assumed
+        and variable.owner is Owner.SYSTEM
+        and isinstance(variable.domain, IntegerDomain)
+        and {variable.domain.low, variable.domain.high}
+        & {step.get(variable.name) for step in trace}
+    ]
+    contract = Contract(player.component, "", tuple(player.variables), (), ())
+    return describe_basis((contract,), reached).range_text
 
 
 def _input_names(player: Player) -> frozenset[str]:

@@ -41,6 +41,8 @@ class Result(Struct, frozen=True):
     inputs: frozenset[str] = field(default_factory=frozenset)
     is_valid: bool = True
     is_decided: bool = True
+    range_text: str = ""
+    """The assumed ranges at whose bounds the run has values, as a phrase behind the verdict."""
 
     @property
     def passed(self) -> bool:
@@ -68,13 +70,13 @@ class Report(Struct, frozen=True):
     def _iter_result_lines(self, result: Result) -> Iterator[str]:
         title = escape_invisible(f"{result.component}: {result.name}")
         if result.passed:
-            yield f"passed  {title} ({_count_steps(len(result.trace))})"
+            yield f"passed  {title} ({_count_steps(len(result.trace))}){result.range_text}"
         elif not result.is_decided:
             yield f"not decided {title}"
         elif result.difference is None:
             yield f"invalid {title}"
         else:
-            yield f"FAILED  {title}"
+            yield f"FAILED  {title}{result.range_text}"
             difference = escape_invisible(str(result.difference))
             yield f"        {self.file}:{result.difference.line}: {difference}"
 
