@@ -20,7 +20,7 @@ from msgspec import Struct
 
 from sysmlc.logic import domains
 from sysmlc.logic.contract import Variable
-from sysmlc.logic.evaluate import compile_evaluation, value_of
+from sysmlc.logic.evaluate import is_true, value_of
 from sysmlc.logic.formula import Formula, Literal
 from sysmlc.synthesis.bdd.limits import LimitError, TooLargeError
 from sysmlc.synthesis.bdd.manager import Manager, Node
@@ -79,9 +79,7 @@ class Machine(Struct, frozen=True):
         *last* has the inputs and outputs of the previous step. Raises LookupError if there is no
         move.
         """
-        enabled_moves = (
-            move for move in self.states[state] if compile_evaluation(move.when)(last, now)
-        )
+        enabled_moves = (move for move in self.states[state] if is_true(move.when, last, now))
         first_move = next(enabled_moves, None)
         if first_move is None:
             raise LookupError(f"state {state} has no move for {dict(now)}")
