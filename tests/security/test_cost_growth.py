@@ -128,7 +128,8 @@ def test_a_long_chain_of_choices_gets_no_contract(tmp_path):
         '      State a "A"',
         *(f'      Pseudostate c{n} subkind="choice"' for n in range(251)),
         *(
-            f"      Transition t{n}\n        -> flow-source {source}\n        -> flow-target {target}"
+            f"      Transition t{n}\n        -> flow-source {source}\n"
+            f"        -> flow-target {target}"
             for n, (source, target) in enumerate(links)
         ),
     ]
