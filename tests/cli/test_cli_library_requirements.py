@@ -63,3 +63,50 @@ def test_the_reason_names_the_subject_in_the_library(workspace):
         "DIN8580::TurningContract: not decided: no element of the model satisfies it or "
         "specialises its subject 'DIN8580::Turning'"
     ) in check(workspace, text)
+
+
+LIBRARY = """library package Gates {
+    private import ScalarValues::*;
+    part def Gate { out attribute open : Boolean; }
+    part def Pair { part left : Gate; part right : Gate; }
+    requirement def Opens { subject gate : Gate; require constraint { gate.open } }
+    requirement def Nobody { require constraint { true } }
+}
+"""
+LAMP = """part def Lamp { out attribute on : Boolean; }
+    requirement def On { subject lamp : Lamp; require constraint { lamp.on } }"""
+
+
+@pytest.mark.parametrize(
+    ("use", "gates"),
+    [
+        ("", []),
+        ("private import Gates::Gate;", []),
+        ("part def Wide :> Gate { }", ["Gates::Gate"]),
+        ("part def Yard { part gate : Gate; }", ["Gates::Gate"]),
+        ("part def Yard { part gates : Pair; }", ["Gates::Gate", "Gates::Pair"]),
+    ],
+    ids=["nothing", "import", "specialised", "typed", "through another type"],
+)
+def test_contracts_of_a_library_package_are_checked_if_the_model_uses_them(workspace, use, gates):
+    imports = "private import ScalarValues::*; private import Gates::*;"
+    workspace.write("gates.sysml", f"{LIBRARY} package Plant {{ {imports} {LAMP} {use} }}")
+    lines = workspace.sysmlc("contracts", "check", "gates.sysml").stdout.splitlines()
+    names = dict.fromkeys(line.partition(": ")[0] for line in lines)
+    assert [name for name in names if name.startswith("Gates::")] == gates
+    assert "Plant::Lamp" in names
+
+
+def test_a_library_package_alone_is_the_model_and_a_name_selects_an_unused_contract(workspace):
+    workspace.write("gates.sysml", LIBRARY)
+    assert workspace.sysmlc("contracts", "check", "gates.sysml").stdout.splitlines() == [
+        "Gates::Gate: realizable",
+        "Gates::Pair: its 2 parts share no variables",
+        "Gates::Nobody: not decided: the requirement has no subject, and no element satisfies it",
+    ]
+    workspace.write("gates.sysml", f"{LIBRARY} package Plant {{ part def Lamp; }}")
+    result = workspace.sysmlc("contracts", "check", "gates.sysml")
+    assert [result.exit_code, result.stdout] == [2, ""]
+    assert "all contracts are about libraries that the model does not use" in result.stderr
+    selected = workspace.sysmlc("contracts", "check", "gates.sysml", "-c", "Gates::Gate").stdout
+    assert selected == "Gates::Gate: realizable\n"

@@ -45,6 +45,8 @@ class ContractFile(Struct, frozen=True):
     """The behaviours of a model by component."""
     requirements: "tuple[StatedRequirement, ...]" = ()
     """The requirements of a model."""
+    unused: frozenset[str] = frozenset()
+    """Ids of elements of libraries that the model does not use."""
     time_verdicts: "Mapping[str, LimitVerdict]" = {}
     """Verdicts on the times that requirements state, by the id of the requirement."""
 
@@ -92,6 +94,7 @@ def read_contracts(
 def _read_model(file: Path, config: "Config", settings: "Settings") -> ContractFile:
     from sysmlc.cli import reports, session
     from sysmlc.diagnostics import Sink
+    from sysmlc.ir.query.libraries import find_unused_library_elements
     from sysmlc.logic.components.derivation import ComponentBehaviour
     from sysmlc.logic.composition.derivation import compose_blocks
     from sysmlc.logic.contract import Contract
@@ -112,6 +115,7 @@ def _read_model(file: Path, config: "Config", settings: "Settings") -> ContractF
     if not contracts and not findings and compilation.exit_code() < 2:
         session.fail(f"'{file}' has no behaviour and no requirement that gives a contract")
     sink = Sink(config.rules)
+    unused = find_unused_library_elements(compilation.graph)
     composites = compose_blocks(compilation.graph, contracts, sink)
     behaviours = compilation.graph.derived(ComponentBehaviour)
     reasons = {
@@ -129,7 +133,8 @@ def _read_model(file: Path, config: "Config", settings: "Settings") -> ContractF
         compilation.inputs,
         compilation.root,
         behaviours={behaviour.contract.component: behaviour for behaviour in behaviours},
-        requirements=tuple(list_stated_requirements(compilation.graph, contracts, reasons)),
+        requirements=tuple(list_stated_requirements(compilation.graph, contracts, reasons, unused)),
+        unused=unused,
         time_verdicts=decide_limits(compilation.graph.derived(Model)),
     )
 

@@ -102,6 +102,7 @@ def _check(
 ) -> int:
     from sysmlc.cli.contract_files import select_contracts, show_results
     from sysmlc.cli.reports import publish_results
+    from sysmlc.cli.session import fail
     from sysmlc.synthesis.composition_check import check_compositions
     from sysmlc.synthesis.contract_checks import check_contracts
     from sysmlc.synthesis.witnesses import witness_files
@@ -111,11 +112,16 @@ def _check(
         if contract_file.contracts
         else ()
     )
+    if contracts and not component:
+        contracts = tuple(item for item in contracts if item.origin not in contract_file.unused)
+        if not contracts:
+            fail("all contracts are about libraries that the model does not use; name one with -c")
     place, sink, behaviours = contract_file.place, contract_file.sink, contract_file.behaviours
     composites = [
         _without_demands(composite) if composite.component in behaviours else composite
         for composite in contract_file.composites
-        if component in ("", composite.component)
+        if component == composite.component
+        or (not component and composite.origin not in contract_file.unused)
     ]
     alone = list(
         check_contracts(contracts, contract_file.contracts, place, sink, options, behaviours)

@@ -51,6 +51,8 @@ def lower_package(lowering: "Lowering", node: Node, owner: Element | None) -> No
         lowering.mark_external(node)
         return
     kind, subkind = read_kind(node, Kind.PACKAGE)
+    if node.kind == "LibraryPackage" and kind is Kind.PACKAGE:
+        subkind = subkind or "library"
     attributes = visibility_attributes(node) | foreign_attributes(node)
     if members and all(map(_external_attributes, members)):
         attributes["external"] = True

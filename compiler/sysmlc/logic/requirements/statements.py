@@ -206,12 +206,15 @@ class StatedRequirement(Struct, frozen=True):
 
 
 def list_stated_requirements(
-    graph: Graph, contracts: Iterable[Contract], reasons: Mapping[str, str]
+    graph: Graph,
+    contracts: Iterable[Contract],
+    reasons: Mapping[str, str],
+    unused: Set[str] = frozenset(),
 ) -> Iterator[StatedRequirement]:
     """Yield the required constraints of each subject, then those of requirements without subject.
 
-    Requirements that are only text follow. Requirements of libraries that the model does not use
-    are left out. *reasons* are messages about constraints, by the id of the constraint.
+    Requirements that are only text follow. *reasons* are messages about constraints, by the id of
+    the constraint. Nothing is listed about *unused* elements of libraries.
     """
     contracts = list(contracts)
     described = {contract.origin for contract in contracts}
@@ -226,7 +229,7 @@ def list_stated_requirements(
         for statement in statements:
             constraint = statement.constraint
             listed.add(constraint.id)
-            if statement.is_assumed:
+            if statement.is_assumed or subject.id in unused:
                 continue
             reason = reasons.get(constraint.id, "the contract of its subject cannot express it")
             yield StatedRequirement(
@@ -236,7 +239,11 @@ def list_stated_requirements(
                 str(constraint.attrs.get("body", "")).strip(),
                 gap if constraint.id in origins else reason,
             )
-    requirements = _list_relevant_requirements(graph)
+    requirements = [
+        requirement
+        for requirement in filter(query.is_requirement, graph.of_kind(Kind.CLASS))
+        if _is_relevant(graph, requirement, unused)
+    ]
     for requirement in requirements:
         reason = _explain_missing_subject(graph, requirement)
         for statement in iter_statements(graph, requirement):
@@ -254,19 +261,10 @@ def list_stated_requirements(
             yield _describe_text(graph, requirement)
 
 
-def _list_relevant_requirements(graph: Graph) -> list[Element]:
-    """List the requirements of the model, and those of libraries that the model uses.
-
-    A library's requirement is used if an element of the model leads to it or to its subject.
-    """
-    used = find_used_library_elements(graph)
-    return [
-        requirement
-        for requirement in filter(query.is_requirement, graph.of_kind(Kind.CLASS))
-        if not requirement.attrs.get("external")
-        or requirement.id in used
-        or any(subject.id in used for subject in _list_declared_subjects(graph, requirement))
-    ]
+def _is_relevant(graph: Graph, requirement: Element, unused: Set[str]) -> bool:
+    """Whether a requirement or its subject belongs to the model or is used by it."""
+    subjects = _list_declared_subjects(graph, requirement)
+    return requirement.id not in unused or any(subject.id not in unused for subject in subjects)
 
 
 def _list_declared_subjects(graph: Graph, requirement: Element) -> list[Element]:
@@ -274,27 +272,6 @@ def _list_declared_subjects(graph: Graph, requirement: Element) -> list[Element]
     family = (requirement, *query.generals(graph, requirement))
     declared = (graph.targets(member, Edge.SUBJECT) for member in family)
     return next(filter(None, declared), [])
-
-
-def find_used_library_elements(graph: Graph) -> set[str]:
-    """Return the ids of the library elements to which elements of the model lead.
-
-    Relations lead to them, directly or through other library elements, and from an element to its
-    members, but not from a package.
-    """
-    used: set[str] = set()
-    worklist = [
-        graph[target]
-        for _, source, target in graph.edges()
-        if graph[target].attrs.get("external") and not graph[source].attrs.get("external")
-    ]
-    while worklist:
-        element = worklist.pop()
-        if element.id not in used and element.attrs.get("external"):
-            used.add(element.id)
-            if element.kind is not Kind.PACKAGE:
-                worklist += (item for edge in Edge for item in graph.targets(element, edge))
-    return used
 
 
 def _find_gap(graph: Graph, subject: Element, described: Set[str]) -> str:
