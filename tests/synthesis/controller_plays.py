@@ -3,11 +3,11 @@
 import random
 
 import networkx as nx
-from explicit import list_evaluations, list_valuations
+from explicit import list_evaluations, list_viable_inputs
 from msgspec.structs import replace
 
 from sysmlc.logic import domains
-from sysmlc.logic.contract import Class, Owner
+from sysmlc.logic.contract import Class
 from sysmlc.logic.evaluate import compile_evaluation, find_violation
 from sysmlc.logic.formula import Const, negate
 from sysmlc.synthesis import Manager, make_game
@@ -49,7 +49,7 @@ def play_randomly(contract, answer, length, seed):
     """
     die = random.Random(seed)
     steps = []
-    valuations = list_valuations(contract, Owner.ENVIRONMENT)
+    valuations = list_viable_inputs(contract)
     class_ = Class.INIT
     while len(steps) < length:
         assumptions = list_evaluations(contract.assumptions, class_)
@@ -161,7 +161,7 @@ class ClosedLoop:
 
     def __init__(self, machine, contract):
         self.machine, self.contract = machine, contract
-        self.valuations = list_valuations(contract, Owner.ENVIRONMENT)
+        self.valuations = list_viable_inputs(contract)
         self.is_stuck = False
         self.graph = nx.DiGraph()
         self.starts = self.list_steps_after([], 0, Class.INIT)

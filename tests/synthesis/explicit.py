@@ -17,7 +17,7 @@ class ExplicitGame:
     """The game of a contract, with all states and moves in lists."""
 
     def __init__(self, contract: Contract) -> None:
-        self.inputs = list_valuations(contract, Owner.ENVIRONMENT)
+        self.inputs = list_viable_inputs(contract)
         self.outputs = list_valuations(contract, Owner.SYSTEM)
         self.contract = contract
         self.states = list(product(range(len(self.inputs)), range(len(self.outputs))))
@@ -113,6 +113,28 @@ def list_valuations(contract: Contract, owner: Owner):
     return list(
         domains.valuations({v.name: v.domain for v in contract.variables if v.owner is owner})
     )
+
+
+def list_viable_inputs(contract: Contract):
+    """Return the inputs with which some run satisfies the safety assumptions, if outputs help.
+
+    With any other input, the environment has violated the assumptions already.
+    """
+    assumptions = list_evaluations(contract.assumptions, Class.SAFETY)
+    inputs, outputs = (list_valuations(contract, owner) for owner in Owner)
+    while True:
+        viable = [
+            current
+            for current in inputs
+            if any(
+                all(rule(current | answer, after) for rule in assumptions)
+                for answer in outputs
+                for after in inputs
+            )
+        ]
+        if viable == inputs:
+            return viable
+        inputs = viable
 
 
 def list_evaluations(conjuncts, class_: Class):

@@ -27,6 +27,12 @@ class ListedRuns:
         ]
         self.recurring = list_evaluations(conjuncts, Class.LIVENESS)
 
+    def remove_states(self, states) -> None:
+        """Remove the runs through some states."""
+        removed = set(states)
+        self.graph.remove_nodes_from(removed)
+        self.starts = [state for state in self.starts if state not in removed]
+
     def find_fair_states(self, graph) -> set[int]:
         """Return the states of *graph* from which a fair run continues in it."""
         cores = [

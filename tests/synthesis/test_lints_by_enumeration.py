@@ -28,9 +28,7 @@ class ReferenceLints:
 
     def __init__(self, contract) -> None:
         self.contract = contract
-        self.inputs = {
-            variable.name for variable in contract.variables if variable.owner is Owner.ENVIRONMENT
-        }
+        self.game = ExplicitGame(contract)
 
     def find_codes(self) -> set[str]:
         if not ListedRuns(self.contract.variables, self.contract.assumptions).is_possible():
@@ -81,31 +79,18 @@ class ReferenceLints:
     def is_forced(self, contract) -> bool:
         never = Conjunct(f.FALSE, Class.LIVENESS, "")
         without_goals = drop_recurring(contract, "guarantees")
-        game = ExplicitGame(
-            self.shift_input_assumptions(
-                replace(without_goals, guarantees=(*without_goals.guarantees, never))
-            )
-        )
+        game = ExplicitGame(replace(without_goals, guarantees=(*without_goals.guarantees, never)))
         reachable = self.list_reachable_states(without_goals)
         return any(game.value[state] in reachable for state in game.find_winning_states())
 
-    def shift_input_assumptions(self, contract):
-        """Let invariant assumptions about inputs hold in the step to which they refer."""
-        assumptions = []
-        for conjunct in contract.assumptions:
-            variables = f.variables(conjunct.formula)
-            is_plain = all(
-                variable.name in self.inputs and not variable.primed for variable in variables
-            )
-            if conjunct.class_ is Class.SAFETY and is_plain:
-                assumptions.append(replace(conjunct, class_=Class.INIT))
-                conjunct = replace(conjunct, formula=f.prime(conjunct.formula))
-            assumptions.append(conjunct)
-        return replace(contract, assumptions=tuple(assumptions))
-
     def list_reachable_states(self, contract):
-        contract = self.shift_input_assumptions(contract)
+        """Return the states that a run reaches in which all inputs can be continued."""
         runs = ListedRuns(contract.variables, (*contract.assumptions, *contract.guarantees))
+        runs.remove_states(
+            index
+            for index, value in enumerate(runs.values)
+            if not any(inputs.items() <= value.items() for inputs in self.game.inputs)
+        )
         return [runs.values[state] for state in sorted(runs.find_reachable_states())]
 
     def list_outputs(self):
@@ -119,19 +104,10 @@ class ReferenceLints:
         ]
 
     def list_next_inputs(self, state):
-        assumptions = list_evaluations(
-            self.shift_input_assumptions(self.contract).assumptions, Class.SAFETY
+        moves = next(
+            self.game.moves[index] for index, value in self.game.value.items() if value == state
         )
-        domains_by_name = {
-            variable.name: variable.domain
-            for variable in self.contract.variables
-            if variable.name in self.inputs
-        }
-        return [
-            inputs
-            for inputs in domains.valuations(domains_by_name)
-            if all(r(state, inputs) for r in assumptions)
-        ]
+        return [self.game.inputs[next_input] for next_input in moves]
 
     def is_free(self, variable) -> bool:
         """Whether each value may follow: in some step for a quantity, in all steps for a choice."""

@@ -24,7 +24,8 @@ Examples:
   sysmlc contracts accept plant.uml#Plant::Gate monday.csv
   sysmlc contracts accept plant.sysml run.json -c Plant::Cell --strict
 
-Exit codes: 0 no step breaks a guarantee, 1 a step does, 2 the run could not be read.""",
+Exit codes: 0 no step breaks a guarantee, 1 a step does, 2 the run could not be read
+or nothing in it could be checked.""",
 )
 @click.argument("operand", metavar="CONTRACT")
 @click.argument("run_file", type=click.Path(path_type=Path), metavar="RUN")
@@ -68,14 +69,19 @@ def accept_command(
         session.fail(
             f"name the component of the run, by -c or FILE#COMPONENT: {names or 'there is none'}"
         )
-    summary = _accept_run(contract_file, contracts[0], run_file)
+    summary, is_checked = _accept_run(contract_file, contracts[0], run_file)
     show_results(contract_file, settings, [summary] if summary else [])
     is_strict = settings.strict or config.strict
-    ctx.exit(compute_exit_code(contract_file.sink, is_strict) if summary else 2)
+    ctx.exit(compute_exit_code(contract_file.sink, is_strict) if is_checked else 2)
 
 
-def _accept_run(contract_file: "ContractFile", contract: "Contract", path: Path) -> str:
-    """Report the first violation in a run; return a summary, or nothing for an unreadable run."""
+def _accept_run(
+    contract_file: "ContractFile", contract: "Contract", path: Path
+) -> tuple[str, bool]:
+    """Report the first violation in a run; return a summary, and whether anything was checked.
+
+    The summary of an unreadable run is empty.
+    """
     from sysmlc.cli.session import fail
     from sysmlc.diagnostics import Place
     from sysmlc.logic.formats.recorded_runs import read_run
@@ -89,36 +95,52 @@ def _accept_run(contract_file: "ContractFile", contract: "Contract", path: Path)
         source = Source(name, read_whole(path, name, DOCUMENT_LIMITS))
     except SourceError as problem:
         fail(f"cannot read '{problem.file}': {problem.message}")
-    run = read_run(source, contract, contract_file.sink)
-    if run is None:
-        return ""
     monitor = build_monitor(contract)
-    _report_missing_variables(contract_file, monitor, run.missing, name)
+    run = read_run(source, monitor.contract, contract_file.sink)
+    if run is None:
+        return "", False
+    skipped = _count_skipped_checks(monitor, run.missing)
+    _report_missing_variables(contract_file, monitor, run.missing, skipped, name)
+    if skipped == len(monitor.checks):
+        reason = (
+            f"each check needs variables without values in '{name}'"
+            if skipped
+            else "no finite run breaks this contract"
+        )
+        return f"{contract.component}: nothing was checked: {reason}", False
     violation = find_first_violation(monitor, run.steps, run.missing)
     if violation is None:
-        return f"{contract.component}: {len(run.steps)} steps, no check is broken"
+        steps = "1 step" if len(run.steps) == 1 else f"{len(run.steps)} steps"
+        rest = f"; {skipped} of {len(monitor.checks)} checks were skipped" if skipped else ""
+        return f"{contract.component}: {steps}, no check is broken{rest}", True
     place = Place(name, line=run.lines[violation.step], column=1)
     _report_violation(contract_file, contract, violation, place)
-    return f"{contract.component}: step {violation.step + 1} breaks the contract"
+    return f"{contract.component}: step {violation.step + 1} breaks the contract", True
+
+
+def _count_skipped_checks(monitor: "Monitor", missing: frozenset[str]) -> int:
+    return sum(
+        not missing.isdisjoint(monitor.find_needed_variables(check.conjunct.formula))
+        for check in monitor.checks
+    )
 
 
 def _report_missing_variables(
-    contract_file: "ContractFile", monitor: "Monitor", missing: frozenset[str], name: str
+    contract_file: "ContractFile",
+    monitor: "Monitor",
+    missing: frozenset[str],
+    skipped: int,
+    name: str,
 ) -> None:
     from sysmlc.logic.formats.rules import VARIABLES_NOT_RECORDED
 
-    skipped = [
-        check
-        for check in monitor.checks
-        if not missing.isdisjoint(monitor.find_needed_variables(check.conjunct.formula))
-    ]
     if skipped:
         contract_file.sink.report(
             VARIABLES_NOT_RECORDED,
             contract_file.place(monitor.contract.origin),
             file=name,
             names=", ".join(f"'{variable}'" for variable in sorted(missing)),
-            skipped=len(skipped),
+            skipped=skipped,
             total=len(monitor.checks),
             component=monitor.contract.component,
         )

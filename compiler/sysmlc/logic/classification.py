@@ -6,7 +6,7 @@ from msgspec.structs import replace
 
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Class, Conjunct
-from sysmlc.logic.formula import FUTURE, Apply, Formula, Op, has_future, has_primes
+from sysmlc.logic.formula import FUTURE, Apply, Formula, Op, has_future, has_past, has_primes
 
 
 def classify(formula: Formula) -> Iterator[tuple[Class, Formula]]:
@@ -74,7 +74,8 @@ def _replace_next_by_primes(formula: Formula) -> Formula | None:
     """Return the formula with primes for X, or None if it reaches further than one step."""
     match formula:
         case Apply(Op.NEXT, (inner,)):
-            is_one_step = not has_future(inner) and not has_primes(inner)
+            # The past as seen from the next step is not the past of the next values.
+            is_one_step = not has_future(inner) and not has_primes(inner) and not has_past(inner)
             return f.prime(inner) if is_one_step else None
         case Apply(op, _) if op in FUTURE:
             return None

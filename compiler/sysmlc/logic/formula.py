@@ -4,6 +4,7 @@ The functions ``var``, ``eq``, ``both``, ``always`` and others build formulas; t
 and fold constants. The classes build exactly the formula that is given.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import lru_cache
@@ -258,6 +259,17 @@ def variables(formula: Formula) -> tuple[Var, ...]:
 def variable_names(*formulas: Formula) -> set[str]:
     """Return the names of all variables of the formulas, primed or not."""
     return {variable.name for formula in formulas for variable in variables(formula)}
+
+
+def rename_variables(formula: Formula, names: Mapping[str, str]) -> Formula:
+    """Return the formula with renamed variables, primed ones included."""
+    match formula:
+        case Var(name, primed):
+            return Var(names.get(name, name), primed)
+        case Apply(op, args):
+            return Apply(op, tuple(rename_variables(arg, names) for arg in args))
+        case _:
+            return formula
 
 
 def split_conjunction(formula: Formula) -> tuple[Formula, ...]:

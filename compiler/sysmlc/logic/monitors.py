@@ -14,9 +14,13 @@ from msgspec.structs import replace
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Class, Conjunct, Contract, IntegerDomain, Owner, Variable
 from sysmlc.logic.evaluate import compile_evaluation
-from sysmlc.logic.formula import Formula, Literal, Op, has_past, has_primes, variable_names
-from sysmlc.logic.reduction.contract_reduction import as_ltl, reduce_contract
-from sysmlc.logic.reduction.history import HistoryBit
+from sysmlc.logic.formula import Formula, Literal, Op, has_primes, variable_names
+from sysmlc.logic.reduction.contract_reduction import reduce_contract
+from sysmlc.logic.reduction.history import (
+    HistoryBit,
+    list_history_bits,
+    list_history_conjuncts,
+)
 
 Valuation = Mapping[str, Literal]
 
@@ -33,6 +37,7 @@ class Monitor(Struct, frozen=True):
     """The checks of one contract, assumptions first, and the history bits that they read."""
 
     contract: Contract
+    """The contract; its variables are those that a run has to contain."""
     checks: tuple[Check, ...]
     bits: tuple[HistoryBit, ...]
     unmonitored: tuple[Conjunct, ...]
@@ -62,41 +67,29 @@ def build_monitor(contract: Contract) -> Monitor:
 
     An integer outside of its range breaks a check, too, of the side that decides the variable.
     """
-    reduced = reduce_contract(_expose_past(contract))
-    guarantees = reduced.contract.guarantees
-    # The rules of the history bits are the last guarantees, two for each bit.
+    reduced = reduce_contract(contract)
+    bits = list_history_bits(reduced.contract)
+    bit_names = {bit.name for bit in bits}
+    recorded = tuple(item for item in contract.variables if item.name not in bit_names)
+    # The rules of the bits compute them, so that there is nothing to check about them.
+    rules = frozenset(list_history_conjuncts(reduced.contract))
     sides = (
         (Owner.ENVIRONMENT, reduced.contract.assumptions),
-        (Owner.SYSTEM, guarantees[: len(guarantees) - 2 * len(reduced.bits)]),
+        (Owner.SYSTEM, reduced.contract.guarantees),
     )
     checks: list[Check] = []
     unmonitored: list[Conjunct] = []
     for owner, conjuncts in sides:
-        checks += _check_ranges(contract.variables, owner)
+        checks += _check_ranges(recorded, owner)
         for conjunct in conjuncts:
+            if conjunct in rules:
+                continue
             if conjunct.class_ in (Class.INIT, Class.SAFETY):
                 checks.append(Check(conjunct, owner))
             else:
                 unmonitored.append(conjunct)
-    return Monitor(contract, tuple(checks), reduced.bits, tuple(unmonitored))
-
-
-def _expose_past(contract: Contract) -> Contract:
-    """Return the contract with operators of the past only in conjuncts that will be reduced."""
-
-    def expose(conjuncts: tuple[Conjunct, ...]) -> tuple[Conjunct, ...]:
-        return tuple(
-            replace(conjunct, formula=as_ltl(conjunct), class_=Class.OTHER)
-            if has_past(conjunct.formula)
-            else conjunct
-            for conjunct in conjuncts
-        )
-
-    return replace(
-        contract,
-        assumptions=expose(contract.assumptions),
-        guarantees=expose(contract.guarantees),
-    )
+    observed = replace(contract, variables=recorded)
+    return Monitor(observed, tuple(checks), bits, tuple(unmonitored))
 
 
 def _check_ranges(declared: Iterable[Variable], owner: Owner) -> Iterator[Check]:

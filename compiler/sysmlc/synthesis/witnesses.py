@@ -8,10 +8,9 @@ from msgspec.structs import replace
 from sysmlc.diagnostics import Rule, Sink, Subject
 from sysmlc.logic import formula as f
 from sysmlc.logic.components.names import Atom
-from sysmlc.logic.composition.naming import rename_variables
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.evaluate import value_of
-from sysmlc.logic.formula import Literal
+from sysmlc.logic.formula import Literal, rename_variables
 from sysmlc.logic.printing import print_formula, print_literal
 from sysmlc.support.output import assign_file_names
 from sysmlc.support.plantuml_text import escape_line, format_label

@@ -13,9 +13,8 @@ from sysmlc.ir import Edge, Element
 from sysmlc.logic.activities.token_nodes import Guard, Write
 from sysmlc.logic.components.machines import PlacedMachine
 from sysmlc.logic.components.objects import ComponentObject, Slot
-from sysmlc.logic.composition.naming import rename_variables
 from sysmlc.logic.contract import Variable
-from sysmlc.logic.formula import Formula
+from sysmlc.logic.formula import Formula, rename_variables
 from sysmlc.logic.machines.machine import Vertex
 
 COPY_SEPARATOR = "\x1e"

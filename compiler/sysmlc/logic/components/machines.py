@@ -17,10 +17,9 @@ from sysmlc.logic.components.objects import (
     Slot,
     is_value,
 )
-from sysmlc.logic.composition.naming import rename_variables
 from sysmlc.logic.contract import Class, Conjunct, EnumerationDomain, Owner, Variable
 from sysmlc.logic.feature_writes import WriterIndex, iter_writes
-from sysmlc.logic.formula import Const, Formula, Literal
+from sysmlc.logic.formula import Const, Formula, Literal, rename_variables
 from sysmlc.logic.identifiers import identifier
 from sysmlc.logic.machines.derivation import (
     describe_exploration,

@@ -36,7 +36,6 @@ from sysmlc.logic.components.objects import (
     Slot,
     is_value,
 )
-from sysmlc.logic.composition.naming import rename_variables
 from sysmlc.logic.composition.structure import find_drawn_activity
 from sysmlc.logic.contract import BooleanDomain, Owner, Variable
 from sysmlc.logic.identifiers import identifier
@@ -261,7 +260,7 @@ class Performances:
     ) -> None:
         element = self._graph[node.origin]
         run = copy.variables[node.run] if node.run else ""
-        done = None if node.done is None else rename_variables(node.done, copy.variables)
+        done = None if node.done is None else f.rename_variables(node.done, copy.variables)
         new = replace(node, id=ids[node.id], region=regions[node.region], run=run, done=done)
         is_work = node.kind is NodeKind.ACTION and bool(node.run)
         names = (*copy.caller.names, element.name)

@@ -20,7 +20,7 @@ from sysmlc.logic.contract import (
     Variable,
 )
 from sysmlc.logic.domains import describe
-from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
+from sysmlc.logic.formula import Const, Formula, Op, rename_variables
 
 
 class Wire(Struct, frozen=True):
@@ -136,17 +136,6 @@ def _rename_conjuncts(
 ) -> Iterator[Conjunct]:
     for conjunct in conjuncts:
         yield replace(conjunct, formula=rename_variables(conjunct.formula, names))
-
-
-def rename_variables(formula: Formula, names: Mapping[str, str]) -> Formula:
-    """Return the formula with renamed variables, primed ones included."""
-    match formula:
-        case Var(name, primed):
-            return Var(names.get(name, name), primed)
-        case Apply(op, args):
-            return Apply(op, tuple(rename_variables(arg, names) for arg in args))
-        case _:
-            return formula
 
 
 # -- ranges ------------------------------------------------------------------------------------

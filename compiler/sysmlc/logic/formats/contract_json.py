@@ -138,6 +138,7 @@ def _read_variable(name: str, declaration: object, offset: int) -> Variable:
         _OWNERS[owner],
         domain,
         text_at(declaration, "origin"),
+        is_auxiliary=declaration.get("auxiliary") is True,
         is_range_assumed=declaration.get("assumed") is True and isinstance(domain, IntegerDomain),
         condition=text_at(declaration, "condition"),
     )
@@ -278,6 +279,8 @@ def _encode_variable(variable: Variable) -> dict[str, object]:
         "type": encode_domain(variable.domain),
         "origin": variable.origin,
     }
+    if variable.is_auxiliary:
+        entry["auxiliary"] = True
     if variable.is_range_assumed:
         entry["assumed"] = True
     if variable.condition:

@@ -1,31 +1,29 @@
 """Reduction of contracts to GR(1); ``formula_reduction`` has the rules for formulas."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.logic import formula as f
-from sysmlc.logic.contract import Class, Conjunct, Contract
-from sysmlc.logic.formula import Formula, has_past, has_primes
+from sysmlc.logic.classification import classify
+from sysmlc.logic.contract import Class, Conjunct, Contract, Owner, drop_trivial
+from sysmlc.logic.formula import Apply, Formula, Var, has_past, has_primes, variable_names
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.formula_reduction import (
     FormulaReduction,
     NotReducibleError,
     reduce_formula,
 )
-from sysmlc.logic.reduction.history import History, HistoryBit
+from sysmlc.logic.reduction.history import History, HistoryBit, list_history_bits
+from sysmlc.logic.simplification import rebuild, substitute
 
 
 class ReducedContract(Struct, frozen=True):
-    """A contract whose conjuncts are in GR(1), except those in ``irreducible``, unchanged.
-
-    ``bits`` are the history bits whose rules are the last guarantees.
-    """
+    """A contract whose conjuncts are in GR(1), except those in ``irreducible``, unchanged."""
 
     contract: Contract
     irreducible: tuple[Conjunct, ...]
-    bits: tuple[HistoryBit, ...] = ()
 
 
 def reduce_contract(contract: Contract) -> ReducedContract:
@@ -39,7 +37,46 @@ def reduce_contract(contract: Contract) -> ReducedContract:
     assumptions = tuple(_reduce_conjuncts(contract.assumptions, history, irreducible))
     guarantees = tuple(_reduce_conjuncts(contract.guarantees, history, irreducible))
     extended = _extend(contract, assumptions, guarantees, history)
-    return ReducedContract(extended, tuple(irreducible), tuple(history.bits))
+    return ReducedContract(_state_assumptions_of_inputs(extended), tuple(irreducible))
+
+
+def _state_assumptions_of_inputs(contract: Contract) -> Contract:
+    """Return the contract in which no safety assumption is about the next value of a history bit.
+
+    The rule of the bit replaces it. An assumption about inputs and history bits of one step is
+    stated for the first step and for each next step, so that it is evaluated when the environment
+    chooses the inputs. As a condition on the present step, solvers of games evaluate it a step
+    late, when the system has already had to answer.
+    """
+    bits = {bit.name: bit for bit in list_history_bits(contract)}
+    if not bits:
+        return contract
+    decided = {item.name for item in contract.variables if item.owner is Owner.ENVIRONMENT}
+    decided |= bits.keys()
+    assumptions: list[Conjunct] = []
+    for conjunct in contract.assumptions:
+        names = variable_names(conjunct.formula)
+        if names.isdisjoint(bits) or conjunct.class_ not in (Class.INIT, Class.SAFETY):
+            assumptions.append(conjunct)
+            continue
+        is_of_one_step = not has_primes(conjunct.formula) and names <= decided
+        if conjunct.class_ is Class.INIT or is_of_one_step:
+            first = substitute(conjunct.formula, {name: f.const(bits[name].start) for name in bits})
+            assumptions.append(replace(conjunct, formula=first, class_=Class.INIT))
+        if conjunct.class_ is Class.SAFETY:
+            step = f.prime(conjunct.formula) if is_of_one_step else conjunct.formula
+            assumptions.append(replace(conjunct, formula=_replace_next_bits(step, bits)))
+    return replace(contract, assumptions=drop_trivial(assumptions))
+
+
+def _replace_next_bits(formula: Formula, bits: Mapping[str, HistoryBit]) -> Formula:
+    match formula:
+        case Var(name, True) if name in bits:
+            return _replace_next_bits(bits[name].rule, bits)
+        case Apply(op, args):
+            return rebuild(op, tuple(_replace_next_bits(arg, bits) for arg in args))
+        case _:
+            return formula
 
 
 def _reduce_conjuncts(
@@ -62,6 +99,8 @@ def _reduce_conjuncts(
 
 def is_gr1(conjunct: Conjunct) -> bool:
     """Whether the conjunct is in GR(1) as it is."""
+    if has_past(conjunct.formula):
+        return False
     if conjunct.class_ is Class.LIVENESS:
         return not has_primes(conjunct.formula)
     return conjunct.class_ is not Class.OTHER
@@ -76,28 +115,29 @@ def as_ltl(conjunct: Conjunct) -> Formula:
     return conjunct.formula
 
 
-def add_history_bits(contract: Contract) -> Contract:
+def add_history_bits(contract: Contract, taken: Iterable[str] = ()) -> Contract:
     """Return the contract with history bits in place of operators of the past.
 
-    Raises NotReducibleError if an operator of the past is applied to the future.
+    No bit has a name in *taken*, or that of a variable. Raises NotReducibleError if an operator of
+    the past is applied to the future.
     """
-    history = History(variable.name for variable in contract.variables)
-    assumptions = _replace_past(contract.assumptions, history)
-    guarantees = _replace_past(contract.guarantees, history)
+    history = History((*taken, *(variable.name for variable in contract.variables)))
+    assumptions = tuple(_replace_past(contract.assumptions, history))
+    guarantees = tuple(_replace_past(contract.guarantees, history))
     return _extend(contract, assumptions, guarantees, history)
 
 
-def _replace_past(conjuncts: Iterable[Conjunct], history: History) -> tuple[Conjunct, ...]:
-    return tuple(
-        replace(
-            conjunct,
-            formula=FormulaReduction(history, conjunct.origin).replace_past(conjunct.formula),
-            wording=conjunct.wording or as_ltl(conjunct),
-        )
-        if has_past(conjunct.formula)
-        else conjunct
-        for conjunct in conjuncts
-    )
+def _replace_past(conjuncts: Iterable[Conjunct], history: History) -> Iterator[Conjunct]:
+    for conjunct in conjuncts:
+        if not has_past(conjunct.formula):
+            yield conjunct
+            continue
+        reduction = FormulaReduction(history, conjunct.origin)
+        formula = reduction.replace_past(conjunct.formula)
+        is_general = conjunct.class_ is Class.OTHER
+        for class_, part in classify(formula) if is_general else ((conjunct.class_, formula),):
+            wording = conjunct.wording or as_ltl(conjunct)
+            yield replace(conjunct, formula=part, class_=class_, wording=wording)
 
 
 def _extend(

@@ -10,8 +10,9 @@ from collections.abc import Iterator
 from sysmlc.logic import formula as f
 from sysmlc.logic.classification import classify
 from sysmlc.logic.contract import Class
-from sysmlc.logic.formula import FUTURE, PAST, Apply, Formula, Op, has_future, has_primes
+from sysmlc.logic.formula import FUTURE, PAST, Apply, Formula, Op, has_future, has_past, has_primes
 from sysmlc.logic.reduction.history import History
+from sysmlc.logic.reduction.normal_form import normalise
 
 _MAX_NEXT_DEPTH = 64
 """Most nested X of a formula; each level needs a history bit."""
@@ -32,6 +33,16 @@ def reduce_formula(formula: Formula, history: History, origin: str = "") -> list
 
     Raises NotReducibleError; then the history is unchanged.
     """
+    try:
+        return _reduce_as_written(formula, history, origin)
+    except NotReducibleError:
+        normal_form = normalise(formula)
+        if normal_form == formula:
+            raise
+        return _reduce_as_written(normal_form, history, origin)
+
+
+def _reduce_as_written(formula: Formula, history: History, origin: str) -> list[Part]:
     # A reduction that fails half way must leave no bits behind.
     trial = history.copy()
     parts = list(FormulaReduction(trial, origin).reduce(formula))
@@ -76,21 +87,42 @@ class FormulaReduction:
         """Return the formula with history bits in place of operators of the past."""
         if not isinstance(formula, Apply):
             return formula
+        if formula.op is Op.NEXT and has_past(formula):
+            return self._replace_past_of_next(formula.args[0])
         args = tuple(self.replace_past(arg) for arg in formula.args)
         if formula.op not in PAST:
             return _apply(formula.op, args)
         if any(has_future(arg) or has_primes(arg) for arg in args):
             raise NotReducibleError(formula)
         history, origin = self._history, self._origin
-        match formula.op:
-            case Op.SINCE:
-                return history.since(args[0], args[1], origin)
-            case Op.ONCE:
-                return history.once(args[0], origin)
-            case Op.PREVIOUS:
-                return history.previous(args[0], origin)
+        if formula.op is Op.SINCE:
+            return history.since(args[0], args[1], origin)
+        observe = {
+            Op.ONCE: history.once,
+            Op.PREVIOUS: history.previous,
+            Op.HISTORICALLY: history.historically,
+        }
+        return observe[formula.op](args[0], origin)
+
+    def _replace_past_of_next(self, formula: Formula) -> Formula:
+        """Return ``X formula`` with X in front of the present only: ``X Y p`` is p."""
+        match formula:
+            case Apply(Op.PREVIOUS, (inner,)):
+                return self.replace_past(inner)
+            case Apply(Op.SINCE, (stay, goal)):
+                next_stay = self._replace_past_of_next(stay)
+                return f.either(
+                    self._replace_past_of_next(goal),
+                    f.both(next_stay, self.replace_past(formula)),
+                )
+            case Apply(Op.ONCE, (inner,)):
+                return f.either(self._replace_past_of_next(inner), self.replace_past(formula))
+            case Apply(Op.HISTORICALLY, (inner,)):
+                return f.both(self._replace_past_of_next(inner), self.replace_past(formula))
+            case Apply(op, args) if has_past(formula) and op not in FUTURE:
+                return _apply(op, tuple(map(self._replace_past_of_next, args)))
             case _:
-                return history.historically(args[0], origin)
+                return Apply(Op.NEXT, (self.replace_past(formula),))
 
     # -- obligations: G (trigger -> body) --------------------------------------------------------
 

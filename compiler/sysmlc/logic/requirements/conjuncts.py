@@ -130,7 +130,9 @@ def make_contract(
     contract = Contract(
         component, subject.id, variables, (*inputs, *assumptions), (*outputs, *demands)
     )
-    return add_history_bits(contract)
+    # Behaviour and requirements are compared: their history bits need different names.
+    taken = () if behaviour is None else (variable.name for variable in behaviour.variables)
+    return add_history_bits(contract, taken)
 
 
 def state_initial_values(scope: Scope, names: set[str]) -> tuple[list[Conjunct], list[Conjunct]]:

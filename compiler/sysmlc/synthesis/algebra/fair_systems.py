@@ -15,7 +15,7 @@ from sysmlc.logic.contract import Class, Conjunct, Contract, Domain, Variable
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.reduction.contract_reduction import as_ltl, is_gr1
 from sysmlc.logic.reduction.formula_reduction import NotReducibleError, reduce_formula
-from sysmlc.logic.reduction.history import History
+from sysmlc.logic.reduction.history import History, share_history
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.bdd.symbols import SymbolError, Symbols, conjoin
 from sysmlc.synthesis.bdd.variable_order import list_related
@@ -261,8 +261,10 @@ def observe_histories(contracts: Iterable[Contract]) -> ObservedContracts:
 
     Raises OutsideGr1Error for a conjunct that no known reduction brings into GR(1).
     """
-    contracts = tuple(contracts)
-    history = History(variable.name for contract in contracts for variable in contract.variables)
+    contracts, shared = share_history(tuple(contracts))
+    history = History(
+        variable.name for contract in (*contracts, shared) for variable in contract.variables
+    )
     reduced_sides = [
         (
             tuple(_reduce_conjuncts(contract.assumptions, history)),
@@ -273,13 +275,13 @@ def observe_histories(contracts: Iterable[Contract]) -> ObservedContracts:
     observed = tuple(
         replace(
             contract,
-            variables=(*contract.variables, *history.variables),
+            variables=(*contract.variables, *shared.variables, *history.variables),
             assumptions=assumptions,
             guarantees=guarantees,
         )
         for contract, (assumptions, guarantees) in zip(contracts, reduced_sides, strict=True)
     )
-    return ObservedContracts(observed, tuple(history.conjuncts))
+    return ObservedContracts(observed, (*shared.guarantees, *history.conjuncts))
 
 
 def _reduce_conjuncts(conjuncts: Iterable[Conjunct], history: History) -> Iterator[Conjunct]:

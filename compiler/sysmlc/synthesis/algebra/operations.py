@@ -37,6 +37,7 @@ from sysmlc.logic.identifiers import identifier
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import as_ltl
 from sysmlc.logic.reduction.formula_reduction import NotReducibleError
+from sysmlc.logic.reduction.history import add_history, share_history
 from sysmlc.synthesis.algebra.fair_systems import DomainError
 from sysmlc.synthesis.algebra.refinement import RunSearch
 from sysmlc.synthesis.bdd.limits import LimitError
@@ -195,17 +196,18 @@ def divide(system: Contract, part: Contract, new_manager: ManagerFactory) -> Con
         if variable.name in inputs and not _is_input(variable):
             reason = f"'{variable.name}' is an output of '{part.component}' "
             raise OwnerError(f"{reason}and an input of '{system.component}'")
-    system, part = align_domains(system, part)
+    (system, part), history = share_history(align_domains(system, part))
     outputs = {variable.name for variable in part.variables if not _is_input(variable)}
-    simplification = _Simplification((system, part), new_manager)
+    simplification = _Simplification((system, part, history), new_manager)
     assumptions = _unite(system.assumptions, simplification.saturate(part, system.assumptions))
-    return Contract(
+    quotient = Contract(
         f"{system.component}_without_{_short_name(part)}",
         system.origin,
         _merge_variables((system, part), lambda name: name in inputs or name in outputs),
         assumptions,
         simplification.drop_entailed(_unite(part.assumptions, system.guarantees), assumptions),
     )
+    return add_history(quotient, history)
 
 
 def merge(first: Contract, second: Contract, new_manager: ManagerFactory) -> Contract:
@@ -214,13 +216,14 @@ def merge(first: Contract, second: Contract, new_manager: ManagerFactory) -> Con
     Raises DomainError, OwnerError, OutsideGr1Error, NotReducibleError, LimitError.
     """
     check_owners(first, second)
-    first, second = align_domains(first, second)
-    return _combine(
+    (first, second), history = share_history(align_domains(first, second))
+    merged = _combine(
         first,
         second,
         _unite(first.assumptions, second.assumptions),
         _unite(first.guarantees, second.guarantees),
     )
+    return add_history(merged, history)
 
 
 def conjoin(first: Contract, second: Contract, new_manager: ManagerFactory) -> Contract:
@@ -230,8 +233,8 @@ def conjoin(first: Contract, second: Contract, new_manager: ManagerFactory) -> C
     guarantees. Raises DomainError, OwnerError, OutsideGr1Error, NotReducibleError, LimitError.
     """
     check_owners(first, second)
-    first, second = align_domains(first, second)
-    simplification = _Simplification((first, second), new_manager)
+    (first, second), history = share_history(align_domains(first, second))
+    simplification = _Simplification((first, second, history), new_manager)
     only_first = simplification.drop_entailed(first.assumptions, second.assumptions)
     only_second = simplification.drop_entailed(second.assumptions, first.assumptions)
     if not only_first:
@@ -241,7 +244,7 @@ def conjoin(first: Contract, second: Contract, new_manager: ManagerFactory) -> C
     else:
         assumptions = _disjoin(first.assumptions, second.assumptions)
     guarantees = (simplification.saturate(side, assumptions) for side in (first, second))
-    return _combine(first, second, assumptions, _unite(*guarantees))
+    return add_history(_combine(first, second, assumptions, _unite(*guarantees)), history)
 
 
 def compose(first: Contract, second: Contract, new_manager: ManagerFactory) -> Contract:
@@ -257,9 +260,9 @@ def compose(first: Contract, second: Contract, new_manager: ManagerFactory) -> C
         if variable.name in outputs and not _is_input(variable):
             names = f"'{first.component}' and of '{second.component}'"
             raise OwnerError(f"'{variable.name}' is an output of {names}")
-    first, second = align_domains(first, second)
+    (first, second), history = share_history(align_domains(first, second))
     outputs |= {variable.name for variable in second.variables if not _is_input(variable)}
-    simplification = _Simplification((first, second), new_manager)
+    simplification = _Simplification((first, second, history), new_manager)
     assumptions = _unite(first.assumptions, second.assumptions)
     for candidate in assumptions:
         rest = tuple(conjunct for conjunct in assumptions if conjunct != candidate)
@@ -267,10 +270,11 @@ def compose(first: Contract, second: Contract, new_manager: ManagerFactory) -> C
         facts = (*facts, *simplification.promise(second, facts))
         if simplification.entails(facts, candidate):
             assumptions = rest
-    return replace(
+    composition = replace(
         _combine(first, second, assumptions, _unite(first.guarantees, second.guarantees)),
         variables=_merge_variables((first, second), lambda name: name not in outputs),
     )
+    return add_history(composition, history)
 
 
 def _disjoin(first: Conjuncts, second: Conjuncts) -> Conjuncts:

@@ -17,6 +17,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.basis import Basis, find_basis
 from sysmlc.logic.contract import Class, Conjunct, Contract
 from sysmlc.logic.reduction.contract_reduction import as_ltl, is_gr1
+from sysmlc.logic.reduction.history import list_history_conjuncts, share_history
 from sysmlc.synthesis.algebra.fair_systems import (
     FairSystem,
     Runs,
@@ -127,7 +128,8 @@ _TRACE_BUILDERS = {
 class RunSearch:
     """Questions about the runs that satisfy conjuncts in any LTL (``tableau``).
 
-    Each set of facts is explored once.
+    The history bits of the contracts follow their rules in all runs. Each set of facts is explored
+    once.
     """
 
     def __init__(self, contracts: Iterable[Contract], new_manager: ManagerFactory) -> None:
@@ -135,6 +137,11 @@ class RunSearch:
         self._contracts = tuple(contracts)
         self._new_manager = new_manager
         self._names = tuple(variable.name for variable in merge_variables(self._contracts))
+        self._history = dict.fromkeys(
+            conjunct
+            for contract in self._contracts
+            for conjunct in list_history_conjuncts(contract)
+        )
         self._entailments: dict[tuple[Conjunct, ...], Entailment] = {}
         self._start_time: float | None = None
 
@@ -185,7 +192,8 @@ class RunSearch:
 
     def _explore(self, facts: tuple[Conjunct, ...]) -> Entailment:
         if facts not in self._entailments:
-            variables, conjuncts = encode_conjuncts(facts, self._names)
+            observed = dict.fromkeys((*facts, *self._history))
+            variables, conjuncts = encode_conjuncts(observed, self._names)
             predictions = Contract("", "", variables, (), ())
             manager = self._new_manager()
             if self._start_time is not None:
@@ -250,7 +258,9 @@ def compare_conjuncts(
     the concrete guarantees entail the abstract guarantees. The conjuncts are in any LTL. Raises
     DomainError, OutsideGr1Error, NotReducibleError, LimitError.
     """
-    search, basis = RunSearch((concrete, abstract), new_manager), find_basis((concrete, abstract))
+    basis = find_basis((concrete, abstract))
+    (concrete, abstract), history = share_history((concrete, abstract))
+    search = RunSearch((concrete, abstract, history), new_manager)
     facts = abstract.assumptions
     for assumption in concrete.assumptions:
         yield Comparison(assumption, True, search.find_violation(facts, assumption), basis)

@@ -15,6 +15,7 @@ from msgspec.structs import replace
 from sysmlc.logic import domains
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.formula import Literal
+from sysmlc.logic.reduction.history import list_history_conjuncts
 from sysmlc.support.disjoint_sets import group_related
 from sysmlc.synthesis.algebra.fair_systems import (
     FairSystem,
@@ -32,6 +33,7 @@ from sysmlc.synthesis.controllers.closed_loop import (
     translate_controller,
 )
 from sysmlc.synthesis.controllers.quick_check import QuickCheck
+from sysmlc.synthesis.games.dead_ends import find_viable_inputs
 from sysmlc.synthesis.games.relational_product import Product
 
 
@@ -70,7 +72,15 @@ class _Verification:
         assumption_system = self.universe.system(contract.assumptions, looks_ahead=False)
         self.assumptions, self.fairness = assumption_system.parts, assumption_system.fairness
         self.initial_inputs = assumption_system.init
+        self._exclude_dead_ends()
         self.initial = Product(manager, self.first_relation, ())(self.initial_inputs)
+
+    def _exclude_dead_ends(self) -> None:
+        history = self.universe.system(list_history_conjuncts(self.contract), looks_ahead=False)
+        viable = find_viable_inputs(self.symbols, self.assumptions, (history.init,), history.parts)
+        if viable is not None:
+            self.initial_inputs = self.initial_inputs & viable.first
+            self.assumptions = (*self.assumptions, viable.later)
 
     @cached_property
     def runs(self) -> Runs:

@@ -7,12 +7,15 @@ guarantees bind the system until the environment breaks an assumption (docs/synt
 from collections.abc import Iterable, Iterator, Mapping
 
 from msgspec import Struct, field
+from msgspec.structs import replace
 
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owner
 from sysmlc.logic.formula import Formula, variables
+from sysmlc.logic.reduction.history import list_history_conjuncts
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.bdd.symbols import SymbolError, Symbols
 from sysmlc.synthesis.bdd.variable_order import VariableOrder, list_related
+from sysmlc.synthesis.games.dead_ends import find_viable_inputs
 
 
 class OutsideGr1Error(Exception):
@@ -25,7 +28,10 @@ class OutsideGr1Error(Exception):
 
 
 class Constraint(Struct, frozen=True):
-    """A diagram and the conjunct that it encodes; no conjunct if it is the range of a variable."""
+    """A diagram and the conjunct that it encodes.
+
+    The range of a variable, and the exclusion of dead ends, have no conjunct.
+    """
 
     node: Node
     conjunct: Conjunct | None = None
@@ -115,7 +121,7 @@ def _translate(contract: Contract, symbols: Symbols) -> Game:
         return tuple(_encode_ranges(symbols, owner, primed))
 
     assumptions, guarantees = contract.assumptions, contract.guarantees
-    return Game(
+    game = Game(
         manager=symbols.manager,
         symbols=symbols,
         init_assumptions=parts(assumptions, Class.INIT) + ranges(Owner.ENVIRONMENT, False),
@@ -124,6 +130,33 @@ def _translate(contract: Contract, symbols: Symbols) -> Game:
         guarantees=parts(guarantees, Class.SAFETY) + ranges(Owner.SYSTEM, True),
         fairness=parts(assumptions, Class.LIVENESS),
         goals=parts(guarantees, Class.LIVENESS),
+    )
+    return _exclude_dead_ends(game, list_history_conjuncts(contract))
+
+
+def _exclude_dead_ends(game: Game, history: Iterable[Conjunct]) -> Game:
+    """Return the game in which the environment chooses viable inputs only."""
+    history_conjuncts = frozenset(history)
+
+    def restrict_outputs(constraints: Iterable[Constraint]) -> list[Node]:
+        return [
+            constraint.node
+            for constraint in constraints
+            if constraint.conjunct is None or constraint.conjunct in history_conjuncts
+        ]
+
+    viable = find_viable_inputs(
+        game.symbols,
+        [constraint.node for constraint in game.assumptions],
+        restrict_outputs(game.init_guarantees),
+        restrict_outputs(game.guarantees),
+    )
+    if viable is None:
+        return game
+    return replace(
+        game,
+        init_assumptions=(*game.init_assumptions, Constraint(viable.first)),
+        assumptions=(*game.assumptions, Constraint(viable.later)),
     )
 
 

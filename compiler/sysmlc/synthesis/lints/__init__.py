@@ -12,13 +12,7 @@ from sysmlc.logic.printing import print_formula
 from sysmlc.synthesis import rules
 from sysmlc.synthesis.algebra.refinement import find_environment_run
 from sysmlc.synthesis.bdd.manager import ManagerFactory
-from sysmlc.synthesis.lints.checks import (
-    LintFinding,
-    check_games,
-    check_ownership,
-    check_runs,
-    state_assumptions_of_next_step,
-)
+from sysmlc.synthesis.lints.checks import LintFinding, check_games, check_ownership, check_runs
 
 Place = Callable[[str], Subject]
 """Maps the origin of a contract or conjunct to the subject of diagnostics."""
@@ -69,7 +63,7 @@ def _find_all(contract: Contract, create_manager: ManagerFactory) -> Iterator[Li
     if find_environment_run(contract, create_manager()) is None:
         yield LintFinding(rules.NO_ENVIRONMENT)
         return
-    yield from check_runs(state_assumptions_of_next_step(contract), create_manager())
+    yield from check_runs(contract, create_manager())
     yield from check_games(contract, create_manager)
 
 

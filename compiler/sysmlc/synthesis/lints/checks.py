@@ -22,7 +22,7 @@ from sysmlc.logic.contract import (
     Variable,
 )
 from sysmlc.logic.domains import size, values
-from sysmlc.logic.formula import Formula, Var, prime, variable_names, variables
+from sysmlc.logic.formula import Formula, Var, variable_names, variables
 from sysmlc.logic.printing import print_formula, print_literal
 from sysmlc.synthesis import rules
 from sysmlc.synthesis.algebra.fair_systems import FairSystem, Runs
@@ -58,38 +58,6 @@ def check_ownership(contract: Contract) -> Iterator[LintFinding]:
     for conjunct in (*contract.assumptions, *contract.guarantees):
         if conjunct.class_ is Class.LIVENESS and _primed_names(conjunct.formula):
             yield LintFinding(rules.NEXT_IN_LIVENESS, conjunct)
-
-
-def state_assumptions_of_next_step(contract: Contract) -> Contract:
-    """Return the contract with ``G p`` about inputs alone replaced by ``p`` and ``G (next p)``.
-
-    A game checks an assumption without primes one step late. The environment would seem to be able
-    to violate it and to have no next input then, although it chooses the inputs itself.
-    """
-    inputs = {
-        variable.name for variable in contract.variables if variable.owner is Owner.ENVIRONMENT
-    }
-    return replace(
-        contract,
-        assumptions=tuple(
-            assumption
-            for conjunct in contract.assumptions
-            for assumption in _split_assumption(conjunct, inputs)
-        ),
-    )
-
-
-def _split_assumption(conjunct: Conjunct, inputs: set[str]) -> Iterator[Conjunct]:
-    names = variable_names(conjunct.formula)
-    if (
-        conjunct.class_ is not Class.SAFETY
-        or not names <= inputs
-        or _primed_names(conjunct.formula)
-    ):
-        yield conjunct
-        return
-    yield replace(conjunct, class_=Class.INIT)
-    yield replace(conjunct, formula=prime(conjunct.formula))
 
 
 def _sole_owner(conjunct: Conjunct, owners: dict[str, Owner]) -> Owner | None:
@@ -220,10 +188,7 @@ def is_forced(contract: Contract, create_manager: ManagerFactory) -> bool:
         guarantee for guarantee in contract.guarantees if guarantee.class_ is not Class.LIVENESS
     )
     game = make_game(
-        state_assumptions_of_next_step(
-            replace(contract, guarantees=(*safety_guarantees, impossible_goal))
-        ),
-        create_manager(),
+        replace(contract, guarantees=(*safety_guarantees, impossible_goal)), create_manager()
     )
     reachable = Runs(_system_of_game(game)).reachable
     return reachable & solve(game).winning != game.manager.false
