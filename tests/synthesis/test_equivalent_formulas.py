@@ -130,7 +130,7 @@ def test_equal_contracts_have_equal_verdicts(start):
             assert check_behaviour(behaviour, contract) == check_behaviour(behaviour, equal), words
         for concrete, abstract in ((contract, equal), (equal, contract)):
             assert list(find_refinement_failures(concrete, abstract, Manager)) == [], words
-    assert decided > 0.9 * BATCH
+    assert decided > 0.8 * BATCH
 
 
 @pytest.mark.parametrize("start", quick_first(range(0, SUITE, BATCH), SUITE // BATCH // 6))
