@@ -339,3 +339,48 @@ def test_a_recorded_run_outside_an_assumed_range_is_not_the_fault_of_the_compone
     assert "SM593" in result.stdout + result.stderr
     assert "'count' stays between 0 and 15, which is assumed." in result.stdout + result.stderr
     assert result.exit_code == 0
+
+
+COMPOSITION = """package P {
+    private import ScalarValues::*;
+    item def Go;
+    part def Sensor {
+        attribute temp : Real;
+        attribute count : Integer := 0;
+        out attribute hot : Boolean := false;
+        exhibit state S {
+            entry; then A; state A; state B;
+            transition first A accept Go {} do assign hot := true then B;
+            transition first A accept Go {} do assign count := count + 1 then B;
+        }
+    }
+    part def Lamp { in attribute hot : Boolean; out attribute on : Boolean := false; }
+    requirement def Dark {
+        subject lamp : Lamp;
+        assume constraint { language "ltl" /* G !hot */ }
+        require constraint { language "ltl" /* G !on */ }
+    }
+    part def Plant { part sensor : Sensor; part lamp : Lamp; connect sensor.hot to lamp.hot; }
+}"""
+
+
+def check_composition(workspace, *guards):
+    head, middle, tail = COMPOSITION.split("{} ")
+    workspace.write("model.sysml", f"{head}{guards[0]} {middle}{guards[1]} {tail}")
+    result = workspace.sysmlc("contracts", "check", "model.sysml")
+    return result.stdout.splitlines()[-1], result
+
+
+def test_parts_that_an_unread_condition_separates_are_not_decided(workspace, all_passes):
+    line, result = check_composition(workspace, "if temp < 18.0", "if temp >= 18.0")
+    assert line == "P::Plant: the composition of its parts is not checked"
+    assert "it depends on 'temp < 18.0' and 'temp >= 18.0'" in result.stdout + result.stderr
+    assert "SM595" not in result.stdout + result.stderr
+
+
+def test_the_verdict_about_parts_names_assumed_ranges(workspace, all_passes):
+    line, result = check_composition(workspace, "", "")
+    assert (
+        line == "P::Plant: its 2 parts do not fit together within sensor.count in 0..15 (assumed)"
+    )
+    assert "SM595" in result.stdout + result.stderr

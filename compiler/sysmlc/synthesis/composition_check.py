@@ -11,6 +11,7 @@ from msgspec.structs import replace
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.logic import formula as f
+from sysmlc.logic.basis import Basis, find_basis
 from sysmlc.logic.contract import Class, Composite, Conjunct, Contract, Owner
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.printing import print_formula
@@ -21,6 +22,7 @@ from sysmlc.synthesis.algebra.fair_systems import DomainError
 from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.decision import Options, Place
 from sysmlc.synthesis.games.game import OutsideGr1Error
+from sysmlc.synthesis.rules import DEPENDS
 from sysmlc.synthesis.witnesses import (
     Party,
     Witness,
@@ -61,7 +63,7 @@ CONTRADICT = rule(
     "SM548",
     "parts-contradict",
     Severity.ERROR,
-    "no run satisfies the guarantees of all parts of '{component}'",
+    "no run satisfies the guarantees of all parts of '{component}'{within}",
     help="change one of the guarantees, or the connections of the parts",
 )
 LOST = rule(
@@ -95,10 +97,13 @@ class CompositionVerdict(Struct, frozen=True):
     """Whether all assumptions of parts are discharged and the parts guarantee what the block
     guarantees; None if that is not decided."""
     witnesses: tuple[Witness, ...] = ()
+    basis: Basis = Basis()
+    """The ranges that are assumed in the contracts of the parts and of the block."""
 
     def text(self) -> str:
         """Return the verdict on one line."""
-        return f"{self.component}: {self._verdict()}"
+        within = "" if self.is_satisfied is None else self.basis.range_text
+        return f"{self.component}: {self._verdict()}{within}"
 
     def _verdict(self) -> str:
         if self.is_satisfied is None:
@@ -159,6 +164,7 @@ def check_compositions(
             has_shared,
             is_satisfied,
             witnesses,
+            find_basis(_list_contracts(composite)),
         )
 
 
@@ -177,6 +183,8 @@ def _compose(
         subject, reason = place(composite.origin), describe_problem(problem)
         sink.report(NOT_COMPOSED, subject, component=composite.component, reason=reason)
         return None
+    undecided = composition.undecided
+    composition = _drop_doubtful(composite, composition, place, sink)
     if composition.conflict:
         _report_conflict(composite, composition, place, sink)
     for assumption in _drop_repeated(composition.open):
@@ -188,8 +196,8 @@ def _compose(
         )
     for loss in composition.losses:
         report_failure(LOST, loss, composite.component, place(composite.origin), sink)
-    if composition.undecided:
-        names = ", ".join(f"'{name}'" for name in composition.undecided)
+    if undecided:
+        names = ", ".join(f"'{name}'" for name in undecided)
         sink.report(
             NOT_COMPOSED,
             place(composite.origin),
@@ -198,6 +206,44 @@ def _compose(
             help="let a part assign the feature, or a behaviour of the block",
         )
     return composition
+
+
+def _list_contracts(composite: Composite) -> tuple[Contract, ...]:
+    wiring = Contract("", "", (), (), composite.wiring)
+    whole = () if composite.whole is None else (composite.whole,)
+    return (*(part.contract for part in composite.parts), *whole, wiring)
+
+
+def _drop_doubtful(
+    composite: Composite, composition: Composition, place: Place, sink: Sink
+) -> Composition:
+    """Return the composition without runs that depend on conditions without formula; report them.
+
+    Such a run need not be a run of the parts.
+    """
+    contracts = _list_contracts(composite)
+    doubtful: dict[Conjunct, Basis] = {}
+    open_conjuncts = (item.conjunct for item in composition.open if item.trace is not None)
+    failures = (item.conjunct for item in (*composition.failures, *composition.losses))
+    for conjunct in (*open_conjuncts, *failures):
+        basis = find_basis(contracts, f.variable_names(conjunct.formula))
+        if basis.conditions:
+            doubtful[conjunct] = Basis(conditions=basis.conditions)
+    for conjunct, basis in doubtful.items():
+        formula = print_formula(conjunct.formula)
+        sink.report(
+            DEPENDS,
+            place(conjunct.origin or composite.origin),
+            question=f"the parts of '{composite.component}' guarantee '{formula}'",
+            reason=basis.reason,
+        )
+    return replace(
+        composition,
+        open=tuple(item for item in composition.open if item.conjunct not in doubtful),
+        failures=tuple(item for item in composition.failures if item.conjunct not in doubtful),
+        losses=tuple(item for item in composition.losses if item.conjunct not in doubtful),
+        undecided=composition.undecided + tuple(b.reason for b in doubtful.values()),
+    )
 
 
 def _note_open_assumptions(composition: Composition) -> tuple[str, ...]:
@@ -222,7 +268,9 @@ def _report_conflict(
         for conjunct in composition.conflict
     )
     subject = place(composite.origin)
-    sink.report(CONTRADICT, subject, notes=tuple(notes), component=composite.component)
+    within = find_basis(_list_contracts(composite)).range_text
+    component = composite.component
+    sink.report(CONTRADICT, subject, notes=tuple(notes), component=component, within=within)
 
 
 def _drop_repeated(assumptions: Iterable[OpenAssumption]) -> Iterator[OpenAssumption]:
