@@ -36,23 +36,24 @@ Verdict = OneOf["holds", "broken", "not-decided"]
 def derive_recipe(recipe: Recipe) -> Derived | None:
     """Return the duration of a recipe; None if the duration of a task is unknown.
 
-    Tasks that may run at the same time and need one machine follow one another.
+    Tasks that may run at the same time and need one machine follow one another. The minimum is that
+    of the longest path or of the busiest machine, the maximum an upper bound for every order in
+    which no task waits while its machines are free.
     """
     durations = {task.id: _find_task_duration(task) for task in recipe.tasks}
     stated = {id: duration for id, duration in durations.items() if duration is not None}
     is_cyclic = bool(find_cycles(durations, recipe.precedence))
     if not stated or len(stated) < len(durations) or is_cyclic:
         return None
-    shortest = _find_longest_path(recipe, {id: span.min for id, span in stated.items()})
+    ends = _find_path_ends(recipe, {id: span.min for id, span in stated.items()})
+    shortest = max(*ends.values(), *_sum_machine_work(recipe).values(), 0)
     longest = {task.id: _find_longest_time(task, stated[task.id]) for task in recipe.tasks}
     maxima = {id: time for id, time in longest.items() if time is not None}
     if len(maxima) < len(stated):
         endless = next(id for id, time in longest.items() if time is None)
         reason = f"'{endless}' has no longest duration"
         return Derived(duration=Range(shortest, None), because=reason)
-    if _has_conflict(recipe):
-        return Derived(duration=Range(shortest, sum(maxima.values())))
-    return Derived(duration=Range(shortest, _find_longest_path(recipe, maxima)))
+    return Derived(duration=Range(shortest, max(_find_latest_ends(recipe, maxima).values())))
 
 
 def _find_task_duration(task: Task) -> Range | None:
@@ -70,24 +71,68 @@ def _find_longest_time(task: Task, duration: Range) -> Number | None:
     return (full or duration).max
 
 
-def _find_longest_path(recipe: Recipe, times: Mapping[str, Number]) -> Number:
+def _find_path_ends(recipe: Recipe, times: Mapping[str, Number]) -> dict[str, Number]:
+    """Return the earliest end of each task by the tasks before it."""
     ends: dict[str, Number] = {}
     for id in sort_topologically(times, recipe.precedence):
         before = (ends[a] for a, b in recipe.precedence if b == id)
         ends[id] = max(before, default=0) + times[id]
-    return max(ends.values())
+    return ends
 
 
-def _has_conflict(recipe: Recipe) -> bool:
-    """Whether two tasks that no path orders may need the same machine."""
+def _sum_machine_work(recipe: Recipe) -> dict[str, Number]:
+    """Return the least time in which each machine does the sub-tasks that no other machine can."""
+    work: dict[str, Number] = {}
+    sub_tasks = (entry for task in recipe.tasks if task.derived for entry in task.derived.sub_tasks)
+    for sub_task in sub_tasks:
+        machines = {machine for mode in sub_task.alternatives for machine in mode.machines}
+        times = [mode.duration for mode in sub_task.alternatives if mode.duration is not None]
+        if len(machines) == 1 and len(times) == len(sub_task.alternatives) and sub_task.runs:
+            machine = machines.pop()
+            work[machine] = work.get(machine, 0) + sub_task.runs.min * min(times)
+    return work
+
+
+def _find_latest_ends(recipe: Recipe, times: Mapping[str, Number]) -> dict[str, Number]:
+    """Return an upper bound for the end of each task.
+
+    A task waits only while a rival is running (``_find_rivals``), and each rival runs once: a task
+    ends at the latest after the tasks before it, its rivals and itself. Neither does its end exceed
+    the total time of all tasks that are before it or rivals of one of these.
+    """
+    rivals = _find_rivals(recipe)
+    ends: dict[str, Number] = {}
+    involved: dict[str, set[str]] = {}
+    for id in sort_topologically(times, recipe.precedence):
+        before = [a for a, b in recipe.precedence if b == id]
+        involved[id] = rivals[id].union({id}, *(involved[task] for task in before))
+        waiting = sum(times[rival] for rival in rivals[id])
+        latest = max((ends[task] for task in before), default=0) + waiting + times[id]
+        ends[id] = min(latest, sum(times[task] for task in involved[id]))
+    return ends
+
+
+def _find_rivals(recipe: Recipe) -> dict[str, set[str]]:
+    """Return for each task the tasks for which it may wait at a machine.
+
+    These may run at the same time and need one of its machines. If services keep a machine for a
+    later service, rivals of rivals count, too, because the rival may wait with the machine.
+    """
     machines = {task.id: _list_machines(task) for task in recipe.tasks}
     after = {task.id: find_reachable([task.id], recipe.precedence) for task in recipe.tasks}
-    ids = sorted(machines)
-    return any(
-        machines[a] & machines[b] and a not in after[b] and b not in after[a]
-        for n, a in enumerate(ids)
-        for b in ids[n + 1 :]
-    )
+    keeps_machines = any(task.derived and task.derived.same_machine for task in recipe.tasks)
+    rivals: dict[str, set[str]] = {}
+    for id, needed in machines.items():
+        parallel = [task for task in machines if task not in after[id] and id not in after[task]]
+        found: set[str] = set()
+        reached = set(needed)
+        while new := [t for t in parallel if t not in found and machines[t] & reached]:
+            found.update(new)
+            if not keeps_machines:
+                break
+            reached = reached.union(*(machines[task] for task in new))
+        rivals[id] = found
+    return rivals
 
 
 def _list_machines(task: Task) -> set[str]:
