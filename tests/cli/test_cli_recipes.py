@@ -253,3 +253,105 @@ def test_values_of_parameters_have_their_unit(tmp_path):
     assert (load["value"], load["unit"]) == (2, "kg")
     bound = [node["bind"] for node in recipe["serviceGraphs"][0]["nodes"] if "bind" in node]
     assert bound == [{"pause": {"lit": 120_000}}]
+
+
+# -- contradictions ----------------------------------------------------------------------------
+
+
+def test_a_machine_that_is_not_available_is_reported_and_listed(tmp_path):
+    recipe, provider, findings = compile_cut(tmp_path, "duration = 9; available = false;")
+    (sub_task,) = recipe["recipes"][0]["tasks"][0]["derived"]["subTasks"]
+    assert (provider["available"], sub_task["alternatives"][0]["available"]) == (False, False)
+    assert findings["SM646"] == (
+        "'Shop::Mill' is not available for 'Shop::Cut', and nothing else can perform it"
+    )
+
+
+def test_another_machine_may_be_available(tmp_path):
+    body = CUT.format(capability="duration = 9; available = false;", task="", then="")
+    body += """
+        part def Saw :> Machine;
+        dependency from Cut to Saw { @Capability { duration = 9; } }
+        dependency from MakePart to Saw { @Capability; }"""
+    _, findings = compile_shop(tmp_path, body)
+    assert findings["SM646"] == "'Shop::Mill' is not available for 'Shop::Cut'"
+
+
+def test_availability_is_true_or_false(tmp_path):
+    _, _, findings = compile_cut(tmp_path, 'duration = 9; available = "no";')
+    assert findings["SM622"].endswith("is 'no', but must be true or false; it is ignored")
+
+
+def test_a_recipe_that_needs_more_than_is_available_is_reported(tmp_path):
+    _, findings = compile_shop(tmp_path, MATERIALS.format(), recipe=USES.format(screws=51))
+    assert findings["SM647"] == (
+        "recipe 'Shop::Build' needs 51 pcs of 'Shop::Screw', but 50 pcs is available"
+    )
+
+
+def test_an_attribute_that_was_meant_to_redefine_is_reported(tmp_path):
+    _, _, findings = compile_cut(
+        tmp_path, "duration = 9;", task="attribute maxDuration : Natural = 5;"
+    )
+    assert findings["SM648"] == (
+        "'maxDuration' of 'MakePart' is a new feature; it gives no value to the 'maxDuration' of "
+        "the library's 'Task'"
+    )
+
+
+LOOP = """
+    action def Cut :> MachineService;
+    dependency from Cut to Mill {{ @Capability {{ duration = 9; }} }}
+    action def MakePart :> Task {{
+        attribute n : Integer := 0;
+        first start then again;
+        merge again; then cut; action cut : Cut; then assign n := n + 1;
+        then decide {{ @Loop {{ maxIterations = {bound}; }} }} if n < 5 then again; else done;
+    }}
+    dependency from MakePart to Mill {{ @Capability; }}"""
+
+
+@pytest.mark.parametrize("bound", [5, 8])
+def test_a_bound_that_the_guards_keep_is_right(tmp_path, bound):
+    _, findings = compile_shop(tmp_path, LOOP.format(bound=bound))
+    assert "SM649" not in findings
+
+
+def test_a_bound_below_the_counted_rounds_is_reported(tmp_path):
+    _, findings = compile_shop(tmp_path, LOOP.format(bound=3))
+    assert findings["SM649"] == (
+        "the guards let the loop at 'Shop::MakePart::decision' run up to 5 times, but "
+        "maxIterations is 3"
+    )
+
+
+def test_a_capability_far_from_the_services_is_reported(tmp_path):
+    body = CUT.format(capability="duration = 9;", task="", then="")
+    body = body.replace("{ @Capability; }", "{ @Capability { duration = 500; } }")
+    _, findings = compile_shop(tmp_path, body)
+    assert findings["SM650"] == (
+        "task 'Shop::Build::make' takes 9 ms by its services, but 500 ms on 'Shop::Mill', more "
+        "than twice as long"
+    )
+
+
+def test_a_missing_duration_is_named(tmp_path):
+    more = "then action drill : Drill;"
+    body = CUT.format(capability="duration = 9;", task="", then=more)
+    body += "action def Drill :> MachineService; dependency from Drill to Mill { @Capability; }"
+    recipe, findings = compile_shop(tmp_path, body)
+    assert "duration" not in recipe["recipes"][0]["tasks"][0]["derived"]
+    assert findings["SM651"] == (
+        "no times are derived for task 'Shop::Build::make': 'Shop::Drill' has no duration"
+    )
+
+
+def test_a_model_without_times_needs_none(tmp_path):
+    _, _, findings = compile_cut(tmp_path, "")
+    assert findings == {}
+
+
+def test_an_unreadable_duration_is_not_missing_too(tmp_path):
+    task = "attribute :>> maxDuration = 50;"
+    _, _, findings = compile_cut(tmp_path, "duration = 3 [cycle];", task=task)
+    assert list(findings) == ["SM644"]

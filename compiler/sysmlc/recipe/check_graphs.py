@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, rule
 from sysmlc.ir.algorithms import sort_topologically
-from sysmlc.recipe.durations import find_unbounded_loops
+from sysmlc.recipe.durations import count_rounds, find_unbounded_loops
 from sysmlc.recipe.flow import STEPS, find_cycles, find_reachable, list_forward_edges
 from sysmlc.recipe.model import FlowGraph, Model, Node
 from sysmlc.recipe.tables import Finding, Tables
@@ -156,3 +156,23 @@ def check_bounds(model: Model, tables: Tables) -> Iterator[Finding]:
     for graph in model.graphs:
         for node in find_unbounded_loops(graph):
             yield Finding(UNBOUNDED, node.element, {"loop": node.id})
+
+
+ROUNDS = rule(
+    "SM649",
+    "loop-bound-too-small",
+    Severity.WARNING,
+    "the guards let the loop at '{loop}' run up to {rounds} times, but maxIterations is {bound}",
+    help="correct maxIterations of «Loop», or the guards",
+)
+
+
+def check_rounds(model: Model, tables: Tables) -> Iterator[Finding]:
+    """SM649: the values of variables allow no more rounds of a loop than its bound."""
+    for graph in model.graphs:
+        for node in graph.nodes:
+            if node.kind == "loop" and node.max_iterations is not None:
+                rounds = count_rounds(graph, node)
+                if rounds is not None and rounds > node.max_iterations:
+                    facts = {"loop": node.id, "rounds": rounds, "bound": node.max_iterations}
+                    yield Finding(ROUNDS, node.element, facts)

@@ -8,6 +8,7 @@ from sysmlc.recipe.durations import (
     find_full_duration,
     find_mode_duration,
     find_refined_duration,
+    find_untimed_steps,
     format_range,
 )
 from sysmlc.recipe.flow import find_reachable
@@ -27,6 +28,28 @@ SERVICE_TIME = rule(
     Severity.WARNING,
     "service '{service}' takes {derived} ms by its functions, but {declared} ms on '{machine}'",
     help="correct the duration of a function or of the «Capability»",
+)
+TASK_TIME_DIFFERS = rule(
+    "SM650",
+    "task-time-differs",
+    Severity.WARNING,
+    "task '{task}' takes {derived} ms by its services, but {declared} ms on {machines}, more than "
+    "twice as long",
+    help="correct the duration of the «Capability» of the task or of a service",
+)
+NO_DURATION = rule(
+    "SM651",
+    "recipe-duration-missing",
+    Severity.WARNING,
+    "no times are derived for task '{task}': '{step}' has no duration",
+    help="state its duration: in the «Capability» of each machine, or at the service",
+)
+UNAVAILABLE = rule(
+    "SM646",
+    "recipe-machine-unavailable",
+    Severity.WARNING,
+    "{machines} is not available for '{user}'{consequence}",
+    help="remove 'available = false' when it can be used again, or relate another machine",
 )
 STALE_GROUPS = rule(
     "SM610",
@@ -56,8 +79,8 @@ def check_task_times(model: Model, tables: Tables) -> Iterator[Finding]:
         for mode in task.equipment:
             derived = find_mode_duration(task, mode, tables)
             if derived is not None and _exceeds(derived, mode.duration):
-                machines = " and ".join(f"'{machine}'" for machine in mode.machines)
-                yield _too_long(task, derived, f"{mode.duration} ms on {machines}")
+                declared = f"{mode.duration} ms on {_join_names(mode.machines)}"
+                yield _too_long(task, derived, declared)
 
 
 def _exceeds(duration: Range, limit: int | None) -> bool:
@@ -68,6 +91,70 @@ def _exceeds(duration: Range, limit: int | None) -> bool:
 def _too_long(task: Task, derived: Range, declared: str) -> Finding:
     facts = {"task": task.id, "derived": format_range(derived), "declared": declared}
     return Finding(TASK_TIME, task.element, facts)
+
+
+def check_capability_times(model: Model, tables: Tables) -> Iterator[Finding]:
+    """SM650: the duration of a mode is at most twice the time that the services of the task take.
+
+    A smaller surplus is usual: a capability may include set-up times.
+    """
+    for task in model.recipe.tasks:
+        for mode in task.equipment:
+            derived = find_mode_duration(task, mode, tables)
+            if derived is None or derived.max is None or mode.duration is None:
+                continue
+            if mode.duration > 2 * derived.max:
+                facts = {
+                    "task": task.id,
+                    "derived": format_range(derived),
+                    "declared": mode.duration,
+                    "machines": _join_names(mode.machines),
+                }
+                yield Finding(TASK_TIME_DIFFERS, task.element, facts)
+
+
+def check_missing_durations(model: Model, tables: Tables) -> Iterator[Finding]:
+    """SM651: if a task has times at all, each of its steps has a duration."""
+    for task in model.recipe.tasks:
+        untimed, has_times = find_untimed_steps(task, tables)
+        modes = (mode.duration for mode in task.equipment)
+        limits = (task.max_duration, *modes, *task.limits, *model.recipe.limits)
+        if untimed and (has_times or any(limit is not None for limit in limits)):
+            for node in untimed:
+                service = tables.find_service(node)
+                step = node.id if service is None else service.id
+                element = node.element if service is None else service.element
+                yield Finding(NO_DURATION, element, {"task": task.id, "step": step})
+
+
+def check_availability(model: Model, tables: Tables) -> Iterator[Finding]:
+    """SM646: the machines of tasks and services are available."""
+    for task in model.recipe.tasks:
+        modes = [(mode.machines, mode.available) for mode in task.equipment]
+        yield from _check_availability(task, modes)
+    for service in model.services:
+        yield from _check_availability(
+            service, [((provider.machine,), provider.available) for provider in service.providers]
+        )
+
+
+def _check_availability(
+    user: Task | Service, modes: list[tuple[tuple[str, ...], bool | None]]
+) -> Iterator[Finding]:
+    is_last = all(available is False for _, available in modes)
+    consequence = ", and nothing else can perform it" if is_last else ""
+    for machines, available in modes:
+        if available is False:
+            facts = {
+                "machines": _join_names(machines),
+                "user": user.id,
+                "consequence": consequence,
+            }
+            yield Finding(UNAVAILABLE, user.element, facts)
+
+
+def _join_names(machines: tuple[str, ...]) -> str:
+    return " and ".join(f"'{machine}'" for machine in machines)
 
 
 def check_service_times(model: Model, tables: Tables, tolerance: float) -> Iterator[Finding]:

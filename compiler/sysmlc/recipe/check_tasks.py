@@ -155,6 +155,42 @@ def check_materials(model: Model, tables: Tables) -> Iterator[Finding]:
                 yield Finding(MATERIAL_MISSING, task.element, facts)
 
 
+MATERIAL_SHORT = rule(
+    "SM647",
+    "material-short",
+    Severity.WARNING,
+    "recipe '{recipe}' needs {needed} of '{material}', but {available}",
+    help="correct the quantity of the flow or the available amount of the material",
+)
+
+
+def check_stock(model: Model, tables: Tables) -> Iterator[Finding]:
+    """SM647: a recipe needs no more of a material than is available and produced."""
+    uses = [(task, use) for task in model.recipe.tasks for use in task.materials]
+    for material in model.materials:
+        own = [(task, use) for task, use in uses if use.material == material.id]
+        consumed = sum(use.quantity for _, use in own if use.use == "consumed")
+        produced = sum(use.quantity for _, use in own if use.use == "produced")
+        needed = max([consumed, *(use.quantity for _, use in own if use.use == "carried")])
+        if material.available is None or needed <= material.available + produced:
+            continue
+        tasks = {task.element for task, use in own if use.use != "produced"}
+        available = f"{_format_amount(material.available, material.unit)} is available"
+        facts = {
+            "recipe": model.recipe.id,
+            "needed": _format_amount(needed, material.unit),
+            "material": material.id,
+            "available": available + (f" and {produced} is produced" if produced else ""),
+        }
+        yield Finding(
+            MATERIAL_SHORT, tasks.pop() if len(tasks) == 1 else model.recipe.element, facts
+        )
+
+
+def _format_amount(amount: float, unit: str) -> str:
+    return f"{amount} {unit}".rstrip()
+
+
 def _sum_consumption(task: Task, tables: Tables) -> dict[str, float]:
     """Return the quantity of each material that the services of a task consume."""
     graph = tables.service_graphs.get(task.implementation)

@@ -95,7 +95,13 @@ def _list_alternatives(node: Node, allowed: set[str], tables: Tables) -> tuple[M
     service = tables.find_service(node)
     providers = () if service is None else service.providers
     return tuple(
-        Mode((provider.machine,), provider.duration, provider.power, provider.tools)
+        Mode(
+            (provider.machine,),
+            provider.duration,
+            provider.power,
+            provider.tools,
+            provider.available,
+        )
         for provider in providers
         if not allowed or provider.machine in allowed
     )

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from functools import partial, reduce
 
 from msgspec import Struct
+from msgspec.structs import replace
 
 from sysmlc.logic.expressions.expression import Expression, Literal
 from sysmlc.recipe.costs import Measures, NodeCost, to_maximum
@@ -19,10 +20,11 @@ from sysmlc.recipe.executions import (
     TooManySituationsError,
     UnstructuredError,
 )
-from sysmlc.recipe.flow import STEPS, find_early_ends
+from sysmlc.recipe.flow import STEPS, find_early_ends, find_loop_cycles
 from sysmlc.recipe.model import (
     Derived,
     EndTime,
+    FlowEdge,
     FlowGraph,
     Mode,
     Node,
@@ -130,6 +132,15 @@ def find_task_timing(task: Task, tables: Tables, machines: tuple[str, ...]) -> "
         dict(task.bind),
         holds=any(resource.mode != "use" for resource in resources),
     )
+
+
+def find_untimed_steps(task: Task, tables: Tables) -> tuple[list[Node], bool]:
+    """Return the steps of a task without a duration, and whether another step has one."""
+    graph = tables.service_graphs.get(task.implementation)
+    steps = [node for node in graph.nodes if node.kind in STEPS] if graph else []
+    durations = {node.id: _find_node_duration(node, tables) for node in steps}
+    untimed = [node for node in steps if durations[node.id] is None]
+    return untimed, any(durations.get(n.id) for n in steps if n.kind == "service")
 
 
 def _find_service_cost(node: Node, tables: Tables, machines: tuple[str, ...]) -> NodeCost | None:
@@ -312,6 +323,30 @@ def find_unbounded_loops(graph: FlowGraph) -> list[Node]:
     timing = compute_timing(graph, lambda node: NodeCost(Range(1, 1)))
     endless = None if timing is None else timing.endless
     return loops if endless is None else [node for node in loops if node.id in endless]
+
+
+def count_rounds(graph: FlowGraph, loop: Node) -> int | None:
+    """Return the most rounds of a loop by the values of variables, without its bound.
+
+    Return None if the values do not limit the rounds, and for a loop within another one.
+    """
+    cycles = find_loop_cycles(graph)
+    if any(id != loop.id and loop.id in cycle.nodes for id, cycle in cycles.items()):
+        return None
+    mark = Node(f"{loop.id}#round", "action")
+    nodes = [replace(node, max_iterations=None) if node is loop else node for node in graph.nodes]
+    edges: list[FlowEdge] = []
+    for edge in graph.edges:
+        is_body = edge.source == loop.id and edge.role == "body"
+        edges.append(replace(edge, target=mark.id) if is_body else edge)
+        edges += [FlowEdge(mark.id, edge.target)] if is_body else []
+    marked = replace(graph, nodes=(*nodes, mark), edges=tuple(edges))
+    timing = compute_timing(marked, lambda node: NodeCost(Range(1, 1)))
+    if timing is None or timing.endless is None or loop.id in timing.endless:
+        return None
+    most = timing.runs[mark.id].max
+    # The last round of a loop that is tested last leaves it instead of closing it.
+    return None if most is None else int(most) + (0 if cycles[loop.id].is_tested_first else 1)
 
 
 def _explain_unbounded(

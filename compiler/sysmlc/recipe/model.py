@@ -250,6 +250,7 @@ class Provider(Struct, frozen=True):
     power: Range | None = None
     tools: tuple[str, ...] = ()
     opcua: OpcUa | None = None
+    available: bool | None = None
 
 
 class Service(Struct, frozen=True):

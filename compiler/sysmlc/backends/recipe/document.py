@@ -196,9 +196,12 @@ def _describe_mode(mode: Mode) -> Json:
         "power": _describe_range(mode.power),
         "tools": list(mode.tools),
     }
-    # A mode that is not available says so: false is not omitted.
-    available = {} if mode.available is None else {"available": mode.available}
-    return {**_drop_absent(members), **available}
+    return {**_drop_absent(members), **_describe_availability(mode)}
+
+
+def _describe_availability(mode: Mode | Provider) -> Json:
+    """Return the member that states whether machines are available; false is not omitted."""
+    return {} if mode.available is None else {"available": mode.available}
 
 
 def _describe_use(use: MaterialUse) -> Json:
@@ -266,15 +269,14 @@ def _describe_service(service: Service) -> Json:
 
 
 def _describe_provider(provider: Provider) -> Json:
-    return _drop_absent(
-        {
-            "machine": provider.machine,
-            "duration": provider.duration,
-            "power": _describe_range(provider.power),
-            "tools": list(provider.tools),
-            "opcua": _describe_opcua(provider.opcua),
-        }
-    )
+    members = {
+        "machine": provider.machine,
+        "duration": provider.duration,
+        "power": _describe_range(provider.power),
+        "tools": list(provider.tools),
+        "opcua": _describe_opcua(provider.opcua),
+    }
+    return {**_drop_absent(members), **_describe_availability(provider)}
 
 
 def _describe_opcua(call: OpcUa | None) -> Json | None:

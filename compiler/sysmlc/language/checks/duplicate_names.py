@@ -24,6 +24,14 @@ HIDING = rule(
     "'{name}' of '{owner}' hides the '{name}' that it inherits from '{general}'",
     help="redefine the inherited feature (':>> {name}'), or give the new feature another name",
 )
+HIDING_LIBRARY = rule(
+    "SM648",
+    "hides-library-feature",
+    Severity.WARNING,
+    "'{name}' of '{owner}' is a new feature; it gives no value to the '{name}' of the library's "
+    "'{general}'",
+    help="redefine the inherited feature (':>> {name}'), or give the new feature another name",
+)
 MEMBERSHIPS = frozenset({"FeatureMembership", "OwningMembership", "EndFeatureMembership"})
 """Memberships of checked members. Parameters of cases are those of the included case."""
 _METADATA = kinds_of("MetadataFeature")
@@ -46,7 +54,8 @@ def check_names(model: Model, node: Node) -> Iterator[Finding]:
 def check_inherited(model: Model, node: Node) -> Iterator[Finding]:
     """Report members with the name of an inherited member that they do not redefine.
 
-    Names such as `start` or `shape` that everything inherits from the library may be reused.
+    Names such as `start` or `shape` that everything inherits from the standard library may be
+    reused, but not those of other libraries, whose features are there to be redefined.
     Parameters of steps are those of the performed behaviour, by position or name (see
     ``behaviors``).
     """
@@ -59,12 +68,20 @@ def check_inherited(model: Model, node: Node) -> Iterator[Finding]:
         if name is None or member.membership not in MEMBERSHIPS or find_role(member) == "parameter":
             continue
         for hit in inherited_members(node, name):
-            is_from_model = hit.name in (name, None) and not is_in_library(hit)
-            if is_from_model and not _redefines(model, member, hit):
+            is_meant = hit.name in (name, None) and not _is_in_standard_library(hit)
+            if is_meant and not _redefines(model, member, hit):
                 general = name_of(model, hit.owner)
                 facts = {"owner": name_of(model, node), "name": name, "general": general}
-                yield Finding(HIDING, member.name_start, facts)
+                rule = HIDING_LIBRARY if is_in_library(hit) else HIDING
+                yield Finding(rule, member.name_start, facts)
                 break
+
+
+def _is_in_standard_library(node: Node) -> bool:
+    owners = [node]
+    while owners[-1].owner is not None:
+        owners.append(owners[-1].owner)
+    return any(owner.attributes.get("isStandard") for owner in owners)
 
 
 def _redefines(model: Model, member: Node, hit: Node) -> bool:

@@ -44,17 +44,17 @@ class Recipe(Struct, frozen=True):
             self._store(context, activities, sink)
 
     def _store(self, context: Context, activities: list[Element], sink: Sink) -> None:
-
+        faulty: set[str] = set()
         if activities:
             context, derived = add_derived_levels(context)
             report_derived_levels(context, derived, sink)
-            check_tags(context, sink)
+            faulty = check_tags(context, sink)
         models = sorted(
             (build_model(context, activity) for activity in activities), key=lambda m: m.recipe.id
         )
         for model in models:
             report_decisions(context, model, sink)
-            validate(model, sink, lambda id: _subject(context.graph, id), self.tolerance)
+            validate(model, sink, lambda id: _subject(context.graph, id), self.tolerance, faulty)
         context.graph.store(Model, models)
 
 

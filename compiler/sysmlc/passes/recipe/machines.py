@@ -193,7 +193,9 @@ def build_providers(context: Context, relations: Iterator[Relation]) -> tuple[Pr
         mode = _build_mode(context, relation)
         for machine in mode.machines:
             call = build_opcua(context, relation.element)
-            provider = Provider(machine, mode.duration, mode.power, mode.tools, call)
+            provider = Provider(
+                machine, mode.duration, mode.power, mode.tools, call, mode.available
+            )
             by_machine.setdefault(machine, provider)
     return tuple(by_machine[machine] for machine in sorted(by_machine))
 

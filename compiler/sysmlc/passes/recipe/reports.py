@@ -63,15 +63,25 @@ _EXPECTATIONS_BY_STEREOTYPE: dict[str, dict[str, _Expectation]] = {
 _NUMBERS = (_WHOLE_NUMBER, _AMOUNT, _TIME)
 
 
-def check_tags(context: Context, sink: Sink) -> None:
-    """Report tagged values with a wrong unit, and those that are ignored for their form."""
+def check_tags(context: Context, sink: Sink) -> set[str]:
+    """Report tagged values with a wrong unit, and those that are ignored for their form.
+
+    Return the ids of the elements to which a reported value belongs, and of what they relate to a
+    machine.
+    """
+    faulty: set[str] = set()
     for application, names in context.stereotypes.items():
-        _check_application(context, context.graph[application], names, sink)
+        if not _check_application(context, context.graph[application], names, sink):
+            for owner in context.graph.targets(context.graph[application], Edge.SUBJECT):
+                clients = context.graph.targets(owner, Edge.CLIENT)
+                faulty.update(element.id for element in (owner, *clients))
+    return faulty
 
 
 def _check_application(
     context: Context, application: Element, stereotypes: tuple[str, ...], sink: Sink
-) -> None:
+) -> bool:
+    """Report the faults of one application; return whether it has none."""
     tags = read_tags(context.graph, application)
     owner = context.graph.target(application, Edge.SUBJECT) or application
     if "Material" in stereotypes:
@@ -79,11 +89,13 @@ def _check_application(
     expectations = dict(_EXPECTATIONS)
     for stereotype in stereotypes:
         expectations |= _EXPECTATIONS_BY_STEREOTYPE.get(stereotype, {})
+    is_right = True
     for name, expectation in expectations.items():
         # `use` of a MachineFunction lists resources; `use` of a Material is one of three words.
         is_resource = "MachineFunction" in stereotypes and name == "use"
         if tags.text(name) and not is_resource:
-            _check_tag(context, application, tags, name, expectation, sink)
+            is_right &= _check_tag(context, application, tags, name, expectation, sink)
+    return is_right
 
 
 def _check_tag(
@@ -93,7 +105,8 @@ def _check_tag(
     name: str,
     expectation: _Expectation,
     sink: Sink,
-) -> None:
+) -> bool:
+    """Report the fault of one tagged value; return whether it has none."""
     owner = context.graph.target(application, Edge.SUBJECT) or application
     subject = context.graph.subject(owner)
     value, target = tags.text(name), tags.target_unit(name)
@@ -112,6 +125,9 @@ def _check_tag(
         sink.report(UNIT_MISFIT, subject, **facts, problem=problem, advice=advice)
     elif read_value(tags, name) is None:
         sink.report(UNREADABLE_TAG, subject, **facts, expected=expected)
+    else:
+        return True
+    return False
 
 
 def _find_unit_of_material(context: Context, element: Element) -> str:
