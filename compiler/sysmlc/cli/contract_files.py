@@ -80,18 +80,23 @@ def select_contracts(
 
 
 def read_contracts(
-    file: Path, language: str, config: "Config", settings: "Settings"
+    files: tuple[Path, ...], language: str, config: "Config", settings: "Settings"
 ) -> ContractFile:
-    """Read the contracts of a file; exits with code 2 if the file has none."""
+    """Read the contracts of the models of one compile unit, or of one contract file.
+
+    Exits with code 2 if there is no contract.
+    """
+    from sysmlc.cli.session import fail
     from sysmlc.driver.inputs import SUFFIXES
 
-    is_model = file.is_dir() or file.suffix.lower() in SUFFIXES
-    if is_model and not language:
-        return _read_model(file, config, settings)
-    return _read_specification(file, language, config)
+    if not language and all(f.is_dir() or f.suffix.lower() in SUFFIXES for f in files):
+        return _read_model(files, config, settings)
+    if len(files) > 1:
+        fail("several files must all be models; name one contract file at a time")
+    return _read_specification(files[0], language, config)
 
 
-def _read_model(file: Path, config: "Config", settings: "Settings") -> ContractFile:
+def _read_model(files: tuple[Path, ...], config: "Config", settings: "Settings") -> ContractFile:
     from sysmlc.cli import reports, session
     from sysmlc.diagnostics import Sink
     from sysmlc.ir.query.libraries import find_unused_library_elements
@@ -102,7 +107,7 @@ def _read_model(file: Path, config: "Config", settings: "Settings") -> ContractF
     from sysmlc.recipe.model import Model
     from sysmlc.recipe.recipe_times import decide_limits
 
-    compilation = session.compile_unit((file,), config, settings)
+    compilation = session.compile_unit(files, config, settings)
     findings = tuple(reports.list_findings(compilation, only_errors=not settings.verbose))
 
     def place(origin: str) -> "Subject":
@@ -113,7 +118,9 @@ def _read_model(file: Path, config: "Config", settings: "Settings") -> ContractF
 
     contracts = compilation.graph.derived(Contract) if compilation.exit_code() < 2 else ()
     if not contracts and not findings and compilation.exit_code() < 2:
-        session.fail(f"'{file}' has no behaviour and no requirement that gives a contract")
+        names = ", ".join(f"'{file}'" for file in files)
+        verb = "has" if len(files) == 1 else "have"
+        session.fail(f"{names} {verb} no behaviour and no requirement that gives a contract")
     sink = Sink(config.rules)
     unused = find_unused_library_elements(compilation.graph)
     composites = compose_blocks(compilation.graph, contracts, sink)

@@ -55,7 +55,7 @@ def _read_operand(text: str, language: str, config: "Config", settings: "Setting
     from sysmlc.cli.session import fail
 
     file, component = split_operand(text)
-    contract_file = read_contracts(file, language, config, settings)
+    contract_file = read_contracts((file,), language, config, settings)
     if not contract_file.contracts:
         _print_findings([contract_file], settings)
         fail(f"'{file}' has no contract that could be read")

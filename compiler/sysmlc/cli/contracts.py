@@ -47,7 +47,9 @@ Examples:
 Exit codes: 0 all contracts hold, 1 a contract is unrealizable or violated,
 2 the work could not be done.""",
 )
-@click.argument("file", type=click.Path(path_type=Path), metavar="FILE")
+@click.argument(
+    "files", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILE..."
+)
 @click.option("-c", "--component", default="", metavar="NAME", help="Only this component.")
 @options.folder("Draw the runs that break something there (PlantUML).")
 @click.option("--from", "language", default="", metavar="FORM", help="Format of the file.")
@@ -58,14 +60,14 @@ Exit codes: 0 all contracts hold, 1 a contract is unrealizable or violated,
 def check_command(
     ctx: click.Context,
     /,
-    file: Path,
+    files: tuple[Path, ...],
     component: str,
     output: Path | None,
     language: str,
     seconds: float,
     **setting_values: Any,  # noqa: ANN401 - the fields of Settings
 ) -> None:
-    """Check the contracts in FILE, a model or a contract.
+    """Check the contracts in FILE..., the models of one unit or a contract.
 
     Each contract is decided, and suspicious parts are reported: guarantees that hold trivially,
     assumptions that no environment satisfies, outputs without guarantees. A behaviour is checked
@@ -79,9 +81,9 @@ def check_command(
     from sysmlc.synthesis.decision import Options
 
     settings = session.Settings(**setting_values)
-    config = session.load_config((file,), settings)
+    config = session.load_config(files, settings)
     progress = Progress(settings.verbose)
-    contract_file = read_contracts(file, language, config, settings)
+    contract_file = read_contracts(files, language, config, settings)
     limits = Limits(memory=LIMITS.memory, seconds=seconds)
     try:
         ctx.exit(

@@ -62,7 +62,7 @@ def accept_command(
     settings = session.Settings(**setting_values)
     file, operand_component = split_operand(operand)
     config = session.load_config((file,), settings)
-    contract_file = read_contracts(file, language, config, settings)
+    contract_file = read_contracts((file,), language, config, settings)
     contracts = select_contracts(contract_file.contracts, component or operand_component)
     if len(contracts) != 1:
         names = ", ".join(contract.component for contract in contracts)

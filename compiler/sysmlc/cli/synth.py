@@ -35,7 +35,9 @@ Examples:
 Exit codes: 0 realizable, 1 unrealizable or the model has errors, 2 outside
 GR(1), beyond a limit, no controller, or the work could not be done.""",
 )
-@click.argument("file", type=click.Path(path_type=Path), metavar="FILE")
+@click.argument(
+    "files", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILE..."
+)
 @click.option("-c", "--component", default="", metavar="NAME", help="Only this component.")
 @click.option("--realizable", "is_decided_only", is_flag=True, help="Decide, write nothing.")
 @options.folder("Write controllers there, and counter-strategies of unrealizable contracts.")
@@ -80,7 +82,7 @@ GR(1), beyond a limit, no controller, or the work could not be done.""",
 def command(
     ctx: click.Context,
     /,
-    file: Path,
+    files: tuple[Path, ...],
     component: str,
     is_decided_only: bool,
     output: Path | None,
@@ -93,11 +95,12 @@ def command(
     nodes: int,
     **setting_values: Any,  # noqa: ANN401 - the fields of Settings
 ) -> None:
-    """Decide whether the contracts in FILE are realizable, and synthesise controllers.
+    """Decide whether the contracts in FILE... are realizable, and synthesise controllers.
 
-    FILE is a model, or a contract in one of the formats of docs/synthesis.md. Each controller is
-    checked against its contract. With -o it is written as JSON and, when it is small, as a
-    PlantUML diagram; one with too many states is written as a table of decisions. For an
+    FILE... are the files or folders of one model, or a contract in one of the formats of
+    docs/synthesis.md. Each controller is checked against its contract. With -o it is written as
+    JSON and, when it is small, as a PlantUML diagram; one with too many states is written as a
+    table of decisions. For an
     unrealizable contract -o writes a counter-strategy of the environment, as diagrams and in
     SysML v2; with --play you take the part of the component against it.
     """
@@ -110,10 +113,10 @@ def command(
         word = "--deadline" if timers else "--realizable"
         session.fail(f"{word} decides only: nothing can be written to a folder")
     settings = session.Settings(**setting_values)
-    config = session.load_config((file,), settings)
+    config = session.load_config(files, settings)
     progress = Progress(settings.verbose)
     limits = Limits(nodes, LIMITS.memory, seconds or LIMITS.seconds)
-    contract_file = _read_contracts(file, language, config, settings)
+    contract_file = _read_contracts(files, language, config, settings)
     options = Options(engine or "", limits, progress.note, is_explained=not is_decided_only)
     try:
         if is_played:
@@ -130,13 +133,13 @@ def command(
 
 
 def _read_contracts(
-    file: Path, language: str, config: "Config", settings: "Settings"
+    files: tuple[Path, ...], language: str, config: "Config", settings: "Settings"
 ) -> "ContractFile":
-    """Return the contracts of a file, in which no literal has the name of a variable."""
+    """Return the contracts of the files, in which no literal has the name of a variable."""
     from sysmlc.cli.contract_files import read_contracts
     from sysmlc.logic.formats.lowering import rename_ambiguous_literals
 
-    contract_file = read_contracts(file, language, config, settings)
+    contract_file = read_contracts(files, language, config, settings)
     contracts = tuple(map(rename_ambiguous_literals, contract_file.contracts))
     return replace(contract_file, contracts=contracts)
 

@@ -249,7 +249,9 @@ def _open_selection(
     ignores_others = settings.isolated or settings.config is not None
     projects = [] if ignores_others else [p for f in folders for p in find_projects(f)]
     request = replace(
-        make_request(selection.files, config, settings), excluded=(*excluded, *projects)
+        make_request(selection.files, config, settings),
+        excluded=(*excluded, *projects),
+        finds_siblings=True,
     )
     parts = open_units(request)
     is_alone = len(parts) == 1 and not excluded

@@ -69,6 +69,8 @@ class Request(Struct, frozen=True):
     """Path of the SysML v2 standard library; empty for the installed one."""
     excluded: tuple[Path, ...] = ()
     """Real paths that a search of folders skips, because they belong to other compile units."""
+    finds_siblings: bool = False
+    """Whether files that a named file needs are looked for in its project (SysML v2)."""
 
     def load_passes(self) -> tuple[Pass, ...]:
         """Return the passes in order. Raises ConfigError for options that no pass has."""
@@ -142,7 +144,15 @@ def open_unit(request: Request) -> OpenedUnit:
     models = [path for path in request.inputs if not path.name.endswith(SUFFIX)]
     named_overlays = [path for path in request.inputs if path.name.endswith(SUFFIX)]
     overlays = (*request.overlays, *named_overlays)
-    reading = read_unit(models, root, frontends, sink, overlays, request.excluded)
+    reading = read_unit(
+        models,
+        root,
+        frontends,
+        sink,
+        overlays,
+        request.excluded,
+        finds_siblings=request.finds_siblings,
+    )
     return OpenedUnit(root, reading, sink, frontends, load_drawings(request, reading, root, sink))
 
 
@@ -195,6 +205,10 @@ class _CompilationRun:
             self._report_unsupported()
         diagnostics = self._list_diagnostics()
         withheld = find_withheld_artefacts(artefacts, self._graph, diagnostics)
+        # Findings about a sibling are reported when that file is named, or the folder.
+        siblings = reading.list_sibling_sources()
+        if siblings:
+            diagnostics = tuple(d for d in diagnostics if file_of(d) not in siblings)
         return Compilation(
             root=self._root,
             graph=self._graph,
@@ -363,6 +377,12 @@ def _is_about_unread_part(diagnostic: Diagnostic) -> bool:
     """Whether a diagnostic means that part of the unit was not read."""
     is_about_file = not diagnostic.subject.id and diagnostic.subject.place is not None
     return diagnostic.is_error and is_about_file and diagnostic.rule.code.startswith("SM1")
+
+
+def file_of(diagnostic: Diagnostic) -> str:
+    """Return the name of the file that a diagnostic is about; empty if it is about none."""
+    place = diagnostic.subject.place
+    return "" if place is None else place.file
 
 
 def _sort_key(diagnostic: Diagnostic) -> tuple[object, ...]:

@@ -66,7 +66,7 @@ def _list_dependencies(
     yield compute_tool_digest()
     yield repr((has_files, tuple(emit), request.strict_input, request.diagrams, request.library))
     yield repr((sorted(config.rules.items()), config.suppress, _sort_items(config.passes)))
-    yield repr(reading.is_complete)
+    yield repr((reading.is_complete, sorted(reading.list_sibling_sources())))
     for recognised in reading.recognised:
         source = recognised.source
         yield repr((source.name, source.sha256, recognised.frontend.name))

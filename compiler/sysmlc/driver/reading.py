@@ -14,6 +14,7 @@ from msgspec import Struct
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.driver import faults
 from sysmlc.driver.inputs import Recognised, collect_files, find_allowed_roots, name_of, recognise
+from sysmlc.driver.siblings import find_siblings
 from sysmlc.frontends.base import AttachmentFrontend, DiagramReader, Frontend
 from sysmlc.ir import Graph
 from sysmlc.overlay import SUFFIX, Refinement, list_files, read_overlay
@@ -88,6 +89,8 @@ class ReadFile(Struct, frozen=True):
     is_named: bool = False
     """Whether the command line or the configuration names the file itself, not its folder."""
     is_overlay: bool = False
+    is_sibling: bool = False
+    """Whether the file was only read because a named file uses names that it declares."""
 
 
 class Reading(Struct, frozen=True):
@@ -99,6 +102,10 @@ class Reading(Struct, frozen=True):
     """Folders that references of the unit may lead into."""
     overlays: tuple[LoadedOverlay, ...] = ()
     files: tuple[ReadFile, ...] = ()
+
+    def list_sibling_sources(self) -> frozenset[str]:
+        """Return the names of the sources that belong to siblings of the named files."""
+        return frozenset(name for file in self.files if file.is_sibling for name in file.sources)
 
     def sources(self) -> tuple[Source, ...]:
         """Return the recognised sources without their front ends."""
@@ -112,10 +119,13 @@ def read_unit(
     sink: Sink,
     overlays: Sequence[Path] = (),
     excluded: Sequence[Path] = (),
+    *,
+    finds_siblings: bool = False,
 ) -> Reading:
     """Read the files of a unit, following references; report files that cannot be read.
 
-    The search of folders skips the real paths in *excluded*.
+    The search of folders skips the real paths in *excluded*. With *finds_siblings*, files of the
+    project that declare names which a named text uses are read as well.
     """
     roots = find_allowed_roots((*inputs, *overlays), root)
     reader = _Reader(root, roots, frontends, sink)
@@ -125,6 +135,8 @@ def read_unit(
     for path in overlays:
         reader.read_overlay(path, is_named=True)
     reader.follow_links()
+    if finds_siblings:
+        reader.read_siblings()
     recognised_sources = tuple(reader.recognised[name] for name in sorted(reader.recognised))
     loaded_overlays = tuple(reader.overlays[name] for name in sorted(reader.overlays))
     is_complete = not sink.has_errors()
@@ -145,6 +157,7 @@ class _Reader:
         self._visited: set[Path] = set()
         self._overlay_files: set[Path] = set()
         self._named: set[Path] = set()
+        self._siblings: set[Path] = set()
         self._worklist: list[tuple[Path, Recognised]] = []
         self._sources: dict[Path, list[str]] = {}
         self._references: dict[Path, set[Path]] = {}
@@ -158,6 +171,7 @@ class _Reader:
                 frozenset(self._references.get(path, ())),
                 path in self._named,
                 path in self._overlay_files,
+                path in self._siblings,
             )
             for path in sorted(self._visited)
         )
@@ -218,6 +232,16 @@ class _Reader:
                     # A reference may lead to any file, so an unrecognised file is not a fault.
                     self.read(target, None)
             self._check_mentioned_files(path, item)
+
+    def read_siblings(self) -> None:
+        """Read the files of the project that declare names which the named texts use."""
+        sources = [name for path in sorted(self._named) for name in self._sources.get(path, ())]
+        texts = [self.recognised[name] for name in sources if name in self.recognised]
+        for path in find_siblings(texts, self._visited, self._roots, self._frontends):
+            self.read(path, None)
+            self._siblings.add(Path(os.path.realpath(path)))
+            for named in self._named:
+                self._add_reference(named, path)
 
     def _add_reference(self, path: Path, target: Path) -> None:
         references = self._references.setdefault(Path(os.path.realpath(path)), set())

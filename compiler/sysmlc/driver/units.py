@@ -14,8 +14,7 @@ from pathlib import Path
 
 from msgspec.structs import replace
 
-from sysmlc.diagnostics import Diagnostic
-from sysmlc.driver.compilation import OpenedUnit, Request, load_drawings, open_unit
+from sysmlc.driver.compilation import OpenedUnit, Request, file_of, load_drawings, open_unit
 from sysmlc.driver.inputs import Recognised, find_unit_root
 from sysmlc.driver.reading import ReadFile, Reading
 from sysmlc.frontends.base import FileNames, UnitFrontend
@@ -228,7 +227,7 @@ def _split(
         sink = opened.sink.subset(
             diagnostic
             for diagnostic in opened.sink
-            if (file := _file_of(diagnostic)) in share or (index == 0 and file not in assigned)
+            if (file := file_of(diagnostic)) in share or (index == 0 and file not in assigned)
         )
         reading = _select(opened.reading, share)
         drawings = load_drawings(request, reading, opened.root, sink)
@@ -244,8 +243,3 @@ def _select(reading: Reading, names: AbstractSet[str]) -> Reading:
         tuple(overlay for overlay in reading.overlays if overlay.source.name in names),
         tuple(file for file in reading.files if not names.isdisjoint(file.sources)),
     )
-
-
-def _file_of(diagnostic: Diagnostic) -> str:
-    place = diagnostic.subject.place
-    return "" if place is None else place.file

@@ -1,0 +1,80 @@
+"""Files of the project that declare names which a file named alone uses.
+
+Texts of SysML v2 do not name the files that they refer to. A hook or an editor names the changed
+file only, which is then compiled with the other files of its unit.
+"""
+
+import os
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Set as AbstractSet
+from pathlib import Path
+
+from sysmlc.diagnostics import Sink
+from sysmlc.driver.inputs import Recognised, find_model_files, recognise
+from sysmlc.frontends.base import FileNames, Frontend, UnitFrontend
+from sysmlc.sources import Roots, Source, SourceError
+from sysmlc.sources.files import is_special, read_whole
+from sysmlc.sources.source import DEFAULT_LIMITS
+
+
+def find_siblings(
+    texts: Iterable[Recognised],
+    known: AbstractSet[Path],
+    roots: Roots,
+    frontends: Sequence[Frontend],
+) -> list[Path]:
+    """Return the files below *roots* that declare names which *texts* use, directly or not.
+
+    *known* are the real paths of the files that belong to the unit anyway. Only files of front ends
+    whose folders are units have siblings.
+    """
+    worklist = [names for text in texts if (names := _read_names(text)) is not None]
+    if not worklist:
+        return []
+    declared = set[str]().union(*(names.declared for names in worklist))
+    candidates = dict(_load_candidates(known, roots))
+    siblings: list[Path] = []
+    while worklist:
+        names = worklist.pop()
+        wanted = names.used - names.local - declared
+        for path in [path for path in candidates if _may_declare(candidates[path], wanted)]:
+            items = recognise([candidates[path]], frontends, None, Sink())
+            sibling_names = next(filter(None, map(_read_names, items)), None)
+            if sibling_names is not None and not sibling_names.declared.isdisjoint(wanted):
+                del candidates[path]
+                siblings.append(path)
+                worklist.append(sibling_names)
+                declared |= sibling_names.declared
+    return siblings
+
+
+def _read_names(item: Recognised) -> FileNames | None:
+    """Return the names of a text, or None if the folder of the file is no unit."""
+    frontend = item.frontend
+    if not isinstance(frontend, UnitFrontend) or not frontend.is_folder_unit:
+        return None
+    return frontend.read_names(item.source)
+
+
+def _load_candidates(known: AbstractSet[Path], roots: Roots) -> Iterator[tuple[Path, Source]]:
+    """Yield the files that may be siblings, with their content; skip those that cannot be read."""
+    for folder in roots.folders:
+        for path in sorted(find_model_files(folder)):
+            real = Path(os.path.realpath(path))
+            if real in known or not roots.allows(path) or is_special(path):
+                continue
+            try:
+                yield path, Source(path.name, read_whole(path, path.name, DEFAULT_LIMITS))
+            except SourceError:
+                continue
+
+
+def _may_declare(source: Source, names: AbstractSet[str]) -> bool:
+    """Whether a text contains what looks like a declaration of one of *names*.
+
+    The test is quick, so that most files of a project are not parsed.
+    """
+    name = f"'?(?:{'|'.join(map(re.escape, sorted(names)))})'?"
+    declaration = rf"[\w>]\s+{name}\s*(?:[{{;\[]|:(?!:))|<{name}>"
+    return bool(names) and re.search(declaration.encode(), source.data) is not None
