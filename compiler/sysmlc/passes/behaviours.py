@@ -8,6 +8,7 @@ from msgspec import Struct
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, list_items
 from sysmlc.ir.query import BEHAVIORS, features, parameters, redefined_features
+from sysmlc.passes.transition_names import read_transition_names
 
 CALL_OF_NOTHING = rule(
     "SM400",
@@ -82,9 +83,11 @@ _OUT = ("out", "inout", "return")
 class Behaviours(Struct, frozen=True):
     """Link operations to the methods that they inherit, and check calls.
 
-    Assumes effective features. Guarantees: an operation without a method has the method of the
-    operation that it redefines; every call, trigger and behaviour of a state leads to an element of
-    the right kind, or is reported. The component of a behaviour is ``ir.query.component_name``.
+    Assumes effective features. Guarantees: a transition whose name is in the notation of diagrams
+    has the trigger, guard and effect that the name states; an operation without a method has the
+    method of the operation that it redefines; every call, trigger and behaviour of a state leads to
+    an element of the right kind, or is reported. The component of a behaviour is
+    ``ir.query.component_name``.
     """
 
     name: ClassVar[str] = "behaviours"
@@ -92,6 +95,7 @@ class Behaviours(Struct, frozen=True):
 
     def run(self, graph: Graph, sink: Sink) -> None:
         """Link methods in place and report; see the class."""
+        read_transition_names(graph, sink)
         for operation in graph.of_kind(Kind.OPERATION):
             _inherit_method(graph, operation)
             _check_method(graph, sink, operation)

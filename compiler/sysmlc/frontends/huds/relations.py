@@ -265,8 +265,8 @@ def _complete_trigger(file: _FileLowering, record: Record, trigger: Element) -> 
 def _complete_constraint(file: _FileLowering, record: Record, constraint: Element) -> None:
     """Make a constraint of a transition its guard."""
     owner = file.graph.get(constraint.owner or "")
-    if owner is not None and owner.kind is Kind.TRANSITION and constraint.attrs.get("body"):
-        owner.attrs["guard"] = constraint.attrs["body"]
+    if owner is not None and owner.kind is Kind.TRANSITION:
+        owner.attrs["guard"] = constraint.attrs.get("body") or constraint.name
         file.graph.connect(Edge.GUARD, owner, constraint)
 
 

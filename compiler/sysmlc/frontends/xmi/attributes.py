@@ -108,7 +108,10 @@ def _limit_targets(context: Context, row: int, name: str, value: str) -> list[st
 
 def _lower_other(context: Context, element: Element, row: int, name: str, value: str) -> None:
     reversed_edge = v.REVERSED.get((element.kind, name))
-    if reversed_edge is not None:
+    if name == "specification" and element.kind is Kind.CONSTRAINT:
+        # StarUML writes the text here; in UML the value is a child of the constraint.
+        element.attrs["body"] = value
+    elif reversed_edge is not None:
         for target in value.split():
             reference = WrittenReference(target, row)
             context.add_reference(reversed_edge, element.id, reference, name, is_reversed=True)

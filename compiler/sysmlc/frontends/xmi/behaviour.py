@@ -1,9 +1,10 @@
 """Parts of behaviours that are no elements: guards, weights, events, and records of their owner."""
 
+import re
 from graphlib import CycleError, TopologicalSorter
 
-from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.xmi import metaclasses, uml_features
+from sysmlc.diagnostics import Subject, Verdict
+from sysmlc.frontends.xmi import metaclasses, rules, uml_features
 from sysmlc.frontends.xmi.context import Context, RowHandler, check_references_inside
 from sysmlc.frontends.xmi.document import Document, WrittenReference
 from sysmlc.frontends.xmi.folded_elements import report_losses
@@ -14,6 +15,7 @@ from sysmlc.frontends.xmi.value_features import (
     store_alternatives,
 )
 from sysmlc.frontends.xmi.values import Value, read_opaque, read_value
+from sysmlc.frontends.xmi.vocabulary import TRUE
 from sysmlc.ir import AttrValue, Edge, Element, list_items
 
 _RECORD_COLUMNS = {
@@ -27,6 +29,14 @@ _RECORD_FEATURES = frozenset(name for names in _RECORD_COLUMNS.values() for name
 
 _EVENT_VALUES = {"when": "when", "changeExpression": "condition"}
 """Attributes of triggers, by the feature of the event that holds the value."""
+
+_WORDS_OF_EVENTS = {"time": ("after", "at"), "change": ("when",)}
+"""Words before the time or the condition in the name of an event, by the subkind of triggers."""
+
+_ANY_EVENT = re.compile(
+    r"(any|all|any ?receive( ?event)?)[ _]?\d*|\*|else|otherwise", re.IGNORECASE
+)
+"""Names of events that mean any message, and those that tools generate."""
 
 _GUARD_ATTRIBUTES = {
     "body": "guard",
@@ -106,8 +116,8 @@ def complete_behaviour(context: Context) -> None:
     for complete, element, row in context.completions:
         complete(context, element, row)
     _check_unused_events(context)
-    for element, target, row in context.guards:
-        _complete_guard(context, element, target, row)
+    for element, guard, _ in context.guards:
+        _complete_guard(context, element, guard)
     _set_parameter_directions(context)
     for element, row in context.opaque_elements.values():
         _set_body(element, read_opaque(context.document, row))
@@ -180,6 +190,8 @@ def _complete_trigger(context: Context, trigger: Element, row: int) -> None:
     trigger.attrs["subkind"] = subkind
     if not trigger.name:
         context.graph.rename(trigger, event.name)
+    if subkind == "any" and trigger.name and not _ANY_EVENT.fullmatch(trigger.name.strip()):
+        _read_name_as_event(context, trigger, row)
     context.used_events.add((event.document.name, event.row))
     document = event.document
     for feature in ("signal", "operation"):
@@ -188,9 +200,36 @@ def _complete_trigger(context: Context, trigger: Element, row: int) -> None:
     for feature, key in _EVENT_VALUES.items():
         for child in document.children(event.row, feature):
             value = read_value(document, child)
-            trigger.attrs[key] = value.text
-            store_alternatives(trigger, value, key)
-            if key == "when" and document.attributes[event.row].get("isRelative") == "true":
+            if value.text.strip():
+                trigger.attrs[key] = value.text
+                store_alternatives(trigger, value, key)
+    if subkind == "time" and document.attributes[event.row].get("isRelative") in TRUE:
+        trigger.attrs["relative"] = True
+    _read_text_in_name(trigger, event.name)
+
+
+def _read_name_as_event(context: Context, trigger: Element, row: int) -> None:
+    """Let a trigger wait for the event of its name, not for any message.
+
+    StarUML gives triggers an any-receive event where the modeller chose no kind.
+    """
+    trigger.attrs["subkind"] = ""
+    name = context.qualified_name(row)
+    subject = Subject(name, trigger.id, context.locate(row))
+    context.sink.report(rules.ANY_EVENT_WITH_NAME, subject, event=trigger.name)
+
+
+def _read_text_in_name(trigger: Element, event_name: str) -> None:
+    """Set the time or condition of an event that has it only in its name (``after 5 s``)."""
+    for name in (event_name, trigger.name):
+        word, _, text = name.strip().partition(" ")
+        if not text or word not in _WORDS_OF_EVENTS.get(trigger.subkind, ()):
+            continue
+        if trigger.subkind == "change":
+            trigger.attrs.setdefault("condition", text.strip())
+        elif "when" not in trigger.attrs:
+            trigger.attrs["when"] = text.strip()
+            if word == "after":
                 trigger.attrs["relative"] = True
 
 
@@ -219,21 +258,28 @@ def _check_unused_events(context: Context) -> None:
 # -- guards and parameters -------------------------------------------------------------------------
 
 
-def _complete_guard(context: Context, transition: Element, target: str, row: int) -> None:
-    target_row = context.document.ids.get(target)
-    constraint = None if target_row is None else context.elements[target_row]
-    if constraint is None:
-        id = context.unit.find_target_id(context.file, target, False)
+def _complete_guard(
+    context: Context, transition: Element, guard: Element | WrittenReference
+) -> None:
+    """Give a transition the text of its guard; the text is empty if nothing can be read.
+
+    A constraint without a value has the text in its name, as modellers write it in diagrams.
+    """
+    transition.attrs["guard"] = ""
+    if isinstance(guard, WrittenReference):
+        id = context.unit.find_target_id(context.file, guard.target, guard.is_href)
         constraint = context.graph.get(id)
-    if constraint is None:
-        reference = WrittenReference(target, row)
-        context.add_reference(Edge.GUARD, transition.id, reference, "guard")
-        return
-    context.graph.connect(Edge.GUARD, transition, constraint)
-    for key, guard_key in _GUARD_ATTRIBUTES.items():
-        value = constraint.attrs.get(key)
-        if value is not None:
-            transition.attrs[guard_key] = value
+        if constraint is None:
+            context.add_reference(Edge.GUARD, transition.id, guard, "guard")
+            return
+        guard = constraint
+    context.graph.connect(Edge.GUARD, transition, guard)
+    transition.attrs["guard"] = guard.name
+    if str(guard.attrs.get("body", "")).strip():
+        for key, guard_key in _GUARD_ATTRIBUTES.items():
+            value = guard.attrs.get(key)
+            if value is not None:
+                transition.attrs[guard_key] = value
 
 
 def _set_parameter_directions(context: Context) -> None:

@@ -70,8 +70,8 @@ class Context:
         self.event_rows: list[int] = []
         self.used_events: set[tuple[str, int]] = set()
         """File and row of the events that triggers of this document read."""
-        self.guards: list[tuple[Element, str, int]] = []
-        """Transitions with the id of the constraint that is their guard."""
+        self.guards: list[tuple[Element, Element | WrittenReference, int]] = []
+        """Transitions, the constraint that is their guard or a reference to it, and the row."""
         self.opaque_elements: dict[str, tuple[Element, int]] = {}
         """Elements with several bodies or languages, by their id."""
         self.record_rows: dict[str, list[tuple[Element, int]]] = {}

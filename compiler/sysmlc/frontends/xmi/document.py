@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import NamedTuple
+from urllib.parse import unquote
 
 from sysmlc.frontends.xmi import namespaces
 from sysmlc.sources import DEFAULT_LIMITS, Source
@@ -266,6 +267,8 @@ def _derive_columns(document: Document) -> None:
     document.idref_key = f"{xmi}}}idref"
     local_names = {tag: tag.rpartition("}")[2].rpartition(":")[2] for tag in set(document.tags)}
     document.features = [local_names[tag] for tag in document.tags]
+    if _is_from_staruml(document):
+        _decode_attributes(document)
     document.types = _extract_types(document, document.type_key)
     if _XSI in document.declared_namespaces and not any(document.types):
         # EMF saves the type in this namespace if the options of UML2 are not set.
@@ -287,6 +290,24 @@ def _rename_attributes(document: Document, namespace: str, new_namespace: str) -
             value = values.pop(f"{namespace}}}{name}", None)
             if value is not None:
                 values[f"{new_namespace}}}{name}"] = value
+
+
+def _is_from_staruml(document: Document) -> bool:
+    return any(
+        document.attributes[row].get("exporter") == "StarUML"
+        for row in document.children(0, "Documentation")
+    )
+
+
+def _decode_attributes(document: Document) -> None:
+    """Decode the attributes of StarUML, which writes them percent-encoded, as in a URI.
+
+    An href is decoded where it is resolved, as those of the other tools are.
+    """
+    for values in document.attributes:
+        for name, value in values.items():
+            if "%" in value and name != "href":
+                values[name] = unquote(value)
 
 
 def _extract_types(document: Document, key: str) -> list[str]:

@@ -106,12 +106,19 @@ def _complete_pin(context: Context, element: Element, row: int) -> None:
 def _complete_constraint(context: Context, element: Element, row: int) -> None:
     owner = context.find_owner(row)
     if owner is not None:
-        context.guards.append((owner, element.id, row))
+        context.guards.append((owner, element, row))
 
 
 def _complete_transition(context: Context, element: Element, row: int) -> None:
-    for target in context.document.targets(row, "guard"):
-        context.guards.append((element, target, row))
+    for reference in context.document.references(row, "guard"):
+        context.guards.append((element, reference, row))
+
+
+def _complete_flow(context: Context, element: Element, row: int) -> None:
+    # The guard of a flow is a child in UML; an attribute can only contain its text.
+    text = context.document.attributes[row].get("guard")
+    if text is not None:
+        element.attrs["guard"] = text
 
 
 def _complete_state_behaviour(context: Context, element: Element, row: int) -> None:
@@ -119,6 +126,16 @@ def _complete_state_behaviour(context: Context, element: Element, row: int) -> N
     if owner is not None:
         edge = v.STATE_BEHAVIOURS[context.document.features[row]]
         context.graph.connect(edge, owner, element)
+        context.completions.append((_read_name_as_body, element, row))
+
+
+def _read_name_as_body(_context: Context, element: Element, _row: int) -> None:
+    """Set the body of an opaque behaviour to its name if the name is an assignment.
+
+    StarUML has only names for effects, entries and exits.
+    """
+    if element.subkind == "opaque" and "body" not in element.attrs and ":=" in element.name:
+        element.attrs["body"] = element.name
 
 
 def _complete_trigger(context: Context, element: Element, row: int) -> None:
@@ -145,6 +162,8 @@ _COMPLETIONS: dict[Kind, ElementHandler] = {
     Kind.PIN: _complete_pin,
     Kind.CONSTRAINT: _complete_constraint,
     Kind.TRANSITION: _complete_transition,
+    Kind.CONTROL_FLOW: _complete_flow,
+    Kind.OBJECT_FLOW: _complete_flow,
     Kind.ACTIVITY: _complete_state_behaviour,
     Kind.STATE_MACHINE: _complete_state_behaviour,
     Kind.INTERACTION: _complete_state_behaviour,

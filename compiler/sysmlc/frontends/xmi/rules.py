@@ -9,6 +9,13 @@ MALFORMED = rule(
     "'{file}' cannot be read: {problem}",
     help="open and save the model again in the modelling tool",
 )
+ANY_EVENT_WITH_NAME = rule(
+    "SM101",
+    "any-event-with-name",
+    Severity.INFO,
+    "the any-receive event '{event}' is read as the event of that name",
+    help="let the trigger refer to a signal, or delete the name if any message is meant",
+)
 NO_MODEL = rule(
     "SM110",
     "no-known-content",

@@ -22,6 +22,11 @@ TOOL_ATTRIBUTES = frozenset({"element", "href", "nsURI"})
 """Attributes of no metaclass that are read: the target of MagicDraw's ElementValue, a reference to
 another file, and Ecore's namespace of a profile."""
 
+_PLACES_OF_TOOLS = frozenset(
+    {("Constraint", "specification"), ("ControlFlow", "guard"), ("ObjectFlow", "guard")}
+)
+"""Metaclasses with attributes that are children in UML, but that tools such as StarUML write."""
+
 _READ = (Verdict.MAPPED, Verdict.APPROXIMATED, Verdict.EXTERNAL)
 
 _TAG_WORDS = (
@@ -114,7 +119,8 @@ def _list_unknown(metaclass: str, names: Iterable[str]) -> list[_UnknownAttribut
 def _check(metaclass: str, name: str) -> _UnknownAttribute | None:
     if not _is_known(name):
         return _UnknownAttribute(name)
-    if name in FEATURES and name not in TOOL_ATTRIBUTES and is_misplaced(metaclass, name):
+    is_excepted = name in TOOL_ATTRIBUTES or (metaclass, name) in _PLACES_OF_TOOLS
+    if name in FEATURES and not is_excepted and is_misplaced(metaclass, name):
         return _UnknownAttribute(name, metaclass)
     return None
 

@@ -77,6 +77,8 @@ class Symbol(Struct, frozen=True):
 Scope = Callable[[str], Symbol | None]
 """Looks up a name; None if it is unknown."""
 FINITE_ADVICE = "use properties that are a Boolean, an enumeration or an Integer for a contract"
+EMPTY_ADVICE = "write the condition as its text, or delete it if there is none"
+"""Advice on a condition without text."""
 ELSEWHERE_ADVICE = (
     "use a property of the owner of the behaviour, or pass the value by a signal, for a contract "
     "about it"

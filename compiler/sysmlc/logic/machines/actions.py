@@ -12,6 +12,7 @@ from sysmlc.logic.contract import BooleanDomain, Domain, Owner, Variable
 from sysmlc.logic.expressions.context import Context, find_literal, make_symbol, report_range
 from sysmlc.logic.expressions.elaboration import (
     ELSEWHERE_ADVICE,
+    EMPTY_ADVICE,
     FINITE_ADVICE,
     ElaborationError,
     Fault,
@@ -179,8 +180,11 @@ class ReadingContext:
 def read_condition(reading: ReadingContext, text: str, what: str, element: Element) -> Expression:
     """Return the expression in *text*.
 
-    A text that is no valid condition is reported and replaced by a Boolean input.
+    A text that is no valid condition is reported and replaced by a Boolean input, which is an input
+    of its own if the text is empty.
     """
+    if not text:
+        return _replace_empty(reading, what, element)
     try:
         expression = parse_expression(text)
         elaborate_condition(expression, reading.find_symbol)
@@ -190,6 +194,21 @@ def read_condition(reading: ReadingContext, text: str, what: str, element: Eleme
         return _replace_by_input(reading, text, what, element, error, expression)
     reading.record_reads(expression)
     return expression
+
+
+def _replace_empty(reading: ReadingContext, what: str, element: Element) -> Expression:
+    """Report a condition without text and return the name of the Boolean input for it."""
+    variable = reading.input_for(f"condition of {element.id}", what, element.id)
+    reading.sink.report(
+        NOT_UNDERSTOOD,
+        reading.graph.subject(element),
+        help=EMPTY_ADVICE,
+        what=what,
+        text="",
+        reason="it has no text that can be read",
+        variable=variable,
+    )
+    return Name((variable,))
 
 
 def _classify_fault(
@@ -216,12 +235,23 @@ def _explain_name(reading: ReadingContext, element: Element, text: str, name: st
     owner = describe_feature_elsewhere(reading.graph, reading.sharing.machine, element, name)
     if owner:
         return owner
+    named = _find_named_after_text(reading.graph, element, text)
+    if named:
+        return f"'{name}' is not known, and only the name of the {named} has this text"
     language = str(element.attrs.get("guard_language", element.attrs.get("language", "")))
     if not language and text.strip() == name and not find_similar(name, reading.context.features):
         return f"the word '{name}' is not a property of '{reading.context.name}'"
     if language and language.lower() not in _CHECKED_LANGUAGES:
         return f"'{name}' is not known, and names in {language} are not checked"
     return f"'{name}' in single quotes is not a text here" if f"'{name}'" in text else ""
+
+
+def _find_named_after_text(graph: Graph, element: Element, text: str) -> str:
+    """Return what has *text* only as a name, a guard or a transition, or an empty text."""
+    constraint = graph.target(element, Edge.GUARD)
+    if constraint is not None and constraint.name == text and "body" not in constraint.attrs:
+        return "guard"
+    return "transition" if f"[{text}]" in element.name else ""
 
 
 def _replace_by_input(

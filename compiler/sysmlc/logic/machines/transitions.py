@@ -59,7 +59,7 @@ def _read_event(draft: MachineDraft, trigger: Element) -> str:
     """Return the literal of ``event`` for a signal or operation; triggers of one type share it."""
     graph = draft.reading.graph
     type_ = graph.target(trigger, Edge.TYPED_BY)
-    key = trigger.name if type_ is None else type_.id
+    key = (trigger.name or trigger.id) if type_ is None else type_.id
     name = (type_.name if type_ is not None else "") or trigger.name or "event"
     if key not in draft.events:
         literals = make_unique([*draft.events.values(), name], "event", NO_EVENT)
@@ -197,14 +197,14 @@ def _read_transition(
     graph = draft.reading.graph
     text = _guard_text(graph, element)
     guard = None
-    if text and text.strip() != "else":
-        guard = read_condition(draft.reading, text.strip(), "guard", element)
+    if text is not None and text != "else":
+        guard = read_condition(draft.reading, text, "guard", element)
     triggers = graph.targets(element, Edge.TRIGGER) if vertex.kind == "state" else []
     target = graph.target(element, Edge.FLOW_TARGET)
     return Transition(
         submachine_id(within, element.id),
         literal,
-        _describe(graph, element, text),
+        _describe(graph, element, text or ""),
         vertex.id,
         _resolve_target(draft, within, target),
         element.subkind or "external",
@@ -223,12 +223,14 @@ def _resolve_target(draft: MachineDraft, within: str, target: Element | None) ->
     return next(iter(draft.aliases.get(id, ())), id)
 
 
-def _guard_text(graph: Graph, transition: Element) -> str:
-    text = transition.attrs.get("guard")
-    if isinstance(text, str) and text.strip():
-        return text
+def _guard_text(graph: Graph, transition: Element) -> str | None:
+    """Return the text of a guard, which may be empty, or None if the transition has no guard."""
     constraint = graph.target(transition, Edge.GUARD)
-    return "" if constraint is None else str(constraint.attrs.get("body", ""))
+    text = str(transition.attrs.get("guard") or "").strip()
+    if not text and constraint is not None:
+        text = str(constraint.attrs.get("body", "")).strip()
+    has_guard = constraint is not None or "guard" in transition.attrs
+    return text if has_guard else None
 
 
 def _describe(graph: Graph, transition: Element, guard: str) -> str:
@@ -250,7 +252,7 @@ def _expand_else(graph: Graph, transitions: list[Transition]) -> tuple[Transitio
 
 
 def _is_else(graph: Graph, transition: Transition) -> bool:
-    return _guard_text(graph, graph[element_id(transition.id)]).strip() == "else"
+    return _guard_text(graph, graph[element_id(transition.id)]) == "else"
 
 
 def _negate_siblings(transition: Transition, transitions: list[Transition]) -> Expression | None:

@@ -170,8 +170,9 @@ def _ensure_exit_choice(
 
 def _has_no_guard(draft: Draft, flow: Flow) -> bool:
     """Whether the flow has no guard, or the literal ``true`` that tools write by default."""
-    text = _guard_text(flow)
-    return not text or (text == "true" and flow.element.attrs.get("guard_literal") is True)
+    attributes = flow.element.attrs
+    is_default = _guard_text(flow) == "true" and attributes.get("guard_literal") is True
+    return "guard" not in attributes or is_default
 
 
 def _add_waiting_guard(draft: Draft, flow: Flow, source: str, marked: bool) -> str:
@@ -192,7 +193,7 @@ def _read_guard(draft: Draft, flow: Flow, decision: str) -> Guard | None:
     text = _guard_text(flow)
     if text.lower() == "else":
         return Guard("else", None)
-    if not text:
+    if "guard" not in flow.element.attrs:
         return None
     if flow.element.attrs.get("guard_literal") is True:
         return _read_literal_guard(draft, flow, decision, text)

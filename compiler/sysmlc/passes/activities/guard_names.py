@@ -3,6 +3,8 @@
 Many modellers write "Accepted" or "else" as the name of a flow instead of its guard.
 """
 
+import re
+
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import has_generated_name, type_of
@@ -11,20 +13,23 @@ GUARD_FROM_NAME = rule(
     "SM461",
     "guard-from-name",
     Severity.INFO,
-    "the names of the flows that leave decision '{decision}' are read as guards: {names}",
+    "the names of {flows} are read as guards: {names}",
     help="write them as the guards of the flows",
 )
 
+_IN_BRACKETS = re.compile(r"[^\[\]]*\[([^\[\]]+)\]\s*")
+"""A name in the notation of diagrams, ``[load > 3]``."""
 _FLOWS = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
 _BOOLEAN = frozenset({"boolean", "bool", "eboolean"})
 _TRUTH_VALUES = frozenset({"true", "false"})
 
 
 def read_guard_names(graph: Graph, sink: Sink) -> None:
-    """Set the guards of flows to their names, where a decision has no guards but named flows.
+    """Set the guards of flows to their names, where these can mean nothing else.
 
-    The names are guards if each is a value of the type that the decision tests, or if one of the
-    flows is called ``else`` or has that guard.
+    The names of the flows that leave a decision are guards if each is a value of the type that the
+    decision tests, or if one of the flows is called ``else`` or has that guard. A name in brackets
+    is a guard on every flow.
     """
     for decision in graph.of_kind(Kind.CONTROL):
         if decision.subkind != "decision":
@@ -38,11 +43,23 @@ def read_guard_names(graph: Graph, sink: Sink) -> None:
         if not are_values and not any(map(_is_else, flows)):
             continue
         for flow in named:
-            text = "else" if _is_else(flow) else flow.name.strip()
+            text = "else" if _is_else(flow) else _strip_brackets(flow.name)
             graph.set(flow, guard=text, guard_literal=(are_values and text != "else") or None)
-        names = ", ".join(f"'{flow.name}'" for flow in named)
-        subject = graph.subject(decision)
-        sink.report(GUARD_FROM_NAME, subject, decision=decision.name, names=names)
+        _report(graph, decision, f"the flows that leave decision '{decision.name}'", named, sink)
+    for flow in graph.of_kind(*_FLOWS):
+        if _IN_BRACKETS.fullmatch(flow.name) and _is_named_without_guard(flow):
+            graph.set(flow, guard=_strip_brackets(flow.name), guard_literal=None)
+            _report(graph, flow, "flows", [flow], sink)
+
+
+def _report(graph: Graph, element: Element, flows: str, named: list[Element], sink: Sink) -> None:
+    names = ", ".join(f"'{flow.name}'" for flow in named)
+    sink.report(GUARD_FROM_NAME, graph.subject(element), flows=flows, names=names)
+
+
+def _strip_brackets(name: str) -> str:
+    match = _IN_BRACKETS.fullmatch(name)
+    return (match[1] if match is not None else name).strip()
 
 
 def _is_named_without_guard(flow: Element) -> bool:
@@ -54,7 +71,7 @@ def _is_named_without_guard(flow: Element) -> bool:
 
 def _is_else(flow: Element) -> bool:
     words = [str(flow.attrs.get("guard", "")), flow.name]
-    return any(word.strip().casefold() == "else" for word in words)
+    return any(_strip_brackets(word).casefold() == "else" for word in words)
 
 
 def _list_tested_values(graph: Graph, decision: Element) -> frozenset[str]:

@@ -21,6 +21,7 @@ from sysmlc.logic.contract import (
 from sysmlc.logic.expressions.context import context_of, make_symbol, report_range
 from sysmlc.logic.expressions.elaboration import (
     ELSEWHERE_ADVICE,
+    EMPTY_ADVICE,
     FINITE_ADVICE,
     ElaborationError,
     Fault,
@@ -230,8 +231,12 @@ class Inputs:
     def read_condition(self, text: str, origin: Element, what: str) -> Formula:
         """Return the formula of a text. Unknown names in it become Boolean inputs.
 
-        A text that is not a condition becomes a Boolean input as a whole.
+        A text that is not a condition becomes a Boolean input as a whole; an empty one becomes an
+        input of *origin* alone.
         """
+        if not text:
+            error = UnreadableError("it has no text that can be read", advice=EMPTY_ADVICE)
+            return self._declare_unreadable("", origin, what, error)
         # The loop ends because each round declares one more name of the text.
         while True:
             try:
@@ -249,11 +254,12 @@ class Inputs:
     def _declare_unreadable(
         self, text: str, origin: Element, what: str, error: "UnreadableError"
     ) -> Formula:
-        name = self._by_text.get(text)
+        key = text or origin.id
+        name = self._by_text.get(key)
         if name is None:
             name = self._declare(identifier(text, "condition"), BooleanDomain(), origin)
-            self.variables[name] = replace(self.variables[name], condition=text)
-            self._by_text[text] = name
+            self.variables[name] = replace(self.variables[name], condition=text or what)
+            self._by_text[key] = name
         subject = self.graph.subject(origin)
         self._sink.report(
             rules.UNREADABLE,
