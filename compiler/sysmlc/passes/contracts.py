@@ -34,6 +34,7 @@ from sysmlc.logic.requirements.scope import Scope, scope_of
 from sysmlc.logic.requirements.statements import component_of, definition_of, list_component_names
 from sysmlc.logic.services import derivation as services
 from sysmlc.logic.syntax import FormulaError
+from sysmlc.passes.unread_restrictions import report_unread_restrictions
 
 SAME_COMPONENT = rule(
     "SM500",
@@ -67,6 +68,7 @@ class Contracts(Struct, frozen=True):
         drawn = (*self._derive_machines(graph, sink), *_derive_activities(graph))
         derived = list(map(mark_derived, drawn))
         derived = _number_components(graph, derived, sink)
+        report_unread_restrictions(graph, derived, sink)
         derived = _add_formulas(graph, derived, options, sink)
         checked = list(requirements.derive(graph, derived, options, sink))
         required = [subject.contract for subject in checked]

@@ -156,6 +156,9 @@ def _refer(context: Context, owner: Element, reference: WrittenReference, featur
     elif feature in v.REDUNDANT:
         if not is_href:
             context.defer_check(context.document.parents[row], feature, target)
+    elif feature == "guard" and owner.kind in (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW):
+        # The value is in another file or belongs to another element, so that it has no text here.
+        owner.attrs["guard"] = ""
     elif feature not in ("partWithPort", "guard", "event"):
         _store_ids(context, owner, reference, feature)
 

@@ -142,8 +142,12 @@ def _store_value(context: Context, row: int, key: str) -> None:
         store_alternatives(owner, value, key)
 
 
-def _make_text_handler(key: str, default: str = "") -> RowHandler:
-    """Return a handler that stores a value as text unless it is the default."""
+def _make_text_handler(key: str, default: str | None = "") -> RowHandler:
+    """Return a handler that stores a value as text unless it is the default.
+
+    With the default None an empty text is stored, too, because an unreadable value is not the
+    default.
+    """
 
     def lower(context: Context, row: int) -> None:
         owner = context.find_owner(row)
@@ -170,7 +174,7 @@ FEATURES: dict[str, RowHandler] = {
     "defaultValue": _lower_default,
     "specification": _lower_specification,
     "value": _lower_slot_value,
-    "joinSpec": _make_text_handler("join_spec"),
+    "joinSpec": _make_text_handler("join_spec", default=None),
     "upperBound": _make_text_handler("upper_bound", default="*"),
     "nameExpression": _make_text_handler("name_expression"),
     "argument": _lower_argument,

@@ -104,6 +104,8 @@ REFERENCES_BY_KIND: dict[tuple[Kind, str], Edge] = {
     (Kind.TEMPLATE_BINDING, "signature"): Edge.BINDS,
     (Kind.STATE, "entry"): Edge.ENTRY,
     (Kind.STATE, "exit"): Edge.EXIT,
+    (Kind.STATE, "doActivity"): Edge.DO,
+    (Kind.TRANSITION, "effect"): Edge.EFFECT,
 }
 """Edges of features that have another meaning for these kinds."""
 

@@ -11,7 +11,7 @@ from math import ceil
 from msgspec.structs import replace
 
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.ir import Edge, Element, Graph
+from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic.contract import (
     BooleanDomain,
 )
@@ -41,28 +41,62 @@ from sysmlc.logic.machines.vertices import MachineDraft, list_outgoing
 from sysmlc.logic.machines.well_formedness import find_common_state
 
 
-def _read_occurrence(draft: MachineDraft, trigger: Element, vertex: Vertex) -> Occurrence:
-    """Return the occurrence that makes *trigger* fire; create its variables on first use."""
+def _read_occurrences(
+    draft: MachineDraft, trigger: Element, vertex: Vertex
+) -> tuple[Occurrence, ...]:
+    """Return the occurrences that make *trigger* fire; create their variables on first use."""
     kind = trigger.subkind
     if kind == "time" or (not kind and "when" in trigger.attrs):
-        return _read_time(draft, trigger, vertex)
+        return (_read_time(draft, trigger, vertex),)
     if kind == "change" or (not kind and "condition" in trigger.attrs):
-        return _read_change(draft, trigger)
+        return (_read_change(draft, trigger),)
     if kind == "any":
         literals = make_unique([*draft.events.values(), "other"], "", NO_EVENT)
         draft.events.setdefault("any", literals[-1])
-        return OnEvent(None)
-    return OnEvent(_read_event(draft, trigger))
+        return (OnEvent(None),)
+    return tuple(OnEvent(literal) for literal in _read_events(draft, trigger))
 
 
-def _read_event(draft: MachineDraft, trigger: Element) -> str:
-    """Return the literal of ``event`` for a signal or operation; triggers of one type share it."""
-    graph = draft.reading.graph
-    type_ = graph.target(trigger, Edge.TYPED_BY)
-    key = (trigger.name or trigger.id) if type_ is None else type_.id
-    name = (type_.name if type_ is not None else "") or trigger.name or "event"
+def _read_events(draft: MachineDraft, trigger: Element) -> list[str]:
+    """Return the literals of ``event`` for a signal or operation; triggers of one type share them.
+
+    If the machine waits for the type at several ports, each port has a literal, and a trigger
+    without port takes all of them.
+    """
+    type_ = draft.reading.graph.target(trigger, Edge.TYPED_BY)
+    if type_ is None:
+        return [_read_event(draft, trigger.name or trigger.id, trigger.name)]
+    ports = _list_ports(draft, type_)
+    name, port = type_.name or trigger.name, trigger.attrs.get("port")
+    if len(ports) < 2:
+        return [_read_event(draft, type_.id, name)]
+    return [
+        _read_event(draft, f"{type_.id} {id}", f"{name} via {port_name}" if port_name else name)
+        for id, port_name in ports.items()
+        if port in (None, id)
+    ]
+
+
+def _list_ports(draft: MachineDraft, type_: Element) -> dict[object, str]:
+    """Return the names of the ports, by id, at which triggers of the machine wait for a type.
+
+    The id None, without name, stands for the triggers that name no port.
+    """
+    graph, machine = draft.reading.graph, draft.machine
+    triggers = [
+        trigger
+        for trigger in graph.sources(type_, Edge.TYPED_BY)
+        if trigger.kind is Kind.TRIGGER and machine in graph.ancestors(trigger)
+    ]
+    ids = dict.fromkeys(trigger.attrs.get("port") for trigger in triggers)
+    ports = ((id, graph.get(str(id))) for id in ids)
+    return {id: port.name if port is not None else "" for id, port in ports}
+
+
+def _read_event(draft: MachineDraft, key: str, name: str) -> str:
+    """Return the literal of ``event`` for this key; create it on first use."""
     if key not in draft.events:
-        literals = make_unique([*draft.events.values(), name], "event", NO_EVENT)
+        literals = make_unique([*draft.events.values(), name or "event"], "event", NO_EVENT)
         draft.events[key] = literals[-1]
     return draft.events[key]
 
@@ -208,7 +242,11 @@ def _read_transition(
         vertex.id,
         _resolve_target(draft, within, target),
         element.subkind or "external",
-        tuple(_read_occurrence(draft, trigger, vertex) for trigger in triggers),
+        tuple(
+            occurrence
+            for trigger in triggers
+            for occurrence in _read_occurrences(draft, trigger, vertex)
+        ),
         guard,
         read_behaviours(draft.reading, element, Edge.EFFECT),
     )

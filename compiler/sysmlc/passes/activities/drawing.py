@@ -195,6 +195,14 @@ class _Reader:
                 text = str(node.attrs["join_spec"])
                 self.sink.report(rules.JOIN_SPEC, self._fail(node), node=label, text=text)
             self._check_parts(node, label)
+            self._check_selection(node, label)
+
+    def _check_selection(self, element: Element, label: str) -> None:
+        """Report behaviours that choose or change the objects of a flow or an object node."""
+        for behaviour in ("selection", "transformation"):
+            if behaviour in element.attrs:
+                subject = self.graph.subject(element)
+                self.sink.report(rules.SELECTION, subject, node=label, behaviour=behaviour)
 
     def _read_handlers(self, node: Element, label: str) -> None:
         if "handlers" not in node.attrs:
@@ -239,6 +247,7 @@ class _Reader:
         source, target = ends
         if source is None or target is None:
             return None
+        self._check_selection(element, self._label_flow(element))
         weight = element.attrs.get("weight", 1)
         # Papyrus writes weight 0, which UML forbids, if the author sets none.
         if weight not in (0, 1, "0", "1"):
@@ -348,4 +357,4 @@ def _with_region(flow: Flow, region: str, enters: bool = False, leaves: bool = F
 
 
 def _is_special_join(node: Element) -> bool:
-    return str(node.attrs.get("join_spec") or "and").strip() not in ("and", "")
+    return str(node.attrs.get("join_spec", "and")).strip() != "and"

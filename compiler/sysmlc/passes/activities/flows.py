@@ -203,8 +203,10 @@ def _read_guard(draft: Draft, flow: Flow, decision: str) -> Guard | None:
 
 def _read_literal_guard(draft: Draft, flow: Flow, decision: str, text: str) -> Guard | None:
     decision_input = _find_decision_input(draft, flow.source, decision)
-    if decision_input is None:
+    if decision_input is None and text in ("true", "false"):
         return None if text == "true" else Guard(text, f.FALSE)
+    if decision_input is None:
+        return Guard(text, draft.inputs.read_condition(text, flow.element, "the guard"))
     return Guard(text, decision_input.equals(text))
 
 

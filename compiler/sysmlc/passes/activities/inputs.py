@@ -355,12 +355,23 @@ def _read_event(inputs: Inputs, trigger: Element, action: Element) -> tuple[Form
     if trigger.subkind == "change" and trigger.attrs.get("condition"):
         text = str(trigger.attrs["condition"])
         return inputs.read_condition(text, action, "the change condition"), ""
-    name = _name_event(inputs.graph, trigger)
+    name = _name_event(inputs.graph, trigger, action)
     return inputs.share_event(name, trigger), name
 
 
-def _name_event(graph: Graph, trigger: Element) -> str:
+def _name_event(graph: Graph, trigger: Element, action: Element) -> str:
+    """Return the name of the input for an event; it names the port if it comes at several."""
     type_ = graph.target(trigger, Edge.TYPED_BY)
     prefix = {"call": "call", "time": "time", "change": "change"}.get(trigger.subkind, "receive")
     subject = (type_.name if type_ else "") or trigger.name or str(trigger.attrs.get("when", ""))
-    return f"{prefix}_{identifier(subject, 'event')}"
+    name = f"{prefix}_{identifier(subject, 'event')}"
+    port = graph.get(str(trigger.attrs.get("port", "")))
+    if port is None or type_ is None:
+        return name
+    activity = next(above for above in graph.ancestors(action) if above.kind is Kind.ACTIVITY)
+    ports = {
+        sibling.attrs.get("port")
+        for sibling in graph.sources(type_, Edge.TYPED_BY)
+        if sibling.kind is Kind.TRIGGER and activity in graph.ancestors(sibling)
+    }
+    return f"{name}_via_{identifier(port.name, 'port')}" if len(ports) > 1 else name

@@ -1,4 +1,4 @@
-"""Rules about activities (SM450 to SM479, and SM486)."""
+"""Rules about activities (SM450 to SM479, SM486 and SM489)."""
 
 from sysmlc.diagnostics import Severity, rule
 
@@ -213,6 +213,14 @@ TOO_DEEP = rule(
         "move what is inside into activities of their own, or raise the limit (option "
         "max_depth of the pass activities)"
     ),
+)
+SELECTION = rule(
+    "SM489",
+    "selection-not-read",
+    Severity.INFO,
+    "{node} has a {behaviour}, which the contract does not read: every object passes, with any "
+    "value",
+    help="do it in an action before, and decide by its result",
 )
 UNORDERED = rule(
     "SM486",
