@@ -84,6 +84,20 @@ EMPTY = rule(
     "'{path}' is empty: it defines nothing",
     help="save the model again, or remove the file",
 )
+NOT_OPENED = rule(
+    "SM103",
+    "archive-not-opened",
+    Severity.INFO,
+    "'{path}' holds models, which are not read: {entries}",
+    help="name the file itself to read them, or unpack it",
+)
+FOREIGN_PARTS = rule(
+    "SM102",
+    "foreign-package-part",
+    Severity.WARNING,
+    "the package '{path}' contains files of the operating system, which are not read: {entries}",
+    help="pack it again without them",
+)
 SAME_NAME = rule(
     "SM159",
     "same-file-name",

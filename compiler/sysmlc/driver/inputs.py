@@ -13,16 +13,19 @@ from sysmlc.diagnostics import Rule, Sink
 from sysmlc.driver import faults
 from sysmlc.driver.ownership import is_output_folder
 from sysmlc.frontends.base import Frontend
-from sysmlc.sources import Roots, Source
-from sysmlc.sources.files import is_special
+from sysmlc.sources import Roots, Source, is_model_entry
+from sysmlc.sources.files import is_special, list_archive_entries
 from sysmlc.support.escapes import escape_undecodable
 from sysmlc.support.suggestions import find_similar
 
 _SUFFIXES = """
-    .uml .xmi .xml .mdxml .mdzip .aml .amlx .caex .ir .sysml .kerml .sysmlx .kermlx .kpar
+    .uml .xmi .xml .mdxml .mdzip .aml .amlx .caex .mtp .ir .sysml .kerml .sysmlx .kermlx .kpar
 """
 SUFFIXES = frozenset(_SUFFIXES.split())
 """Suffixes of the files that a search of folders considers. A named file may have any suffix."""
+_ARCHIVE = ".zip"
+_MAX_ENTRIES = 3
+"""Entries of an archive that a message names."""
 
 
 class Recognised(Struct, frozen=True):
@@ -102,6 +105,9 @@ def recognise(
             if _is_blank(source.data):
                 sink.report(faults.EMPTY, faults.about_file(source.name), path=source.name)
             yield Recognised(source, best)
+        elif otherwise is None and _is_blank(source.data):
+            # A reference leads to it, which would otherwise seem to lead to a missing file.
+            sink.report(faults.EMPTY, faults.about_file(source.name), path=source.name)
         elif otherwise is not None:
             names = ", ".join(frontend.name for frontend in frontends)
             reason = "it is empty"
@@ -120,13 +126,14 @@ def _search_folder(folder: Path, root: Path, sink: Sink, excluded: frozenset[Pat
     """Return the model files below *folder*; report what is skipped, and if there is no model."""
     inside = Roots((folder,))
     files = []
-    for path in sorted(find_model_files(folder, excluded)):
+    for path in sorted(find_model_files(folder, excluded, SUFFIXES | {_ARCHIVE})):
+        name = name_of(path, root)
         if path.is_symlink() and not inside.allows(path):
-            name = name_of(path, root)
             sink.report(faults.LEADS_OUT, faults.about_file(name), path=name)
         elif is_special(path):
-            name = name_of(path, root)
             sink.report(faults.SPECIAL_FILE, faults.about_file(name), path=name)
+        elif path.suffix.lower() == _ARCHIVE:
+            _report_models_inside(path, name, sink)
         else:
             files.append(path)
     if not files and not any(path.is_relative_to(folder) for path in excluded):
@@ -136,14 +143,27 @@ def _search_folder(folder: Path, root: Path, sink: Sink, excluded: frozenset[Pat
     return files
 
 
-def find_model_files(folder: Path, excluded: frozenset[Path] = frozenset()) -> Iterator[Path]:
+def _report_models_inside(path: Path, name: str, sink: Sink) -> None:
+    """Report a zip archive that holds models; it may be a copy of models in the folder."""
+    entries = [entry for entry in list_archive_entries(path) if is_model_entry(entry)]
+    if entries:
+        shown = ", ".join(f"'{entry}'" for entry in sorted(entries)[:_MAX_ENTRIES])
+        more = f" and {len(entries) - _MAX_ENTRIES} more" if len(entries) > _MAX_ENTRIES else ""
+        sink.report(faults.NOT_OPENED, faults.about_file(name), path=name, entries=shown + more)
+
+
+def find_model_files(
+    folder: Path,
+    excluded: frozenset[Path] = frozenset(),
+    suffixes: frozenset[str] = SUFFIXES,
+) -> Iterator[Path]:
     """Yield the files below *folder* that are named like models, in no particular order.
 
     Hidden folders, output folders and whatever ``excluded`` lists (real paths) are skipped.
     """
     for parent, names in _walk(folder, excluded):
         for name in names:
-            is_model = Path(name).suffix.lower() in SUFFIXES and not name.startswith(".")
+            is_model = Path(name).suffix.lower() in suffixes and not name.startswith(".")
             if is_model and not _is_excluded(parent / name, excluded):
                 yield parent / name
 
@@ -210,6 +230,7 @@ _BLANKS = b" \t\r\n\f\v\0\xef\xbb\xbf\xff\xfe"
 """White space and bytes of byte order marks, in UTF-8 and UTF-16."""
 _HTML = re.compile(rb"<(?:!doctype\s+)?html", re.IGNORECASE)
 _ROOT = re.compile(rb"<([A-Za-z_][\w.:-]*)")
+_OLD_XMI = re.compile(rb"""<XMI\s[^>]*\bxmi\.version\s*=\s*["'](1\.\d)["']""")
 _HEAD = 4_096
 
 
@@ -228,7 +249,9 @@ def _describe_content(data: bytes) -> str:
     if _HTML.search(head):
         return "an HTML page"
     if head.startswith(b"<"):
-        root = _ROOT.search(head)
+        root, version = _ROOT.search(head), _OLD_XMI.search(head)
+        if version is not None:
+            return f"XMI {version[1].decode()}; export XMI 2.1 or later"
         return f"XML with the root element '{root[1].decode()}'" if root else "damaged XML"
     if b"\0" in data[:_HEAD]:
         return "binary data"

@@ -5,9 +5,11 @@ Overlays may also be named by the user.
 """
 
 import os
+import posixpath
 from collections.abc import Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
+from urllib.parse import unquote
 
 from msgspec import Struct
 
@@ -18,8 +20,9 @@ from sysmlc.driver.siblings import find_siblings
 from sysmlc.frontends.base import AttachmentFrontend, DiagramReader, Frontend
 from sysmlc.ir import Graph
 from sysmlc.overlay import SUFFIX, Refinement, list_files, read_overlay
-from sysmlc.sources import Roots, Source, SourceError, load, read_entries
-from sysmlc.sources.files import read_whole
+from sysmlc.sources import Roots, Source, SourceError, amlx_package, load, read_entries
+from sysmlc.sources.archive import is_system_entry
+from sysmlc.sources.files import list_archive_entries, read_whole
 from sysmlc.sources.source import DEFAULT_LIMITS, DOCUMENT_LIMITS
 
 
@@ -250,14 +253,19 @@ class _Reader:
     def _check_mentioned_files(self, path: Path, item: Recognised) -> None:
         """Report files of other languages, such as CAD models, that do not exist.
 
-        References inside a package (``!`` in the name) are checked by its front end.
+        In a package they are its other parts; a path starts at the package or at the part.
         """
         source, frontend = item.source, item.frontend
-        if not isinstance(frontend, AttachmentFrontend) or "!" in source.name:
+        if not isinstance(frontend, AttachmentFrontend):
             return
+        _, is_part, entry = source.name.partition("!")
+        parts = frozenset(list_archive_entries(path)) if is_part else frozenset()
         missing: dict[str, Place] = {}
         for href, place in frontend.list_attachments(source):
-            if self._roots.resolve(path, href) is None:
+            is_missing = self._roots.resolve(path, href) is None
+            if is_part:
+                is_missing = parts.isdisjoint(_list_places(entry, href))
+            if is_missing:
                 missing.setdefault(href.partition("#")[0], place)
         if missing:
             first = next(iter(missing))
@@ -267,13 +275,30 @@ class _Reader:
             self._sink.report(faults.NOT_THERE, subject, notes=notes, file=first, more=more)
 
 
+def _list_places(entry: str, href: str) -> set[str]:
+    """Return the parts of a package that a path in one of them may mean."""
+    file = unquote(href.partition("#")[0])
+    folders = ("", posixpath.dirname(entry))
+    return {posixpath.normpath(posixpath.join(folder, file)) for folder in folders}
+
+
 def _load_sources(path: Path, root: Path, sink: Sink) -> list[Source]:
     name = name_of(path, root)
     try:
-        return load(path, name)
+        sources = load(path, name)
     except SourceError as problem:
         faults.report_unreadable(problem, sink)
         return []
+    if path.suffix.lower() == amlx_package.SUFFIX:
+        _report_foreign_parts(path, name, sink)
+    return sources
+
+
+def _report_foreign_parts(path: Path, name: str, sink: Sink) -> None:
+    foreign = [entry for entry in list_archive_entries(path) if is_system_entry(entry)]
+    if foreign:
+        entries = ", ".join(f"'{entry}'" for entry in sorted(foreign))
+        sink.report(faults.FOREIGN_PARTS, faults.about_file(name), path=name, entries=entries)
 
 
 # -- companion files ---------------------------------------------------------------------------

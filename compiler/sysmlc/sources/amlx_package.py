@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 from urllib.parse import unquote
 
+from sysmlc.sources.archive import is_system_entry
 from sysmlc.sources.source import Source, SourceError
 from sysmlc.sources.xml import make_parser, parse
 
@@ -46,7 +47,7 @@ def check_package(archive: str, entries: Sequence[str], files: Sequence[Source])
     """
     relationships = [relationship for file in files for relationship in _read_relationships(file)]
     _check_root(archive, [r for r in relationships if r.type == _ROOT_DOCUMENT])
-    parts = {entry for entry in entries if not entry.endswith("/")}
+    parts = {entry for entry in entries if not entry.endswith("/") and not is_system_entry(entry)}
     for relationship in relationships:
         if relationship.target not in parts:
             message = f"it has no part '{relationship.target}'"

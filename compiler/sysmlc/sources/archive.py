@@ -14,6 +14,7 @@ _MAGIC = (b"PK\x03\x04", b"PK\x05\x06")
 _CHUNK = 1 << 20
 _NO_TABLE = "File is not a zip file"
 """The message of zipfile for an archive without the table at its end."""
+_SYSTEM_FILES = frozenset({"Thumbs.db", "ehthumbs.db", "desktop.ini"})
 _CUT_SHORT = "its table of contents is missing, as when a download or a save was cut off"
 
 
@@ -43,6 +44,14 @@ def list_entry_names(archive: Source) -> list[str]:
     """
     with _open_archive(archive) as zip_file:
         return zip_file.namelist()
+
+
+def is_system_entry(entry: str) -> bool:
+    """Whether an operating system or an editor added the entry: ``.DS_Store``, ``Thumbs.db``."""
+    *folders, name = entry.split("/")
+    is_hidden = any(part.startswith(".") for part in (*folders, name) if part not in (".", ".."))
+    is_kept = name.endswith((".rels", ".json"))
+    return "__MACOSX" in folders or name in _SYSTEM_FILES or (is_hidden and not is_kept)
 
 
 @contextmanager

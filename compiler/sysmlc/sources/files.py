@@ -7,11 +7,17 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from urllib.parse import unquote
+from zipfile import BadZipFile, ZipFile
 
 from msgspec import Struct
 
 from sysmlc.sources import amlx_package
-from sysmlc.sources.archive import is_archive, list_entry_names, read_entries
+from sysmlc.sources.archive import (
+    is_archive,
+    is_system_entry,
+    list_entry_names,
+    read_entries,
+)
 from sysmlc.sources.source import DEFAULT_LIMITS, Fault, Limits, Source, SourceError
 from sysmlc.sources.xml import convert_to_utf8
 
@@ -114,7 +120,8 @@ def is_description_entry(name: str) -> bool:
 
 def _is_wanted_entry(name: str) -> bool:
     """Whether an entry of an archive is read: a model, or an entry needed to read a model."""
-    return is_model_entry(name) or _is_auxiliary_entry(name)
+    is_wanted = is_model_entry(name) or _is_auxiliary_entry(name)
+    return is_wanted and not is_system_entry(name)
 
 
 def _is_auxiliary_entry(name: str) -> bool:
@@ -123,7 +130,7 @@ def _is_auxiliary_entry(name: str) -> bool:
 
 def _is_plain_entry(name: str) -> bool:
     """Whether an entry is XML at the top of an archive, as in a compressed export."""
-    return name.lower().endswith(".xml") and "/" not in name
+    return name.lower().endswith(".xml") and "/" not in name and not is_system_entry(name)
 
 
 def load(
@@ -149,6 +156,20 @@ def load(
     if all(_is_auxiliary_entry(source.name.partition("!")[2]) for source in sources):
         raise SourceError("the archive holds no model", name)
     return [convert_to_utf8(source) for source in sources]
+
+
+def list_archive_entries(path: Path) -> list[str]:
+    """Return the names of the entries of an archive; none if the file cannot be read as one.
+
+    Only the table at the end of the file is read.
+    """
+    if not path.is_file():
+        return []
+    try:
+        with ZipFile(path) as zip_file:
+            return zip_file.namelist()
+    except (OSError, BadZipFile, NotImplementedError, ValueError, EOFError):
+        return []
 
 
 # -- folders that references may lead to -------------------------------------------------------

@@ -120,15 +120,23 @@ def score_source(source: Source) -> float:
     """Return how certain it is, from 0 to 1, that the source is UML in XMI.
 
     1 for a UML namespace, 0.5 for XMI whose root declares none. A file that is damaged or has a
-    DOCTYPE gets 0.3 if its head mentions UML or XMI, so that the front end reports its fault.
+    DOCTYPE gets 0.3 if its head mentions UML or XMI, so that the front end reports its fault. In
+    EMF's namespace of XMI, which diagrams of Eclipse have, too, the first element inside decides.
     """
     if not _may_be_xml(source.data):
         return 0.0
     declared: list[str] = []
     xml_parser = make_parser()
+    is_inside = False
 
     def start(tag: str, _attributes: dict[str, str]) -> None:
-        raise _RootReadError(_score_root(tag, declared))
+        nonlocal is_inside
+        namespace = tag.rpartition("}")[0]
+        if is_inside:
+            raise _RootReadError(1.0 if namespaces.is_uml(namespace) else 0.0)
+        is_inside = namespace == namespaces.EMF_XMI
+        if not is_inside:
+            raise _RootReadError(_score_root(tag, declared))
 
     xml_parser.StartNamespaceDeclHandler = lambda _prefix, uri: declared.append(uri or "")
     xml_parser.StartElementHandler = start

@@ -224,10 +224,17 @@ def check_references_inside(context: Context, row: int, followed: Collection[str
     """Defer a check of the references in a row and its content that become no elements.
 
     Targets that are missing are reported. References of the features *followed* are not redundant:
-    no other feature states them, so a missing target is an error.
+    no other feature states them, so a missing target is an error. Notation has no references: the
+    ``source`` of an annotation of Eclipse is the URI of a tool.
     """
     document = context.document
+    notation_end = row
     for inner in range(row, document.ends[row]):
+        if inner < notation_end:
+            continue
+        if document.features[inner] in v.NOTATION_FEATURES:
+            notation_end = document.ends[inner]
+            continue
         for name, value in document.attributes[inner].items():
             if name in uml_features.NAMING or name in followed:
                 context.defer_check(inner, name, value, name not in followed)

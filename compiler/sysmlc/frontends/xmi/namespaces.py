@@ -5,7 +5,11 @@ from functools import cache, lru_cache
 
 from sysmlc.ir import Element, Graph, Kind
 
-_XMI = re.compile(r"https?://(www|schema)\.omg\.org/spec/XMI(/[\d.]+)?/?$|^omg\.org/XMI/2")
+EMF_XMI = "http://www.omg.org/XMI"
+"""Namespace that EMF writes if the options of UML2 are not set, and in files that are no models."""
+_XMI = re.compile(
+    r"https?://(www|schema)\.omg\.org/spec/XMI(/[\d.]+)?/?$|^omg\.org/XMI/2|" + EMF_XMI + "$"
+)
 _UML = re.compile(
     r"https?://www\.eclipse\.org/uml2/[\d.]+/UML/?$"
     r"|https?://(www|schema)\.omg\.org/spec/UML/[\d.]+/?$"

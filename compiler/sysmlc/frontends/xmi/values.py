@@ -22,6 +22,7 @@ _REFERRING = {"InstanceValue": "instance", "ElementValue": "element"}
 """Values that refer to an element, and their feature; ``ElementValue`` is MagicDraw's own."""
 _INFIX_WORDS = frozenset({"and", "or", "xor", "implies"})
 """Operators of the expression grammar that are words and stand between their operands."""
+_TRUTH_VALUES = {**dict.fromkeys(TRUE, True), **dict.fromkeys(("", "false", "0"), False)}
 _INTEGER = re.compile(r"[+-]?[0-9]{1,4000}$")
 
 
@@ -123,7 +124,8 @@ def _read_bodies(document: Document, row: int) -> tuple[list[str], list[str]]:
 
 def _read_literal(type_name: str, text: str) -> AttrValue:
     if type_name == "LiteralBoolean":
-        return text in TRUE
+        # A text that is no truth value is not false: it is unknown.
+        return _TRUTH_VALUES.get(text.lower(), text)
     if type_name == "LiteralString":
         return text
     if type_name == "LiteralNull":

@@ -231,6 +231,16 @@ def report_bad_start(graph: Graph, region: Element, fault: str, sink: Sink) -> N
 
 
 def find_initial(graph: Graph, region: Element) -> Element | None:
-    """Return the first initial pseudostate of *region*."""
+    """Return the first initial pseudostate of *region*, or the entry point that replaces it.
+
+    A region of a machine without initial pseudostate starts at the machine's only entry point, if
+    that leads into this region and no other.
+    """
     owned = graph.owned(region)
-    return next((vertex for vertex in owned if vertex.subkind == "initial"), None)
+    initial = next((vertex for vertex in owned if vertex.subkind == "initial"), None)
+    owner = graph.owner(region)
+    if initial is not None or owner is None or owner.kind is not Kind.STATE_MACHINE:
+        return initial
+    points = [point for point in graph.owned(owner) if point.subkind == "entry-point"]
+    starts = graph.sources(points[0], Edge.FLOW_SOURCE) if len(points) == 1 else []
+    return points[0] if [graph.owner(start) for start in starts] == [region] else None

@@ -101,6 +101,9 @@ def _read_region(draft: MachineDraft, region: Element, state: str, name: str) ->
     domain = EnumerationDomain((*((INACTIVE,) if state else ()), *literals))
     variable = draft.reading.variable_for(f"region {id}", name, Owner.SYSTEM, domain, region.id)
     initial = find_initial(graph, region)
+    if state and initial not in vertices:
+        # Only the machine itself starts at its entry point: transitions enter a submachine there.
+        initial = None
     draft.regions[id] = Region(
         id,
         variable,
@@ -109,6 +112,8 @@ def _read_region(draft: MachineDraft, region: Element, state: str, name: str) ->
         tuple(draft.id_of(vertex) for vertex in vertices),
     )
     names = dict(zip((vertex.id for vertex in stable), literals, strict=True))
+    if initial is not None and initial not in vertices:
+        draft.vertices[draft.id_of(initial)] = Vertex(draft.id_of(initial), "initial", "", id)
     for vertex in vertices:
         _read_vertex(draft, vertex, id, names.get(vertex.id, ""))
 
