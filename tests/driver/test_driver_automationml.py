@@ -1,5 +1,8 @@
 """AutomationML: files that aliases refer to, folders, external data, diagrams."""
 
+import zipfile
+
+import pytest
 from driver_helpers import list_inputs
 
 from sysmlc.driver import Request, compile_model, select_backends
@@ -9,6 +12,14 @@ ROLES = '<RoleClassLib Name="Shared"><RoleClass Name="Base"/></RoleClassLib>'
 REFERRING_ROLES = (
     '<ExternalReference Path="libs/roles.aml" Alias="Al"/><RoleClassLib Name="Roles">'
     '<RoleClass Name="Gate" RefBaseClassPath="Al@Shared/Base"/></RoleClassLib>'
+)
+
+REFERENCE_TO_DOCUMENT = (
+    '<InstanceHierarchy Name="Plant"><InternalElement Name="Robot" ID="1">'
+    '<ExternalInterface Name="Manual" ID="2" RefBaseClassPath="AutomationMLInterfaceClassLib/'
+    'AutomationMLBaseInterface/ExternalDataConnector/ExternalDataReference"><Attribute '
+    'Name="refURI" AttributeDataType="xs:anyURI"><Value>{}</Value></Attribute></ExternalInterface>'
+    "</InternalElement></InstanceHierarchy>"
 )
 
 
@@ -165,3 +176,71 @@ def test_standard_libraries_in_a_plant_are_not_drawn(tmp_path):
     compilation = compile_plant(tmp_path, libraries, backends=("plantuml",))
     assert [artefact.path for artefact in compilation.artefacts] == ["diagrams/Shared.bdd.puml"]
     assert list_messages(compilation) == []
+
+
+# -- packages --------------------------------------------------------------------------------------
+
+RELATIONSHIPS = (
+    '<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">'
+    '<Relationship Id="R0" Target="/model/plant.aml" '
+    'Type="http://schemas.automationml.org/container/relationship/RootDocument"/>'
+    '<Relationship Id="R1" Target="/docs/manual.txt" '
+    'Type="http://schemas.automationml.org/container/relationship/AnyContent"/></Relationships>'
+)
+
+
+def write_package(folder, text, **foreign):
+    path = folder / "plant.amlx"
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("_rels/.rels", RELATIONSHIPS)
+        archive.writestr("model/plant.aml", f"{HEAD.format('plant.aml')}{text}</CAEXFile>")
+        archive.writestr("docs/manual.txt", "text")
+        for name, content in foreign.items():
+            archive.writestr(name, content)
+    return path
+
+
+def test_files_of_the_operating_system_in_a_package_are_a_warning(tmp_path):
+    foreign = {".DS_Store": "x", "__MACOSX/._plant.aml": "x"}
+    compilation = compile_paths(write_package(tmp_path, ROLES, **foreign))
+    assert list_messages(compilation) == [
+        "SM102: the package 'plant.amlx' contains files of the operating system, which are not "
+        "read: '.DS_Store', '__MACOSX/._plant.aml'"
+    ]
+
+
+@pytest.mark.parametrize("uri", ["/docs/manual.txt", "../docs/manual.txt", "docs/manual.txt#p1"])
+def test_a_document_in_a_package_is_found(tmp_path, uri):
+    package = write_package(tmp_path, REFERENCE_TO_DOCUMENT.format(uri))
+    assert list_messages(compile_paths(package)) == []
+
+
+def test_a_document_that_a_package_lacks_is_reported(tmp_path):
+    package = write_package(tmp_path, REFERENCE_TO_DOCUMENT.format("/docs/missing.txt"))
+    (finding,) = compile_paths(package).diagnostics
+    assert finding.message == "the model refers to a file that does not exist: 'docs/missing.txt'"
+    assert finding.subject.place.file == "plant.amlx!model/plant.aml"
+
+
+# -- folders ---------------------------------------------------------------------------------------
+
+
+def test_a_folder_is_searched_for_module_type_packages(tmp_path):
+    with zipfile.ZipFile(tmp_path / "pump.mtp", "w") as archive:
+        archive.writestr("manifest.aml", f"{HEAD.format('manifest.aml')}{ROLES}</CAEXFile>")
+    assert list_inputs(compile_paths(tmp_path)) == ["pump.mtp!manifest.aml"]
+
+
+def test_an_archive_in_a_folder_is_named_if_it_holds_models(tmp_path):
+    write_file(tmp_path, "main.aml", ROLES)
+    with zipfile.ZipFile(tmp_path / "copy.zip", "w") as archive:
+        archive.writestr("plant.aml", f"{HEAD.format('plant.aml')}{ROLES}</CAEXFile>")
+        archive.writestr("readme.txt", "text")
+    with zipfile.ZipFile(tmp_path / "photos.zip", "w") as archive:
+        archive.writestr("pump.jpg", "x")
+    (tmp_path / "damaged.zip").write_bytes(b"PK\x03\x04")
+    compilation = compile_paths(tmp_path)
+    assert list_inputs(compilation) == ["main.aml"]
+    assert list_messages(compilation) == [
+        "SM103: 'copy.zip' holds models, which are not read: 'plant.aml'"
+    ]

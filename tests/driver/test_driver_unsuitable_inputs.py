@@ -144,3 +144,25 @@ def test_automationml_libraries_without_a_plant_are_an_info(run_sysmlc, tmp_path
     _, report = run_sysmlc("check", "lib.aml")
     assert "info[SM158 only-caex-libraries]: 'lib.aml' contains only" in report
     assert run_sysmlc("check", "lib.aml", "plant.aml") == (0, "")
+
+
+@pytest.mark.parametrize("version", ["1.0", "1.1", "1.2"])
+@pytest.mark.parametrize("doctype", ["", '<!DOCTYPE XMI SYSTEM "uml.dtd">'])
+def test_an_old_version_of_xmi_is_named(run_sysmlc, tmp_path, version, doctype):
+    root = f'<XMI xmi.version="{version}" xmlns:UML="omg.org/UML1.3"><XMI.content/></XMI>'
+    (tmp_path / "plant.xml").write_text(f'<?xml version="1.0"?>{doctype}{root}')
+    code, report = run_sysmlc("check", "plant.xml")
+    assert (code, report.splitlines()[0]) == (
+        1,
+        "plant.xml: error[SM171 unrecognised-content]: 'plant.xml' is not a model: it is XMI "
+        f"{version}; export XMI 2.1 or later",
+    )
+
+
+def test_an_empty_file_that_a_model_refers_to_is_named(run_sysmlc, tmp_path):
+    general = '<generalization xmi:id="g"><general href="base.uml#b"/></generalization>'
+    owned = f'<packagedElement xmi:type="uml:Class" xmi:id="c" name="C">{general}</packagedElement>'
+    (tmp_path / "m.uml").write_text(UML.replace("/>", f">{owned}</uml:Model>"))
+    (tmp_path / "base.uml").touch()
+    _, report = run_sysmlc("check", "m.uml")
+    assert "base.uml: warning[SM157 empty-file]: 'base.uml' is empty: it defines nothing" in report

@@ -179,3 +179,26 @@ def test_a_region_that_an_extending_machine_adds_has_no_initial_pseudostate_to_i
     assert list_faults(text) == [
         "region '<Region>' of 'Life' has no initial pseudostate, but the machine starts there"
     ]
+
+
+# -- entry points of machines ----------------------------------------------------------------------
+
+
+def machine_with_points(*points):
+    """Return a machine with the states A and B, entry points, and a transition from each to B."""
+    entries = "".join(f'Pseudostate {point} subkind="entry-point"\n' for point in points)
+    arrows = [arrow(point, "b") for point in points]
+    body = region_without_initial("r", state("a"), state("b"), *arrows)
+    return machine_of(entries, body)
+
+
+def test_a_machine_without_initial_pseudostate_starts_at_its_entry_point():
+    _, (contract,), sink = derive_contracts(machine_with_points("start_here"))
+    assert "SM421" not in [diagnostic.rule.code for diagnostic in sink]
+    assert "state=B" in [print_formula(conjunct.formula) for conjunct in contract.guarantees]
+
+
+def test_a_machine_with_several_entry_points_does_not_choose_one():
+    assert list_faults(machine_with_points("first", "second")) == [
+        "region '<Region>' of 'Behaviour' has no initial pseudostate, but the machine starts there"
+    ]

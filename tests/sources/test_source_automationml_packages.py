@@ -119,3 +119,13 @@ def test_an_inconsistent_package_is_one_located_error(parts, location, message, 
 def test_an_archive_without_relationships_is_not_a_package(tmp_path):
     path = write_package(tmp_path, name="plant.zip", **{"_rels/.rels": None})
     assert read_names(path) == ["plant.zip!plant.aml"]
+
+
+def test_files_of_the_operating_system_are_no_parts(tmp_path):
+    foreign = {".DS_Store": "x", "__MACOSX/._plant.aml": "x", "docs/Thumbs.db": "x"}
+    assert read_names(write_package(tmp_path, **foreign)) == ["plant.amlx!plant.aml"]
+
+
+def test_any_other_part_needs_a_relationship(tmp_path):
+    _, problem = read_problem(write_package(tmp_path, **{"manual.txt": "x"}))
+    assert problem == "no relationship of the package leads to its part 'manual.txt'"

@@ -119,3 +119,19 @@ def test_profiles_that_enterprise_architect_keeps_beside_the_model():
     assert [e.id for e in reading.graph.of_kind("Stereotype")] == ["P Unit", "Q Unit"]
     assert reading.graph.roots()[0].name == "Förderer"
     assert reading.totals == {"elements": 17, "mapped": 12, "ignored_notation": 5}
+
+
+def test_annotations_of_eclipse_in_a_profile_refer_to_nothing():
+    annotation = '<eAnnotations xmi:id="{}" source="http://www.eclipse.org/uml2/2.0.0/UML"/>'
+    reading = read(
+        papyrus(
+            f"""
+  <packagedElement xmi:type="uml:Stereotype" xmi:id="s" name="S">
+    <ownedAttribute xmi:id="b" name="base_Class" association="e">{annotation.format("n1")}
+      <type href="pathmap://UML_METAMODELS/UML.metamodel.uml#Class"/></ownedAttribute>
+  </packagedElement>
+  <packagedElement xmi:type="uml:Extension" xmi:id="e" memberEnd="x b">{annotation.format("n2")}
+    <ownedEnd xmi:type="uml:ExtensionEnd" xmi:id="x" type="s"/></packagedElement>"""
+        )
+    )
+    assert reading.findings == []

@@ -121,6 +121,15 @@ def test_depth_is_limited():
     assert read(papyrus("<a>" * 400 + "</a>" * 400)).totals["unsupported"] == 400
 
 
+EMF = '<xmi:XMI xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI" {}</xmi:XMI>'
+EMF_MODEL = EMF.format(
+    'xmlns:uml="http://www.eclipse.org/uml2/5.0.0/UML"><uml:Model xmi:id="m" name="M">'
+    '<packagedElement xmi:type="uml:Class" xmi:id="c" name="C"/></uml:Model>'
+)
+EMF_NOTATION = EMF.format(
+    'xmlns:n="http://www.eclipse.org/gmf/runtime/1.0.2/notation" '
+    'xmlns:uml="http://www.eclipse.org/uml2/5.0.0/UML"><n:Diagram xmi:id="d"/>'
+)
 ECORE = '<ecore:EPackage xmlns:ecore="http://www.eclipse.org/emf/2002/Ecore" name="p"/>'
 NOTATION = (
     '<notation:Diagram xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI"'
@@ -137,6 +146,8 @@ NOTATION = (
         ('<uml:Model xmlns:uml="uml_namespace"/>', 1.0),
         ('<uml:Model xmlns:uml="uml_namespaces"/>', 0.0),
         ('<xmi:XMI xmlns:xmi="https://www.omg.org/spec/XMI/20131001"/>', 0.5),
+        (EMF_MODEL, 1.0),
+        (EMF_NOTATION, 0.0),
         (ECORE, 0.0),
         (NOTATION, 0.0),
         ("<html/>", 0.0),
@@ -192,3 +203,9 @@ def test_drawings_are_counted_but_not_stored():
     )
     assert reading.totals == {"elements": 13, "mapped": 3, "ignored_notation": 10}
     assert reading.graph["k"].ordinal == 12
+
+
+def test_a_model_in_the_namespace_of_emf_is_read():
+    reading = read(source(EMF_MODEL))
+    assert [(element.id, element.name) for element in reading.graph] == [("m", "M"), ("c", "C")]
+    assert reading.findings == []

@@ -7,6 +7,7 @@ from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.caex import data_types, mirrors, value_types
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
+from sysmlc.frontends.caex.scales import check_scales
 from sysmlc.frontends.caex.types import Member, Type
 from sysmlc.frontends.caex.vocabulary import Family
 from sysmlc.ir import Edge, Element, Kind
@@ -55,6 +56,7 @@ def _lower_single(context: Context, owner: Type, node: Node, document: Document)
     type = structure or declared
     value_types.connect_type(context, element, node, document, type)
     lower_constraints(context, element, node, document)
+    check_scales(context, document, node, [node], declared)
     owner.members["Attribute", node.name] = Member(element.id, type, document, node.row)
     return structure
 

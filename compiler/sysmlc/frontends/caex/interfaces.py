@@ -33,6 +33,9 @@ def _lower_single(context: Context, owner: Type, node: Node, document: Document)
     declared = declared or _find_inherited_class(owner, node)
     attributes.connect_redefined(context, owner, node, element)
     properties = read_port_properties(context, node)
+    direction = _find_inherited_direction(context, owner, node, declared)
+    if direction:
+        properties.setdefault("direction", direction)
     element.attrs.update(properties)
     for child in node.iter_children("Attribute"):
         child.mark_subtree()
@@ -54,6 +57,29 @@ def _find_inherited_class(owner: Type, node: Node) -> Type | None:
     if inherited is None or node.attributes.get("RefBaseClassPath", "").strip():
         return None
     return inherited.type
+
+
+def _find_inherited_direction(
+    context: Context, owner: Type, node: Node, declared: Type | None
+) -> str:
+    """Return the direction of the interface that *node* overrides, else that of its class."""
+    inherited = owner.base.find_member(node.tag, node.name) if owner.base else None
+    if inherited is not None and "direction" in context.graph[inherited.id].attrs:
+        return str(context.graph[inherited.id].attrs["direction"])
+    chain = declared.iter_chain() if declared is not None else ()
+    directions = (
+        _read_direction(child)
+        for type in chain
+        for child in type.node.iter_children("Attribute")
+        if child.name == "Direction"
+    )
+    return next(filter(None, directions), "")
+
+
+def _read_direction(node: Node) -> str:
+    """Return the direction that an attribute states, or an empty text."""
+    value = node.child_text("Value") or node.child_text("DefaultValue") or ""
+    return DIRECTIONS.get(value.strip().lower(), "")
 
 
 def _add_own_type(
@@ -88,8 +114,8 @@ def read_port_properties(context: Context, node: Node) -> dict[str, AttrValue]:
     properties: dict[str, AttrValue] = {}
     for child in node.iter_children("Attribute"):
         value = child.child_text("Value") or child.child_text("DefaultValue") or ""
-        if child.name == "Direction" and value.strip().lower() in DIRECTIONS:
-            properties["direction"] = DIRECTIONS[value.strip().lower()]
+        if child.name == "Direction" and _read_direction(child):
+            properties["direction"] = _read_direction(child)
         elif child.name == "Cardinality":
             multiplicity = _read_cardinality(child)
             if multiplicity:

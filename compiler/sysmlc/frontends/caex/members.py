@@ -12,6 +12,7 @@ from sysmlc.frontends.caex.interfaces import (
     read_port_properties,
 )
 from sysmlc.frontends.caex.overrides import iter_overriding_attributes, overrides_attribute
+from sysmlc.frontends.caex.scales import check_scales
 from sysmlc.frontends.caex.types import Member, Type
 from sysmlc.frontends.caex.vocabulary import Family
 from sysmlc.ir import Edge, Element, Kind
@@ -124,6 +125,7 @@ def _add_value(
     owner = ensure_instance(context, component)
     data_type = member.node.attributes.get("AttributeDataType", "")
     value = data_types.convert_value(context, node, text, data_type, member.type)
+    check_scales(context, component.document, node, [node, member.node], member.type)
     slot = context.add_element(Kind.SLOT, node, component.document, owner, value=value)
     context.graph.connect(Edge.INSTANCE_OF, slot.id, member.id)
     _connect_path(context, slot.id, path)

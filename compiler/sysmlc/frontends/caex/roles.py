@@ -195,15 +195,46 @@ def _lower_mapping(context: Context, component: Component, node: Node) -> None:
     tag, own_key, role_keys = _MAPPINGS[node.tag]
     own_name = node.attributes.get(own_key, "")
     role_name = next((node.attributes[key] for key in role_keys if key in node.attributes), "")
-    types = [component.type] if component.type is not None else []
-    own_feature = _find_feature(context, types, tag, own_name)
+    own_feature = _find_feature(context, _list_mapped_types(context, component), tag, own_name)
     role_feature = _find_feature(context, _iter_known_roles(context, component), tag, role_name)
     if own_feature and role_feature:
         context.graph.connect(Edge.REDEFINES, own_feature, role_feature)
+        _realize_property_set(context, component, own_feature, role_feature)
         return
     missing = role_name if own_feature else own_name
     facts = {"element": component.node.name, "feature": missing}
     context.report(rules.MAPPING_OF_NOTHING, component.document, node, **facts)
+
+
+def _realize_property_set(
+    context: Context, component: Component, own_feature: str, role_feature: str
+) -> None:
+    """Let the owner of a mapped feature realise the role, if the role is that of a property set."""
+    graph = context.graph
+    owner, role = graph.owner(graph[own_feature]), graph.owner(graph[role_feature])
+    is_own = component.type is not None and owner is graph[component.type.id]
+    if owner is None or role is None or is_own or not _is_property_set(context, component):
+        return
+    if role not in graph.targets(owner, Edge.REALIZES):
+        graph.connect(Edge.REALIZES, owner, role)
+
+
+def _list_mapped_types(context: Context, component: Component) -> list[Type]:
+    """Return the types whose features a mapping of the component names.
+
+    A property set maps those of the element around it, whose properties it is (IEC 62714-1).
+    """
+    types = [component.type]
+    parent: Component | None = component
+    while parent is not None and _is_property_set(context, parent):
+        parent = parent.parent
+        types += [] if parent is None else [parent.type]
+    return [type for type in types if type is not None]
+
+
+def _is_property_set(context: Context, component: Component) -> bool:
+    roles = _iter_known_roles(context, component)
+    return any(role.conforms_to(*BASE_ROLE, "PropertySet") for role in roles)
 
 
 def _find_feature(context: Context, types: Iterable[Type], tag: str, name: str) -> str:

@@ -295,8 +295,8 @@ def _check_connector(graph: Graph, sink: Sink, connector: Element) -> None:
     )
     has_sides = not any(begins_elsewhere(graph, connector, end) for end in connector_ends)
     if has_sides and not is_reported and not _has_matching_directions(graph, connector_ends):
-        _report_directions(graph, sink, connector, connector_ends, ports)
-    _check_types(graph, sink, connector, ports)
+        _report_directions(graph, sink, connector, connector_ends)
+    _check_types(graph, sink, connector, connector_ends, ports)
 
 
 def _has_matching_directions(graph: Graph, connector_ends: list[Element]) -> bool:
@@ -309,20 +309,34 @@ def _has_matching_directions(graph: Graph, connector_ends: list[Element]) -> boo
 
 
 def _report_directions(
-    graph: Graph, sink: Sink, connector: Element, attached: list[Element], ports: list[Element]
+    graph: Graph, sink: Sink, connector: Element, attached: list[Element]
 ) -> None:
     sink.report(
         CONNECTOR_DIRECTIONS,
         graph.subject(connector),
         connector=_title(graph, connector),
         first=end_direction(graph, attached[0]),
-        one=graph.qualified_name(ports[0]),
+        one=_name_end(graph, connector, attached[0]),
         second=end_direction(graph, attached[1]),
-        other=graph.qualified_name(ports[1]),
+        other=_name_end(graph, connector, attached[1]),
     )
 
 
-def _check_types(graph: Graph, sink: Sink, connector: Element, ports: list[Element]) -> None:
+def _name_end(graph: Graph, connector: Element, end: Element) -> str:
+    """Return the path of the port from the owner of the connector, or its name without a path.
+
+    The port alone belongs to a class, which many parts may have.
+    """
+    role, owner = role_of(graph, end), graph.owner(connector)
+    steps = [step.name for step in graph.targets(end, Edge.PATH)]
+    if role is None or owner is None or not steps:
+        return "" if role is None else graph.qualified_name(role)
+    return "::".join([graph.qualified_name(owner), *steps, role.name])
+
+
+def _check_types(
+    graph: Graph, sink: Sink, connector: Element, attached: list[Element], ports: list[Element]
+) -> None:
     first, second = (type_of(graph, port) for port in ports)
     if first is None or second is None or _are_compatible(graph, first, second):
         return
@@ -330,9 +344,9 @@ def _check_types(graph: Graph, sink: Sink, connector: Element, ports: list[Eleme
         CONNECTOR_TYPES,
         graph.subject(connector),
         connector=_title(graph, connector),
-        one=graph.qualified_name(ports[0]),
+        one=_name_end(graph, connector, attached[0]),
         type=first.name,
-        other=graph.qualified_name(ports[1]),
+        other=_name_end(graph, connector, attached[1]),
         other_type=second.name,
     )
 
