@@ -154,8 +154,11 @@ class ReadingContext:
         return self.variable_for(key, name, Owner.ENVIRONMENT, BooleanDomain(), origin)
 
     def condition_for(self, text: str, name: str, origin: str) -> str:
-        """Return the name of the input for a condition without formula; create it on first use."""
-        key = f"condition {text}"
+        """Return the name of the input for a condition without formula; create it on first use.
+
+        Conditions of equal text share an input; one without text has its own.
+        """
+        key = f"condition {text or origin}"
         variable = self.input_for(key, name, origin)
         self.auxiliary[key] = replace(self.auxiliary[key], condition=text or name)
         return variable
@@ -198,7 +201,7 @@ def read_condition(reading: ReadingContext, text: str, what: str, element: Eleme
 
 def _replace_empty(reading: ReadingContext, what: str, element: Element) -> Expression:
     """Report a condition without text and return the name of the Boolean input for it."""
-    variable = reading.input_for(f"condition of {element.id}", what, element.id)
+    variable = reading.condition_for("", what, element.id)
     reading.sink.report(
         NOT_UNDERSTOOD,
         reading.graph.subject(element),
