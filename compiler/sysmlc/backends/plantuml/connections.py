@@ -106,7 +106,7 @@ def _make_line(graph: Graph, connector: Element, located: list[tuple[Element, Pa
     directions = [_find_direction(graph, flow, first, second) for flow in flows]
     names_of_ends = {}
     if len(set(directions)) > 1:
-        names_of_ends = {"→": _name_of_end(graph, second), "←": _name_of_end(graph, first)}
+        names_of_ends = dict(zip("→←", _name_ends(graph, second, first), strict=True))
     rows = [
         (_format_item(format_conveyed(graph, flow), names_of_ends.get(direction)), _domain_of(flow))
         for direction, flow in zip(directions, flows, strict=True)
@@ -128,8 +128,12 @@ def _domain_of(relation: Element) -> str:
     return str(relation.attrs.get("domain", ""))
 
 
-def _name_of_end(graph: Graph, path: Path) -> str:
-    return graph[path.ids()[-1]].name
+def _name_ends(graph: Graph, *paths: Path) -> list[str]:
+    """Return the names of the ends of a line: their full paths if the last names are equal."""
+    names = [graph[path.ids()[-1]].name for path in paths]
+    if len(set(names)) == len(names):
+        return names
+    return [".".join(graph[id].name for id in path.ids()) for path in paths]
 
 
 def _format_item(text: str, target_name: str | None) -> str:
@@ -216,10 +220,13 @@ def _count_matches(graph: Graph, path: Path, ids: set[str]) -> int:
 
 
 def find_free_flows(graph: Graph) -> dict[str, tuple[FreeFlow, ...]]:
-    """Return the item flows without a connector, by the owner of both their ends."""
+    """Return the item flows without a connector, by the owner of both their ends.
+
+    A flow within an interface is between the features of two ports, which no block owns together.
+    """
     flows_by_owner: dict[str, list[FreeFlow]] = {}
     for flow in graph.of_kind(Kind.ITEM_FLOW):
-        if graph.targets(flow, Edge.REALIZING):
+        if graph.targets(flow, Edge.REALIZING) or is_within_association(graph, flow):
             continue
         for source in graph.targets(flow, Edge.FLOW_SOURCE):
             for target in graph.targets(flow, Edge.FLOW_TARGET):
@@ -228,6 +235,12 @@ def find_free_flows(graph: Graph) -> dict[str, tuple[FreeFlow, ...]]:
                         (flow.id, source.id, target.id)
                     )
     return {owner: tuple(flows) for owner, flows in flows_by_owner.items()}
+
+
+def is_within_association(graph: Graph, flow: Element) -> bool:
+    """Whether an association owns the flow, as an interface or connection definition does."""
+    owner = graph.owner(flow)
+    return owner is not None and owner.kind is Kind.ASSOCIATION
 
 
 def _make_free_connection(

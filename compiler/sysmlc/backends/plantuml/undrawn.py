@@ -2,6 +2,7 @@
 
 from collections.abc import Collection
 
+from sysmlc.backends.plantuml.connections import is_within_association
 from sysmlc.backends.plantuml.sequence_labels import name_of_event
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
@@ -95,7 +96,13 @@ def report_undrawn(graph: Graph, shown: Collection[str], sink: Sink) -> None:
     the name of the template lists them.
     """
     candidates = graph.of_kind(*DRAWN_KINDS, *OTHER_KINDS)
-    undrawn = [item for item in candidates if item.id not in shown and _is_expected(item)]
+    undrawn = [
+        item
+        for item in candidates
+        if item.id not in shown
+        and _is_expected(item)
+        and not (item.kind is Kind.ITEM_FLOW and is_within_association(graph, item))
+    ]
     formal = {
         item.id
         for parameter in graph.of_kind(Kind.TEMPLATE_PARAMETER)
