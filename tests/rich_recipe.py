@@ -5,7 +5,7 @@ import recipe_samples as samples
 _PROFILE = 'namespace="urn:sysmlc:profile:1"'
 _WAIT = """\
     Action w "wait" subkind="accept"
-      Trigger w.t subkind="change" condition="n > 0"
+      Trigger w.t subkind="change" condition="n > arm.load"
       Pin w.ok "ok" direction="out"
         -> typed-by Boolean
     Action paint "paint" subkind="call-behavior"
@@ -21,10 +21,14 @@ _TAGS = {
     '  Class robot "Robot" level="machine"\n': f"""\
     Application robot.m stereotype="Machine" {_PROFILE} tag.plantElement="Cell/Robot 1"
       -> subject robot
+    Property robot.load "load" default=3
+      -> typed-by speed
 """,
     '  Class plate "Plate" level="material"\n': f"""\
     Application plate.m stereotype="Material" {_PROFILE} tag.noWait="true"
       -> subject plate
+    Property plate.limit "limit" default=5
+      -> typed-by speed
 """,
     '  Activity r "Build" level="recipe"\n': f"""\
     Application r.s stereotype="Recipe" {_PROFILE} tag.noWait="true"
@@ -40,6 +44,8 @@ _TAGS = {
     Application mount.s stereotype="Task" {_PROFILE} tag.pre="n == 0" tag.post="ok" \
 tag.interruptible="true" tag.noWait="true"
       -> subject mount
+    Parameter mount.arm "arm" direction="in" multiplicity="1"
+      -> typed-by robot
 """,
 }
 
@@ -51,6 +57,9 @@ def rich_recipe() -> str:
         assert line in text
         text = text.replace(line, line + addition)
     text = text.replace('tag.acquire="gripper"', 'tag.acquire="gripper" tag.interruptible="true"')
+    unavailable = 'stereotype="Capability" namespace="urn:sysmlc:profile:1" tag.duration="300"'
+    assert unavailable in text
+    text = text.replace(unavailable, f'{unavailable} tag.available="false"')
     text += '  DataType speed "Speed"\n'
     text += '    Application speed.v stereotype="ValueType" namespace="urn:sysml" tag.unit="mm/s"\n'
     text += "      -> subject speed\n"

@@ -135,12 +135,14 @@ def find_task_timing(task: Task, tables: Tables, machines: tuple[str, ...]) -> "
 
 
 def find_untimed_steps(task: Task, tables: Tables) -> tuple[list[Node], bool]:
-    """Return the steps of a task without a duration, and whether another step has one."""
+    """Return the steps of a task without a duration, and whether a service states its duration."""
     graph = tables.service_graphs.get(task.implementation)
     steps = [node for node in graph.nodes if node.kind in STEPS] if graph else []
-    durations = {node.id: _find_node_duration(node, tables) for node in steps}
-    untimed = [node for node in steps if durations[node.id] is None]
-    return untimed, any(durations.get(n.id) for n in steps if n.kind == "service")
+    untimed = [node for node in steps if _find_node_duration(node, tables) is None]
+    services = [service for node in steps if (service := tables.find_service(node)) is not None]
+    stated = [service.duration for service in services]
+    stated += [provider.duration for service in services for provider in service.providers]
+    return untimed, any(duration is not None for duration in stated)
 
 
 def _find_service_cost(node: Node, tables: Tables, machines: tuple[str, ...]) -> NodeCost | None:
