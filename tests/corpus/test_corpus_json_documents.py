@@ -51,6 +51,7 @@ NEVER_WRITTEN = {
         for member in (
             *("requirement", "component", "formula", "verdict", "reason"),
             *("witness", "witness/loop", "witness/steps", "vacuous", "needs"),
+            *("assumed_ranges", "unread_conditions"),
         )
     ),
     *(
@@ -63,6 +64,7 @@ NEVER_WRITTEN = {
             "never_true",
             "never_changed",
             "write_conflicts",
+            "assumed_ranges",
         )
     ),
 }
