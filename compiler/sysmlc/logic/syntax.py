@@ -160,6 +160,15 @@ class Cursor:
         self._index = mark
         self.next = self._tokens[mark]
 
+    def list_names(self, mark: int, end: str) -> list[str]:
+        """Return the names between a position that ``mark`` returned and the next *end*."""
+        names: list[str] = []
+        while self._tokens[mark].text != end and self._tokens[mark].kind != "end":
+            if self._tokens[mark].kind == "name":
+                names.append(self._tokens[mark].text)
+            mark += 1
+        return names
+
     def is_next(self, *texts: str) -> bool:
         """Whether the next token is one of the texts."""
         return self.next.text in texts and self.next.kind not in ("string", "end")

@@ -133,7 +133,8 @@ class _ModuleReader(StatementReader):
                 self._variables.append(partial(self._read_array_definition, name, mark))
             else:
                 cursor.take()
-                self._define(name, self._create_meaning(cursor.mark(), None))
+                self._define_marks[name.text] = cursor.mark()
+                self._define(name, self._create_define_meaning(cursor.mark()))
             cursor.skip_past(";")
 
     def _read_predicate(self) -> None:
@@ -215,7 +216,7 @@ class _ModuleReader(StatementReader):
         if len(marks) != len(indexes):
             reason = f"'{name.text}' needs {len(indexes)} values, not {len(marks)}"
             raise FormulaError(reason, name.offset)
-        meanings = (self._create_meaning(mark, None) for mark in marks)
+        meanings = map(self._create_define_meaning, marks)
         self._arrays[name.text] = Array(dimensions, dict(zip(indexes, meanings, strict=True)))
 
     def _skip_element(self) -> None:
@@ -227,7 +228,7 @@ class _ModuleReader(StatementReader):
 
     def _define_predicate(self, name: Token, mark: int, body: int) -> None:
         self._cursor.reset(mark)
-        self._define(name, self._create_meaning(body, self._read_parameters()))
+        self._define(name, self._create_predicate_meaning(body, self._read_parameters()))
 
     def _read_parameters(self) -> tuple[str, ...]:
         """Read the names of parameters; a type may precede each name."""

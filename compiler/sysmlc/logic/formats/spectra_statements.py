@@ -4,6 +4,7 @@ Types are ``boolean``, ``{A, B}``, ``Int(0..7)``, arrays of them and names for t
 """
 
 from collections.abc import Callable, Mapping
+from graphlib import CycleError, TopologicalSorter
 from itertools import product
 
 from msgspec import Struct
@@ -35,6 +36,12 @@ _UNSUPPORTED_STATEMENTS = ("GE", "GEF", "trig")
 _SUM_PRECEDENCE = SYNTAX.precedence[Op.ADD]
 _MAX_EXPANSIONS = 20_000
 """Most expansions of defines, predicates, patterns and quantifiers in one file."""
+_TOO_MANY = (
+    f"with '{{}}', more than {_MAX_EXPANSIONS:,} texts of defines, predicates and quantifiers are "
+    "inserted; declare a variable for one that is used often"
+)
+_MAX_DEPTH = 50
+"""Most levels of predicates that use one another."""
 
 _END_STEPS: dict[str, Callable[[Formula, Formula, Formula], Formula]] = {
     "keep": lambda following, end, other_end: f.eq(following, end),
@@ -62,53 +69,95 @@ class StatementReader:
         self._patterns: dict[str, Pattern] = {}
         self._history = History(())
         self._choices: dict[str, tuple[tuple[Formula, Formula], ...]] = {}
+        self._define_marks: dict[str, int] = {}
+        """Where the body of each define begins."""
+        self._defines: dict[int, Term] = {}
+        """Terms of defines by the positions of their bodies."""
+        self._sizes: dict[int, int] = {}
+        """For each of these terms the number of bodies in it; a body counts at each use."""
         self._expansions = 0
+        self._depth = 0
 
     def _read_constant(self) -> Term:
         return self._create_reader({}, self._cursor.next.offset).read_term(_SUM_PRECEDENCE)
 
-    def _create_meaning(self, body: int, parameters: tuple[str, ...] | None) -> Meaning:
-        """Return a function that expands a define (without *parameters*) or a predicate."""
+    def _create_predicate_meaning(self, body: int, parameters: tuple[str, ...]) -> Meaning:
+        """Return a function that expands a predicate with the arguments of its use."""
 
         def expand(reader: SpectraReader, token: Token) -> Term:
-            arguments: Mapping[str, Term] = {}
-            if parameters is not None:
-                arguments = _bind(parameters, reader.read_arguments(), token)
-            return self._expand(reader, token, body, arguments)
+            arguments = _bind(parameters, reader.read_arguments(), token)
+            self._count_expansion(_TOO_MANY.format(token.text), token)
+            return self._read_body(token, body, arguments)
 
         return expand
 
-    def _expand(
-        self, reader: SpectraReader, token: Token, body: int, arguments: Mapping[str, Term]
-    ) -> Term:
+    def _create_define_meaning(self, body: int) -> Meaning:
+        """Return a function that returns the term of a define, or of an element of an array."""
+
+        def expand(_reader: SpectraReader, token: Token) -> Term:
+            pending = [] if body in self._defines else self._order_bodies(body, token)
+            if self._depth == 0:
+                self._count_expansion(_TOO_MANY.format(token.text), token, self._sizes[body])
+            for inner in pending:
+                self._defines[inner] = self._read_body(token, inner, {})
+            term = self._defines[body]
+            return Term(term.formula, term.kind, token.offset)
+
+        return expand
+
+    def _order_bodies(self, body: int, token: Token) -> list[int]:
+        """Return *body* and the bodies of the defines that it uses, each after those it uses.
+
+        In this order a chain of defines of any length is read without recursion. Raises
+        FormulaError for a define that uses itself.
+        """
+        used: dict[int, list[int]] = {}
+        pending = [body]
+        while pending:
+            current = pending.pop()
+            if current not in used and current not in self._defines:
+                used[current] = [
+                    self._define_marks[name]
+                    for name in self._cursor.list_names(current, ";")
+                    if name in self._define_marks
+                ]
+                pending += used[current]
+        try:
+            order = [each for each in TopologicalSorter(used).static_order() if each in used]
+        except CycleError:
+            raise FormulaError(f"'{token.text}' is defined by itself", token.offset) from None
+        for current in order:
+            self._sizes[current] = 1 + sum(self._sizes[inner] for inner in used[current])
+        return order
+
+    def _read_body(self, token: Token, body: int, arguments: Mapping[str, Term]) -> Term:
         """Read the body of a define or predicate where its name is used."""
         cursor = self._cursor
-        self._count_expansion(f"'{token.text}' is defined by itself", token)
+        if self._depth == _MAX_DEPTH:
+            reason = f"predicates use one another in more than {_MAX_DEPTH} levels, or themselves"
+            raise FormulaError(reason, token.offset)
+        self._depth += 1
         after_use = cursor.mark()
         cursor.reset(body)
-        visible = reader.scope.definitions
-        definitions = {name: visible[name] for name in visible if name != token.text}
-        term = self._create_reader(arguments, token.offset, definitions).read_term(0)
-        if not cursor.is_next(";", "}", ","):
-            cursor.fail("';' is expected")
+        try:
+            term = self._create_reader(arguments, token.offset).read_term(0)
+            if not cursor.is_next(";", "}", ","):
+                cursor.fail("';' is expected")
+        finally:
+            self._depth -= 1
         cursor.reset(after_use)
         return Term(term.formula, term.kind, token.offset)
 
-    def _count_expansion(self, reason: str, token: Token) -> None:
-        """Count an expansion. Raises FormulaError above the limit."""
-        self._expansions += 1
+    def _count_expansion(self, reason: str, token: Token, size: int = 1) -> None:
+        """Count an expansion, which repeats *size* texts. Raises FormulaError above the limit."""
+        self._expansions += size
         if self._expansions > _MAX_EXPANSIONS:
             raise FormulaError(reason, token.offset)
 
-    def _create_reader(
-        self,
-        parameters: Mapping[str, Term],
-        offset: int,
-        definitions: Mapping[str, Meaning] | None = None,
-    ) -> SpectraReader:
+    def _create_reader(self, parameters: Mapping[str, Term], offset: int) -> SpectraReader:
         scope = Scope(
             variables=self._draft.domains,
-            definitions=self._definitions if definitions is None else definitions,
+            definitions=self._definitions,
             arrays=self._arrays,
             history=self._history,
             read_type=self._types.read_type,
