@@ -87,7 +87,8 @@ def test_an_import_that_is_no_spectra_file_is_located(tmp_path: Path, name: str)
     contracts, faults = read(text, str(tmp_path / "door.spectra"))
     assert contracts == ()
     assert faults == [
-        f'1:8 the Spectra text is not understood: "{name}" is no Spectra file that can be read'
+        f'1:8 the Spectra text is not understood: "{name}" is no Spectra file below the folder of '
+        "the specification or of --include"
     ]
 
 
@@ -100,7 +101,78 @@ def test_an_import_leads_into_no_other_folder(tmp_path: Path):
         text = f'import "{name}"\nmodule Door\nsys boolean open;\n'
         contracts, faults = read(text, str(project / "door.spectra"))
         assert contracts == ()
-        assert "is no Spectra file that can be read" in faults[0]
+        assert "is no Spectra file below the folder" in faults[0]
+
+
+def test_an_import_leads_into_the_folders_that_the_user_includes(tmp_path: Path):
+    library = tmp_path / "library"
+    library.mkdir()
+    (library / "Patterns.spectra").write_text(PATTERNS, encoding="utf-8")
+    text = """import "Patterns.spectra"
+module Door
+env boolean call; sys boolean open;
+gar pRespondsToS(call, open);
+"""
+    path = tmp_path / "project" / "door.spectra"
+    sink = Sink()
+    (contract,) = formats.read(text, str(path), sink, include=(library,))
+    assert not list(sink)
+    assert contract.guarantees[0].origin.startswith(f"{library}/Patterns.spectra:")
+
+
+def test_a_long_chain_of_defines_is_read():
+    defines = " ".join(f"d{n} := d{n + 1} & !(a & b);" for n in range(1_000))
+    text = f"module M env boolean a; sys boolean b; define {defines} d1000 := a; gar G (d0 -> b);"
+    (contract,), faults = read(text)
+    assert faults == []
+    assert print_formula(contract.guarantees[0].formula) == "a & !(a & b) -> b"
+
+
+@pytest.mark.parametrize(
+    ("define", "reason"),
+    [
+        ("d0 := d1 & a; d1 := !d0;", "'d0' is defined by itself"),
+        (
+            "".join(f"d{n} := d{n + 1} & a | d{n + 1} & b;" for n in range(20)) + "d20 := a;",
+            "with 'd0', more than 20,000 texts of defines, predicates and quantifiers are "
+            "inserted; declare a variable for one that is used often",
+        ),
+    ],
+)
+def test_defines_that_cannot_be_expanded_are_reported(define: str, reason: str):
+    text = f"module M env boolean a; sys boolean b; define {define} gar G (d0 -> b);"
+    assert read(text)[1][0].endswith(reason)
+
+
+TYPED_PREDICATES = """module M
+env Int(0..3) a;
+sys boolean[3] b;
+predicate small(Int(0..3) v): v < 2;
+predicate any_of(boolean[3] v): v[0] | v[1] | v[2];
+pattern respond(x, y) { G (x -> y); }
+"""
+
+
+def test_parameters_of_predicates_have_ranges_and_are_arrays():
+    (contract,), faults = read(TYPED_PREDICATES + "gar G (small(a) -> any_of(b));")
+    assert faults == []
+    assert print_formula(contract.guarantees[0].formula) == "a<2 -> b_0 | b_1 | b_2"
+
+
+@pytest.mark.parametrize(
+    ("statement", "reason"),
+    [
+        ("gar G any_of(a);", "the parameter 'v' of 'any_of' is an array"),
+        ("gar G small(b);", "the parameter 'v' of 'small' is a value and no array"),
+        (
+            "gar G (respond(a = 1, b[0]));",
+            "'respond' is a pattern, which is a statement and no part of a formula; write "
+            "'guarantee respond(...);' without G",
+        ),
+    ],
+)
+def test_a_wrong_use_is_reported_with_its_reason(statement: str, reason: str):
+    assert read(TYPED_PREDICATES + statement)[1][0].endswith(reason)
 
 
 def test_a_file_that_imports_itself_by_a_longer_path_is_read_once(tmp_path: Path):

@@ -93,7 +93,7 @@ def read_contracts(
         return _read_model(files, config, settings)
     if len(files) > 1:
         fail("several files must all be models; name one contract file at a time")
-    return _read_specification(files[0], language, config)
+    return _read_specification(files[0], language, config, settings.include)
 
 
 def _read_model(files: tuple[Path, ...], config: "Config", settings: "Settings") -> ContractFile:
@@ -146,7 +146,9 @@ def _read_model(files: tuple[Path, ...], config: "Config", settings: "Settings")
     )
 
 
-def _read_specification(file: Path, language: str, config: "Config") -> ContractFile:
+def _read_specification(
+    file: Path, language: str, config: "Config", include: tuple[Path, ...]
+) -> ContractFile:
     from sysmlc.backends.base import InputFile
     from sysmlc.cli.session import fail
     from sysmlc.diagnostics import Sink
@@ -168,7 +170,7 @@ def _read_specification(file: Path, language: str, config: "Config") -> Contract
         fail(f"'{file}' is neither a model that is known nor a text in UTF-8")
     sink = Sink(config.rules)
     name = file.name.partition(".")[0]
-    read = formats.read(text, source.name, sink, language)
+    read = formats.read(text, source.name, sink, language, include)
     contracts = tuple(
         contract if contract.component else replace(contract, component=name) for contract in read
     )

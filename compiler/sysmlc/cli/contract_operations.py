@@ -105,9 +105,6 @@ def _read_both(
     return first, second
 
 
-_LANGUAGE = click.option("--from", "language", default="", metavar="FORM", help="Format of files.")
-
-
 # -- refinement --------------------------------------------------------------------------------
 
 
@@ -124,7 +121,7 @@ Exit codes: 0 CONCRETE refines ABSTRACT, 1 it does not, 2 that is not decided.""
 @click.argument("abstract", metavar="ABSTRACT")
 @click.argument("concrete", metavar="CONCRETE")
 @options.folder("Draw the runs that show why it does not there (PlantUML).")
-@_LANGUAGE
+@options.contract_formats
 @options.question_limit(default=10.0)
 @options.reporting
 @options.reading
@@ -286,7 +283,7 @@ def _add_operation(
         help="Write the contract there, in the format of the ending.  [default: print JSON]",
     )
     @options.force
-    @_LANGUAGE
+    @options.contract_formats
     @options.question_limit(default=10.0)
     @options.reporting
     @options.reading

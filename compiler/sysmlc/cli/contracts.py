@@ -52,7 +52,7 @@ Exit codes: 0 all contracts hold, 1 a contract is unrealizable or violated,
 )
 @click.option("-c", "--component", default="", metavar="NAME", help="Only this component.")
 @options.folder("Draw the runs that break something there (PlantUML).")
-@click.option("--from", "language", default="", metavar="FORM", help="Format of the file.")
+@options.contract_formats
 @options.question_limit(default=10.0)
 @options.reporting
 @options.reading

@@ -102,6 +102,25 @@ def _apply(options: list[Callable[[_F], _F]], function: _F) -> _F:
     return function
 
 
+def contract_formats(function: _F) -> _F:
+    """Options for reading files of contract formats: ``--from`` and ``--include``."""
+    return _apply(
+        [
+            click.option(
+                "--from", "language", default="", metavar="FORM", help="Format of the contracts."
+            ),
+            click.option(
+                "--include",
+                multiple=True,
+                type=click.Path(path_type=Path, file_okay=False),
+                metavar="DIR",
+                help="Folder of Spectra files that contracts may import.",
+            ),
+        ],
+        function,
+    )
+
+
 def configuration(function: _F) -> _F:
     """The options ``--config`` and ``--isolated``."""
     return _apply(

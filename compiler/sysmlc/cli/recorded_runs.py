@@ -30,7 +30,7 @@ or nothing in it could be checked.""",
 @click.argument("operand", metavar="CONTRACT")
 @click.argument("run_file", type=click.Path(path_type=Path), metavar="RUN")
 @click.option("-c", "--component", default="", metavar="NAME", help="The component of the run.")
-@click.option("--from", "language", default="", metavar="FORM", help="Format of the contract.")
+@options.contract_formats
 @options.reporting
 @options.reading
 @click.pass_context

@@ -47,6 +47,7 @@ class Settings(Struct, frozen=True):
     diagrams: str | None = None
     overlay: tuple[Path, ...] = ()
     library: str = ""
+    include: tuple[Path, ...] = ()
     has_cache: bool = True
     is_forced: bool = False
     """Whether results may replace files that sysmlc did not write."""

@@ -62,7 +62,7 @@ GR(1), beyond a limit, no controller, or the work could not be done.""",
     metavar="VAR",
     help="Find the smallest bound of this variable that can be guaranteed (one bound for all).",
 )
-@click.option("--from", "language", default="", metavar="FORM", help="Format of the file.")
+@options.contract_formats
 @click.option(
     "--engine",
     type=click.Choice(("cudd", "autoref")),

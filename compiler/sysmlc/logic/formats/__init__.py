@@ -8,9 +8,11 @@ several formats.
 
 import re
 from importlib import import_module
+from pathlib import Path
 from typing import Protocol, cast
 
 from msgspec import Struct
+from msgspec.structs import replace
 
 from sysmlc.diagnostics import Sink
 from sysmlc.logic.contract import Contract
@@ -75,15 +77,19 @@ def detect_format(text: str, path: str) -> str:
     return ""
 
 
-def read(text: str, path: str, sink: Sink, format_name: str = "") -> tuple[Contract, ...]:
+def read(
+    text: str, path: str, sink: Sink, format_name: str = "", include: tuple[Path, ...] = ()
+) -> tuple[Contract, ...]:
     """Return the contracts of a file; detect the format if its name is empty.
 
+    Imports of the file may lead into its own folder and into the folders of *include*.
     Faults are reported with line and column, and a contract with a fault is omitted. Raises
     ValueError for a format that is unknown or not readable.
     """
     file = SpecificationFile.from_text(
         text.removeprefix("\N{ZERO WIDTH NO-BREAK SPACE}"), path, sink
     )
+    file = replace(file, include=include)
     name = format_name or detect_format(text, path)
     if not name:
         file.report(rules.UNKNOWN_FORM, 0, file=path, forms=", ".join(FORMATS))

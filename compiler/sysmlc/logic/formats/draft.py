@@ -9,6 +9,7 @@ from bisect import bisect_right
 from collections.abc import Callable, Iterator
 from json.decoder import scanstring  # type: ignore[attr-defined]
 from json.scanner import py_make_scanner  # type: ignore[attr-defined]
+from pathlib import Path
 from typing import Any
 
 from msgspec import Struct
@@ -44,6 +45,8 @@ class SpecificationFile(Struct, frozen=True):
     line_starts: tuple[int, ...]
     appended: "tuple[tuple[int, SpecificationFile], ...]" = ()
     """Files whose texts follow the text of this file, each with the offset where it begins."""
+    include: tuple[Path, ...] = ()
+    """Folders that imports may lead into, besides that of the file."""
 
     @classmethod
     def from_text(cls, text: str, path: str, sink: Sink) -> "SpecificationFile":

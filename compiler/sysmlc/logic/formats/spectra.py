@@ -14,7 +14,13 @@ from pathlib import Path
 from sysmlc.logic.contract import Contract, Owner
 from sysmlc.logic.formats import rules
 from sysmlc.logic.formats.draft import SpecificationFile
-from sysmlc.logic.formats.spectra_expressions import SYNTAX, Array, Meaning, SpectraReader
+from sysmlc.logic.formats.spectra_expressions import (
+    SYNTAX,
+    Array,
+    Meaning,
+    Parameter,
+    SpectraReader,
+)
 from sysmlc.logic.formats.spectra_statements import Pattern, StatementReader
 from sysmlc.logic.infix import Term
 from sysmlc.logic.reduction.history import History
@@ -38,7 +44,8 @@ _ENDING = ".spectra"
 def read(file: SpecificationFile) -> tuple[Contract, ...]:
     """Return the contract of the file's module, or nothing if a fault was reported.
 
-    An imported file is below the folder of the specification, and named from the importing file.
+    An imported file is below the folder of the specification, or below one of ``file.include``. It
+    is named from the importing file or from such a folder.
     """
     return _ModuleReader(_append_imports(file)).read()
 
@@ -114,9 +121,12 @@ class _ModuleReader(StatementReader):
         self._cursor.accept(";")
         file = self._draft.file
         base = Path(file.find_path(name.offset))
-        path = _resolve_import(Roots((Path(file.path).parent,)), base, name.text[1:-1])
-        if path is None or _read_import(path) is None:
-            raise FormulaError(f"{name.text} is no Spectra file that can be read", name.offset)
+        path = _resolve_import(file, base, name.text[1:-1])
+        if path is None:
+            reason = "is no Spectra file below the folder of the specification or of --include"
+            raise FormulaError(f"{name.text} {reason}", name.offset)
+        if _read_import(path) is None:
+            raise FormulaError(f"{name.text} cannot be read", name.offset)
 
     def _read_type_definition(self) -> None:
         name = self._cursor.expect_kind("name", "a name")
@@ -140,7 +150,7 @@ class _ModuleReader(StatementReader):
     def _read_predicate(self) -> None:
         name = self._cursor.expect_kind("name", "a name")
         mark = self._cursor.mark()
-        self._cursor.skip_past(")")
+        self._skip_block("(", ")")
         opening = self._cursor.expect(":", "{").text
         body = self._cursor.mark()
         self._variables.append(partial(self._define_predicate, name, mark, body))
@@ -151,14 +161,14 @@ class _ModuleReader(StatementReader):
         parameters = self._read_parameters() if self._cursor.is_next("(") else ()
         self._patterns[name.text] = Pattern(parameters, self._skip_block())
 
-    def _skip_block(self) -> int:
-        """Skip a text in braces, which may contain braces, and return where its inside begins."""
+    def _skip_block(self, opening: str = "{", closing: str = "}") -> int:
+        """Skip a text in brackets, which may contain others, and return where its inside begins."""
         cursor = self._cursor
-        cursor.expect("{")
+        cursor.expect(opening)
         inside, depth = cursor.mark(), 1
         while depth and not cursor.is_at_end:
             token = cursor.take()
-            depth += (token.text == "{") - (token.text == "}")
+            depth += (token.text == opening) - (token.text == closing)
         return inside
 
     def _read_monitor(self) -> None:
@@ -230,17 +240,18 @@ class _ModuleReader(StatementReader):
         self._cursor.reset(mark)
         self._define(name, self._create_predicate_meaning(body, self._read_parameters()))
 
-    def _read_parameters(self) -> tuple[str, ...]:
-        """Read the names of parameters; a type may precede each name."""
+    def _read_parameters(self) -> tuple[Parameter, ...]:
+        """Read parameters; a type may precede each name."""
         cursor = self._cursor
         cursor.expect("(")
-        names: list[str] = []
+        parameters: list[Parameter] = []
         while not cursor.accept(")"):
-            if cursor.after_next.text not in (",", ")"):
-                self._types.read_type()
-            names.append(cursor.expect_kind("name", "a parameter").text)
+            has_type = cursor.after_next.text not in (",", ")")
+            is_array = has_type and bool(self._types.read_array_type().dimensions)
+            name = cursor.expect_kind("name", "a parameter").text
+            parameters.append(Parameter(name, is_array))
             cursor.accept(",")
-        return tuple(names)
+        return tuple(parameters)
 
     def _declare_monitor(self, mark: int) -> None:
         self._cursor.reset(mark)
@@ -279,18 +290,16 @@ def _append_imports(file: SpecificationFile) -> SpecificationFile:
 
     A file that cannot be read is reported where it is imported, by ``_ModuleReader``.
     """
-    folder = Path(file.path).parent
-    roots, seen = Roots((folder,)), {Path(os.path.realpath(file.path))}
+    first, seen = file, {Path(os.path.realpath(file.path))}
     pending = [(Path(file.path), name) for name in _list_imports(file.text)]
     while pending:
         base, name = pending.pop(0)
-        path = _resolve_import(roots, base, name)
+        path = _resolve_import(first, base, name)
         text = None if path is None or path in seen else _read_import(path)
         if path is None or text is None:
             continue
         seen.add(path)
-        # Diagnostics name the file by its path from the folder of the importing file.
-        file = file.append(text, (folder / path.relative_to(os.path.realpath(folder))).as_posix())
+        file = file.append(text, _name_import(first, path))
         pending += [(path, name) for name in _list_imports(text)]
     return file
 
@@ -302,14 +311,31 @@ def _list_imports(text: str) -> Iterator[str]:
             yield name.text[1:-1]
 
 
-def _resolve_import(roots: Roots, base: Path, name: str) -> Path | None:
+def _list_import_folders(file: SpecificationFile) -> tuple[Path, ...]:
+    return (Path(file.path).parent, *file.include)
+
+
+def _resolve_import(file: SpecificationFile, base: Path, name: str) -> Path | None:
     """Return the Spectra file that *name* means in the file *base*, its links resolved, or None.
 
-    Only Spectra files below the folder of the specification are opened, because it may be
-    untrusted.
+    Only Spectra files below the folder of the specification, and below the folders that the user
+    named, are opened, because the specification may be untrusted.
     """
-    path = roots.resolve(base, name)
-    return path if path is not None and path.suffix == _ENDING else None
+    roots = Roots(_list_import_folders(file))
+    for start in (base, *(folder / base.name for folder in file.include)):
+        path = roots.resolve(start, name)
+        if path is not None and path.suffix == _ENDING:
+            return path
+    return None
+
+
+def _name_import(file: SpecificationFile, path: Path) -> str:
+    """Return the name of an imported file in diagnostics: its path from the folder it is below."""
+    for folder in _list_import_folders(file):
+        real = os.path.realpath(folder)
+        if path.is_relative_to(real):
+            return (folder / path.relative_to(real)).as_posix()
+    return path.as_posix()
 
 
 def _read_import(path: Path) -> str | None:

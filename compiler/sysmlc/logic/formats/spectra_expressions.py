@@ -4,7 +4,7 @@ They have next values, operators of the past, defines, predicates, quantifiers o
 type, and elements of arrays. Enumerations may share names of literals.
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from itertools import product
 
 from msgspec import Struct
@@ -62,12 +62,21 @@ class Array(Struct, frozen=True):
     elements: Mapping[tuple[int, ...], Meaning]
 
 
+class Parameter(Struct, frozen=True):
+    """A parameter of a predicate or pattern."""
+
+    name: str
+    is_array: bool = False
+
+
 class Scope(Struct, frozen=True):
     """What names mean where an expression stands, and what all expressions of a file share."""
 
     variables: Mapping[str, Domain]
     definitions: Mapping[str, Meaning]
     arrays: Mapping[str, Array]
+    patterns: Collection[str]
+    """Names of patterns, which are statements and no parts of formulas."""
     history: History
     read_type: Callable[[], Domain]
     choices: dict[str, tuple[tuple[Formula, Formula], ...]]
@@ -163,6 +172,10 @@ class SpectraReader(FormulaReader):
             return self._read_array(token, self.scope.arrays[token.text])
         if token.text in self.variables:
             return self.build_variable(token, self.cursor.accept("'"))
+        if token.text in self.scope.patterns:
+            reason = f"'{token.text}' is a pattern, which is a statement and no part of a formula"
+            advice = f"write 'guarantee {token.text}(...);' without G"
+            raise FormulaError(f"{reason}; {advice}", token.offset)
         if token.text in self.scope.definitions:
             return self.scope.definitions[token.text](self, token)
         read_operator = _OPERATOR_READERS.get(token.text)
@@ -273,10 +286,11 @@ class SpectraReader(FormulaReader):
 
     def _read_case_distinction(self, token: Token) -> Term:
         arguments = self.read_arguments()
-        if len(arguments) != 3:
-            raise FormulaError("'ite' takes three arguments", token.offset)
-        condition = self.require_boolean(arguments[0])
-        return self._choose([(condition, arguments[1]), (f.negate(condition), arguments[2])])
+        terms = [argument for argument in arguments if isinstance(argument, Term)]
+        if len(arguments) != 3 or len(terms) != 3:
+            raise FormulaError("'ite' takes three arguments that are no arrays", token.offset)
+        condition = self.require_boolean(terms[0])
+        return self._choose([(condition, terms[1]), (f.negate(condition), terms[2])])
 
     def _choose(self, cases: list[tuple[Formula, Term]]) -> Term:
         """Return the value of the first case whose condition holds."""
@@ -300,16 +314,23 @@ class SpectraReader(FormulaReader):
             cases.append(f.both(condition, self._insert_choices(_replace(atom, choice, value))))
         return f.either(*cases)
 
-    def read_arguments(self) -> list[Term]:
+    def read_arguments(self) -> list[Term | Array]:
         """Read the arguments of a call in parentheses. Raises FormulaError."""
         self.cursor.expect("(")
         if self.cursor.accept(")"):
             return []
-        arguments = [self.read_term(0)]
+        arguments = [self._read_argument()]
         while self.cursor.accept(","):
-            arguments.append(self.read_term(0))
+            arguments.append(self._read_argument())
         self.cursor.expect(")")
         return arguments
+
+    def _read_argument(self) -> Term | Array:
+        """Read a term, or the name of a whole array."""
+        cursor = self.cursor
+        if cursor.next.text in self.scope.arrays and cursor.after_next.text in (",", ")"):
+            return self.scope.arrays[cursor.take().text]
+        return self.read_term(0)
 
 
 _OPERATOR_READERS: dict[str, Callable[[SpectraReader, Token], Term]] = {

@@ -21,7 +21,14 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.evaluate import value_of
 from sysmlc.logic.formats.draft import ContractDraft, SpecificationFile
-from sysmlc.logic.formats.spectra_expressions import SYNTAX, Array, Meaning, Scope, SpectraReader
+from sysmlc.logic.formats.spectra_expressions import (
+    SYNTAX,
+    Array,
+    Meaning,
+    Parameter,
+    Scope,
+    SpectraReader,
+)
 from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
 from sysmlc.logic.infix import NUMBER, Term, kind_of
 from sysmlc.logic.reduction.history import History
@@ -50,10 +57,13 @@ _END_STEPS: dict[str, Callable[[Formula, Formula, Formula], Formula]] = {
 }
 
 
+_NO_ARRAYS: Mapping[str, Array] = {}
+
+
 class Pattern(Struct, frozen=True):
     """A pattern: its parameters, and the position where its body begins."""
 
-    parameters: tuple[str, ...]
+    parameters: tuple[Parameter, ...]
     body: int
 
 
@@ -81,13 +91,13 @@ class StatementReader:
     def _read_constant(self) -> Term:
         return self._create_reader({}, self._cursor.next.offset).read_term(_SUM_PRECEDENCE)
 
-    def _create_predicate_meaning(self, body: int, parameters: tuple[str, ...]) -> Meaning:
+    def _create_predicate_meaning(self, body: int, parameters: tuple[Parameter, ...]) -> Meaning:
         """Return a function that expands a predicate with the arguments of its use."""
 
         def expand(reader: SpectraReader, token: Token) -> Term:
-            arguments = _bind(parameters, reader.read_arguments(), token)
+            terms, arrays = _bind(parameters, reader.read_arguments(), token)
             self._count_expansion(_TOO_MANY.format(token.text), token)
-            return self._read_body(token, body, arguments)
+            return self._read_body(token, body, terms, arrays)
 
         return expand
 
@@ -99,7 +109,7 @@ class StatementReader:
             if self._depth == 0:
                 self._count_expansion(_TOO_MANY.format(token.text), token, self._sizes[body])
             for inner in pending:
-                self._defines[inner] = self._read_body(token, inner, {})
+                self._defines[inner] = self._read_body(token, inner, {}, {})
             term = self._defines[body]
             return Term(term.formula, term.kind, token.offset)
 
@@ -130,7 +140,9 @@ class StatementReader:
             self._sizes[current] = 1 + sum(self._sizes[inner] for inner in used[current])
         return order
 
-    def _read_body(self, token: Token, body: int, arguments: Mapping[str, Term]) -> Term:
+    def _read_body(
+        self, token: Token, body: int, terms: Mapping[str, Term], arrays: Mapping[str, Array]
+    ) -> Term:
         """Read the body of a define or predicate where its name is used."""
         cursor = self._cursor
         if self._depth == _MAX_DEPTH:
@@ -140,7 +152,7 @@ class StatementReader:
         after_use = cursor.mark()
         cursor.reset(body)
         try:
-            term = self._create_reader(arguments, token.offset).read_term(0)
+            term = self._create_reader(terms, token.offset, arrays).read_term(0)
             if not cursor.is_next(";", "}", ","):
                 cursor.fail("';' is expected")
         finally:
@@ -154,17 +166,21 @@ class StatementReader:
         if self._expansions > _MAX_EXPANSIONS:
             raise FormulaError(reason, token.offset)
 
-    def _create_reader(self, parameters: Mapping[str, Term], offset: int) -> SpectraReader:
+    def _create_reader(
+        self, terms: Mapping[str, Term], offset: int, arrays: Mapping[str, Array] = _NO_ARRAYS
+    ) -> SpectraReader:
+        """Return a reader in whose formulas parameters have the values *terms* and *arrays*."""
         scope = Scope(
             variables=self._draft.domains,
             definitions=self._definitions,
-            arrays=self._arrays,
+            arrays={**self._arrays, **arrays} if arrays else self._arrays,
+            patterns=self._patterns,
             history=self._history,
             read_type=self._types.read_type,
             choices=self._choices,
             count_expansion=self._count_expansion,
         )
-        return SpectraReader(self._cursor, scope, parameters, self._draft.file.origin_at(offset))
+        return SpectraReader(self._cursor, scope, terms, self._draft.file.origin_at(offset))
 
     def _read_statement(
         self, owner: Owner, parameters: Mapping[str, Term], rule_owner: Owner
@@ -238,7 +254,9 @@ class StatementReader:
         name = cursor.take()
         pattern = self._patterns[name.text]
         arguments = self._create_reader(parameters, token.offset).read_arguments()
-        scope = _bind(pattern.parameters, arguments, name)
+        scope, arrays = _bind(pattern.parameters, arguments, name)
+        if arrays:
+            raise FormulaError(f"an array parameter of '{name.text}' is not supported", name.offset)
         after_use = cursor.mark()
         self._count_expansion(f"'{name.text}' uses itself", name)
         cursor.reset(pattern.body)
@@ -297,11 +315,25 @@ class StatementReader:
             self._draft.add(Owner.SYSTEM, Class.SAFETY, rule, name.offset)
 
 
-def _bind(names: tuple[str, ...], arguments: list[Term], token: Token) -> dict[str, Term]:
-    if len(names) != len(arguments):
-        reason = f"'{token.text}' takes {len(names)} arguments, not {len(arguments)}"
+def _bind(
+    parameters: tuple[Parameter, ...], arguments: list[Term | Array], token: Token
+) -> tuple[dict[str, Term], dict[str, Array]]:
+    """Return the arguments of a use by the names of the parameters. Raises FormulaError."""
+    if len(parameters) != len(arguments):
+        reason = f"'{token.text}' takes {len(parameters)} arguments, not {len(arguments)}"
         raise FormulaError(reason, token.offset)
-    return dict(zip(names, arguments, strict=True))
+    terms: dict[str, Term] = {}
+    arrays: dict[str, Array] = {}
+    for parameter, argument in zip(parameters, arguments, strict=True):
+        if isinstance(argument, Array) != parameter.is_array:
+            what = "an array" if parameter.is_array else "a value and no array"
+            reason = f"the parameter '{parameter.name}' of '{token.text}' is {what}"
+            raise FormulaError(reason, token.offset)
+        if isinstance(argument, Array):
+            arrays[parameter.name] = argument
+        else:
+            terms[parameter.name] = argument
+    return terms, arrays
 
 
 def _build_counter_rules(
