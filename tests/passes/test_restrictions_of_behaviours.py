@@ -11,7 +11,7 @@ from functools import cache
 
 import pytest
 
-from sysmlc.driver import Request, compile_model
+from sysmlc.driver import Request, compile_model, select_backends
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
 
@@ -358,6 +358,20 @@ def test_a_guard_without_readable_text_is_an_input_or_no_move(folder, name):
         formula for _, _, formulas in contracts for formula in formulas if "state'=B" in formula
     ]
     assert all(re.search(r"event=Go & \w+|false", formula) for formula in moves)
+
+
+@pytest.mark.parametrize("name", [*GUARDS, "guard by its name"])
+def test_a_guard_does_not_vanish_in_sysml_v2_text(tmp_path, name):
+    model = tmp_path / "m.uml"
+    model.write_text(TRANSITIONS[name])
+    outputs = compile_model(Request((model,), backends=tuple(select_backends(["sysml"]))))
+    (text,) = [file.text for file in outputs.artefacts if file.path == "sysml/m.sysml"]
+    contracts, findings = compile_in(tmp_path, text)
+    assert not [message for code, message in findings if code == "SM262"]
+    moves = [
+        formula for _, _, formulas in contracts for formula in formulas if "state'=B" in formula
+    ]
+    assert all(re.search(r"event=Go & \w+", formula) for formula in moves)
 
 
 def test_a_literal_that_is_true_restricts_nothing(folder):

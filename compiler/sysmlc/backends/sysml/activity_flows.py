@@ -4,11 +4,10 @@ A control node of SysML v2 has no pins. An object flow that passes a control nod
 a succession, for the order, and flows from its source to all targets behind the node.
 """
 
-import re
 from collections.abc import Iterator
 
 from sysmlc.backends.sysml.annotations import make_annotation
-from sysmlc.backends.sysml.conditions import declare_condition, format_condition
+from sysmlc.backends.sysml.conditions import format_condition
 from sysmlc.backends.sysml.declarations import list_visibility
 from sysmlc.backends.sysml.definitions import write_contents
 from sysmlc.backends.sysml.elided_elements import find_step_after_merge
@@ -32,7 +31,6 @@ from sysmlc.ir import AttrValue, Edge, Element, Kind
 
 _WAITING = "a step that waits for several flows, one of them with a guard,"
 _PAST_CONTROL = "an object flow between a store and a control node"
-_NUMBER = re.compile(r"-?\d+(\.\d+)?")
 _ScopedLine = tuple[Member | None, Line]
 """The line of a flow, and the namespace in which it is written."""
 _STORES = (Kind.OBJECT_NODE, Kind.DATA_STORE, Kind.ACTIVITY_PARAMETER)
@@ -198,8 +196,6 @@ def _format_guard(
         decision_input = _format_decision_input(writer, scope, member.element)
         if decision_input is not None:
             return f"{decision_input} == {_format_guard_literal(writer, member, guard)}"
-    if isinstance(guard, str) and _NUMBER.fullmatch(guard.strip()):
-        return declare_condition(writer, scope, flow, guard)
     if not isinstance(guard, str):
         return _format_guard_literal(writer, member, guard)
     return format_condition(writer, scope, flow, guard)

@@ -18,6 +18,7 @@ from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import Edge, Element
 
 _DURATION = re.compile(r"\s*(\d+(?:\.\d+)?)\s*([a-zµ]*)\s*", re.IGNORECASE)
+_NUMBER = re.compile(r"-?\d+(\.\d+)?")
 _TIME_UNITS = {
     "": "s",
     "sec": "s",
@@ -40,8 +41,10 @@ _WITHOUT_DECLARATIONS = frozenset({"transition", "succession", "flow", "constrai
 def format_condition(writer: Writer, scope: Member | None, element: Element, text: str) -> str:
     """Return a condition as an expression, else as the name of a Boolean attribute.
 
-    The name of an item or a part is no condition.
+    The name of an item or a part is no condition, and neither is a number.
     """
+    if _NUMBER.fullmatch(text.strip()):
+        return declare_condition(writer, scope, element, text)
     feature = look_up(writer.plan, scope, text.strip())
     if feature is not None and feature.shape.keyword in ("item", "part"):
         return declare_condition(writer, scope, element, text)

@@ -74,7 +74,9 @@ def expression_text(expression: Node | None, lowering: "Lowering") -> str:
     if target is not None and target.name:
         metadata = nodes.shipped_metadata_of(target)
         if "InWords" in metadata:
-            return _read_text(metadata["Named"]) if "Named" in metadata else target.name
+            # A condition without text must not vanish: its name stands for it.
+            text = _read_text(metadata["Named"]) if "Named" in metadata else ""
+            return text or target.name
     return _write(expression, lowering)
 
 
