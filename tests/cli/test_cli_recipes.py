@@ -1,6 +1,7 @@
 """Recipes of SysML v2 models: a small model, ``sysmlc MODEL -o out``, and what the file says."""
 
 import json
+from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
@@ -355,3 +356,21 @@ def test_an_unreadable_duration_is_not_missing_too(tmp_path):
     task = "attribute :>> maxDuration = 50;"
     _, _, findings = compile_cut(tmp_path, "duration = 3 [cycle];", task=task)
     assert list(findings) == ["SM644"]
+
+
+# -- models in UML -----------------------------------------------------------------------------
+
+LEGO = Path(__file__).parents[2] / "examples" / "lego-recipe" / "lego-recipe.uml"
+
+
+@pytest.mark.parametrize(("duration", "milliseconds"), [("9 s", 9000), ("9 kg", None)])
+def test_a_tag_of_a_model_in_uml_may_have_a_unit(tmp_path, duration, milliseconds):
+    model = tmp_path / "lego.uml"
+    model.write_text(LEGO.read_text().replace('duration="2400"', f'duration="{duration}"', 1))
+    command = [str(model), "-o", str(tmp_path / "out"), "--emit", "recipe"]
+    result = CliRunner().invoke(sysmlc, command)
+    assert ("SM643" in result.stderr) == (milliseconds is None)
+    for file in (tmp_path / "out" / "recipes").glob("*.json"):
+        services = json.loads(file.read_text(encoding="utf-8"))["services"]
+        times = [p.get("duration") for s in services for p in s.get("providers", ())]
+        assert milliseconds in times
