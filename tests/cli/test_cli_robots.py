@@ -129,3 +129,18 @@ def test_new_targets_reuse_the_controllers_in_the_cache(
     assert '"sysmlc-machine/2"' in machine
     with pytest.raises(AssertionError, match="synthesised again"):
         run_robots(changed, "--no-cache")
+
+
+def test_the_printed_algorithm_ignores_that_a_target_is_carried(run_robots):
+    result = run_robots(HALL, "--no-relations", "--allocation", "printed")
+    assert result.exit_code == 1
+    assert "assigns a carried target to another robot" in result.stderr
+
+
+def test_the_allocation_of_the_printed_algorithm_is_validated(workspace, run_robots):
+    hall = HALL.replace("connection : Carry connect right to left;", "")
+    result = run_robots(hall, "--no-relations", "--allocation", "printed", "-o", "out")
+    assert result.exit_code == 0, result.output
+    assert "- Algorithm 1 as printed: r1 left; r2 right" in workspace.read(
+        "out/robots/Plant.Hall.md"
+    )

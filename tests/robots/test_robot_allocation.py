@@ -9,6 +9,7 @@ from small_floors import floor
 
 from long_runs import examples
 from sysmlc.robots.allocation import (
+    allocate_as_printed,
     allocate_greedily,
     allocate_optimally,
     neighbour_allocations,
@@ -130,3 +131,20 @@ def test_targets_are_sorted_by_their_orders():
 def test_an_allocation_that_misses_or_repeats_a_target_has_no_schedule(allocation):
     study = floor(3, 0, 8, targets=(1, 2, 3), orders=[(0, 1, True)])
     assert build_schedule(study, shortest_travel_times(study), allocation) is None
+
+
+def test_algorithm_1_as_printed_doubles_costs_and_starts_every_path_at_the_robot():
+    """On six cells in a row r0 should take t3 too, but its printed costs are too high."""
+    study = floor(6, 0, 5, targets=(0, 2, 1, 3), rows=1)
+    travel = shortest_travel_times(study)
+    assert allocate_greedily(study, travel).allocation == ((0, 1, 3), (2,))
+    printed_schedule = allocate_as_printed(study, travel)
+    assert printed_schedule.allocation == ((0, 1), (2, 3))
+    assert printed_schedule.duration > allocate_greedily(study, travel).duration
+
+
+@settings(max_examples=examples(100), deadline=None)
+@given(missions(max_targets=7))
+def test_algorithm_1_as_printed_gives_a_possible_allocation_or_none(study):
+    schedule = allocate_as_printed(study, shortest_travel_times(study))
+    assert schedule is None or respects_orders(study, schedule.allocation)

@@ -39,6 +39,14 @@ Exit codes: 0 the mission is done from every start, 1 it is not,
     default=True,
     help="Decide the relations between contracts that the thesis claims.  [default: relations]",
 )
+@click.option(
+    "--allocation",
+    type=click.Choice(("best", "printed")),
+    default="best",
+    show_default=True,
+    help="Try the best allocations, or only that of the thesis's Algorithm 1 as it is printed, "
+    "with its defects.",
+)
 @options.question_limit(default=10.0)
 @options.reporting
 @options.reading
@@ -50,6 +58,7 @@ def command(
     models: tuple[Path, ...],
     output: Path | None,
     has_relations: bool,
+    allocation: str,
     seconds: float,
     **setting_values: Any,  # noqa: ANN401 - the fields of Settings
 ) -> None:
@@ -84,6 +93,7 @@ def command(
                 has_relations,
                 decision_options,
                 crew_cache,
+                is_printed=allocation == "printed",
             )
         )
     except ImportError as problem:
@@ -100,6 +110,8 @@ def _run_studies(
     has_relations: bool,
     decision_options: "Options",
     crew_cache: "CrewCache | None",
+    *,
+    is_printed: bool,
 ) -> int:
     from sysmlc.cli import reports, session
     from sysmlc.cli.reports import publish_results
@@ -118,7 +130,7 @@ def _run_studies(
     if not studies and not code:
         session.fail("the model has no floor with robots: nothing specialises 'Floors::Floor'")
     outcomes = [
-        run_study(study, place, sink, decision_options, has_relations, crew_cache)
+        run_study(study, place, sink, decision_options, has_relations, crew_cache, is_printed)
         for study in studies
     ]
     refusals: list[Finding] = []

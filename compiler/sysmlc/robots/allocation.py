@@ -5,7 +5,7 @@ double with each target; here the costs of a robot are the steps to its last tar
 line 8 always begin at the robot's start; here a robot continues from its last target. The algorithm
 has neither an order of targets nor targets for the same robot; here targets are sorted
 topologically, and carried targets stay with their robot. Travel times are between places, so no
-graph is searched.
+graph is searched. ``allocate_as_printed`` has none of these corrections, for comparison.
 """
 
 from collections.abc import Iterator
@@ -61,6 +61,30 @@ def allocate_greedily(study: Study, travel: TravelTimes) -> Schedule | None:
         lists[best].append(target)
         if target in study.carried_targets:
             carriers[study.carried_targets[target]] = best
+    return build_schedule(study, travel, tuple(map(tuple, lists)))
+
+
+def allocate_as_printed(study: Study, travel: TravelTimes) -> Schedule | None:
+    """Return the allocation of Algorithm 1 exactly as the thesis prints it (4.4.2).
+
+    Targets are allocated in the order of the model, every path begins at the start of its robot
+    (line 8), and the costs of a robot grow by its previous costs and the path (line 10). The result
+    is None if a target is out of reach, or if the allocation breaks an order of the mission or
+    assigns a carried target to another robot.
+    """
+    lists: list[list[int]] = [[] for _ in study.robots]
+    costs = [0] * len(lists)
+    for target in range(len(study.targets)):
+        costs_by_robot = {
+            robot: steps + costs[robot]
+            for robot in range(len(lists))
+            if (steps := travel.get(robot, START, target)) is not None
+        }
+        if not costs_by_robot:
+            return None
+        best = min(costs_by_robot, key=lambda robot: (costs_by_robot[robot], robot))
+        costs[best] += costs_by_robot[best]
+        lists[best].append(target)
     return build_schedule(study, travel, tuple(map(tuple, lists)))
 
 

@@ -9,6 +9,7 @@ from msgspec.structs import replace
 from sysmlc.diagnostics import Severity, Sink, Subject, rule
 from sysmlc.robots.allocation import (
     BestAllocation,
+    allocate_as_printed,
     allocate_greedily,
     allocate_optimally,
     neighbour_allocations,
@@ -33,6 +34,10 @@ from sysmlc.synthesis.decision import Options, Place, decide
 
 MAX_CANDIDATES = 12
 """Number of allocations that are validated before the mission counts as failed."""
+_PRINTED_IS_IMPOSSIBLE = (
+    "Algorithm 1 as printed leaves a target out of reach, breaks an order, or assigns a carried "
+    "target to another robot"
+)
 SHARED_CELL_CLAIM = "C_E is realizable as the thesis defines it"
 """The claim that the thesis's C_E is realizable, which fails because robots may share a cell."""
 
@@ -58,7 +63,7 @@ NO_ALLOCATION = rule(
     "SM572",
     "no-allocation",
     Severity.ERROR,
-    "no allocation of the targets of '{floor}' meets the deadlines: {reason}",
+    "no allocation of the targets of '{floor}' is possible in time: {reason}",
     help="give more time, another robot, or fewer targets",
 )
 NO_RELATION = rule(
@@ -97,6 +102,8 @@ class Outcome(Struct, frozen=True):
     """Decided claims about relations between the contracts."""
     greedy: Schedule | None = None
     """The allocation of the thesis's algorithm."""
+    is_printed: bool = False
+    """Whether this allocation is that of the algorithm as printed, the only one that is tried."""
     best: BestAllocation | None = None
     """The allocation of branch and bound."""
     tried: tuple[TriedAllocation, ...] = ()
@@ -125,16 +132,23 @@ def run_study(
     options: Options,
     has_relations: bool = True,
     crew_cache: CrewCache | None = None,
+    is_printed: bool = False,
 ) -> Outcome:
     """Synthesise the controller, measure travel times, decide claims, allocate and validate.
 
-    Failures are reported. Results about the robots of this floor are reused from the cache.
+    Failures are reported. Results about the robots of this floor are reused from the cache. With
+    *is_printed* the only allocation is that of Algorithm 1 as printed.
     """
     known_crew = crew_cache.get(study) if crew_cache else None
     crew = known_crew or _build_crew(study, place, sink, options)
     answers = build_answers(study, crew.controller)
     outcome = Outcome(
-        study, crew.controller, travel_times_of(study, crew.times), answers, crew.times
+        study,
+        crew.controller,
+        travel_times_of(study, crew.times),
+        answers,
+        crew.times,
+        is_printed=is_printed,
     )
     if has_relations:
         claims = {claim.claim: claim for claim in _decide_all_claims(outcome, crew.claims, options)}
@@ -168,6 +182,14 @@ def allocate_mission(
     if not answers or not study.targets:
         return replace(outcome, study=study)
     travel = travel_times_of(study, outcome.times)
+    if outcome.is_printed:
+        printed_schedule = allocate_as_printed(study, travel)
+        outcome = replace(outcome, study=study, travel=travel, greedy=printed_schedule)
+        if printed_schedule is None:
+            subject, floor = place(study.origin), study.component
+            sink.report(NO_ALLOCATION, subject, floor=floor, reason=_PRINTED_IS_IMPOSSIBLE)
+            return outcome
+        return _validate_candidates(outcome, answers, iter([printed_schedule]), place, sink)
     greedy_schedule, best_allocation = (
         allocate_greedily(study, travel),
         allocate_optimally(study, travel),

@@ -50,7 +50,7 @@ def summarise_outcome(outcome: Outcome) -> str:
         return f"{head}: no mission"
     tried = outcome.chosen
     if tried is None:
-        return f"{head}: no allocation keeps the deadlines"
+        return f"{head}: no allocation is possible in time"
     starts = _count_noun(tried.validation.starts, "start")
     if not tried.validation.is_good:
         return f"{head}: the mission fails ({_count_noun(len(outcome.tried), 'allocation')} tried)"
@@ -151,7 +151,8 @@ def _travel_times_row(outcome: Outcome, robot: int, place: int) -> str:
 def _describe_allocations(outcome: Outcome) -> Iterator[str]:
     yield from ("", "## Allocation", "")
     if outcome.greedy is not None:
-        yield f"- Algorithm 1: {_describe_allocation(outcome.study, outcome.greedy)}"
+        name = "Algorithm 1 as printed" if outcome.is_printed else "Algorithm 1"
+        yield f"- {name}: {_describe_allocation(outcome.study, outcome.greedy)}"
     if outcome.best is not None:
         quality = "the best there is" if outcome.best.is_proven else "the best that was found"
         allocation = _describe_allocation(outcome.study, outcome.best.schedule)
