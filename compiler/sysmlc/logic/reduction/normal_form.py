@@ -38,7 +38,7 @@ def _apply(op: Op, args: tuple[Formula, ...]) -> Formula:
     if op is Op.AND:
         return f.both(*args)
     if op is Op.OR:
-        return _weaken_until(f.either(*args))
+        return _join_next(_weaken_until(f.either(*args)))
     if all(isinstance(arg, Const) for arg in args):
         return args[-1]
     if op in FUTURE and op is not Op.NEXT:
@@ -60,6 +60,19 @@ def _strip_next(formula: Formula) -> Formula | None:
             return _apply(op, stripped) if len(stripped) == len(args) else None
         case _:
             return None
+
+
+def _join_next(disjunction: Formula) -> Formula:
+    """Replace ``X p | X q`` by ``X (p | q)``."""
+    if not isinstance(disjunction, Apply) or disjunction.op is not Op.OR:
+        return disjunction
+    inner = [
+        arg.args[0] for arg in disjunction.args if isinstance(arg, Apply) and arg.op is Op.NEXT
+    ]
+    if len(inner) < 2:
+        return disjunction
+    rest = [arg for arg in disjunction.args if not (isinstance(arg, Apply) and arg.op is Op.NEXT)]
+    return f.either(*rest, Apply(Op.NEXT, (_apply(Op.OR, tuple(inner)),)))
 
 
 def _weaken_until(disjunction: Formula) -> Formula:

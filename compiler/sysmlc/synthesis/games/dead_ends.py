@@ -6,15 +6,18 @@ a step late. Without the inputs that lead to dead ends, the verdict does not dep
 assumption is written.
 """
 
-from collections.abc import Iterable, Sequence
-from itertools import count
+from collections.abc import Iterable, Iterator, Sequence
 
 from msgspec import Struct
 
 from sysmlc.logic.contract import Owner
+from sysmlc.support.disjoint_sets import group_related
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.bdd.symbols import Symbols, conjoin
 from sysmlc.synthesis.games.relational_product import Product
+
+MAX_DEFINITION_NODES = 1_000
+"""Nodes of a conjunction above which it is not tried as the definition of an input."""
 
 
 class ViableInputs(Struct, frozen=True):
@@ -73,33 +76,52 @@ def _can_choose_dead_end(
     return bool(conditions) and not all(_holds_in_ranges(symbols, node) for node in answers)
 
 
-def _quantify(manager: Manager, parts: Iterable[Node], bits: Sequence[str]) -> list[Node]:
-    """Return conjuncts of ``exist bits: part & part ...``, without those that are true.
+def _quantify(manager: Manager, parts: Iterable[Node], bits: Sequence[str]) -> Iterator[Node]:
+    """Yield conjuncts of ``exist bits: part & part ...``, one for all parts that share bits."""
+    remaining = _drop_definitions(manager, parts, bits)
+    quantified = frozenset(bits)
+    supports = [(part, manager.support(part) & quantified) for part in remaining]
+    groups = group_related(bits, [support for _, support in supports])
+    group_of = {bit: index for index, group in enumerate(groups) for bit in group}
+    members: dict[int, list[Node]] = {}
+    for part, support in supports:
+        if support:
+            members.setdefault(group_of[min(support)], []).append(part)
+        else:
+            yield part
+    for index, nodes in members.items():
+        yield Product(manager, nodes, groups[index])(manager.true)
 
-    Bits in the fewest parts go first (bucket elimination): an input that a definition determines
-    vanishes with its definition, before anything is conjoined with it.
+
+def _drop_definitions(manager: Manager, parts: Iterable[Node], bits: Sequence[str]) -> list[Node]:
+    """Return the parts without those that some value of a bit always satisfies.
+
+    Sensors that definitions determine would otherwise be replaced by the definitions in all parts,
+    which for a grid of robots takes most of the nodes.
     """
-    nodes = dict(enumerate(parts))
-    parts_of_bit: dict[str, set[int]] = {bit: set() for bit in bits}
-    for number, node in nodes.items():
-        for bit in manager.support(node).intersection(parts_of_bit):
-            parts_of_bit[bit].add(number)
-    new_numbers = count(len(nodes))
-    while parts_of_bit:
-        bit = min(parts_of_bit, key=lambda bit: len(parts_of_bit[bit]))
-        touching = parts_of_bit[bit]
-        own_bits = [bit for bit, numbers in parts_of_bit.items() if numbers <= touching]
-        conjunction = conjoin(manager, [nodes.pop(number) for number in sorted(touching)])
-        for own_bit in own_bits:
-            del parts_of_bit[own_bit]
-        number = next(new_numbers)
-        nodes[number] = manager.exist(own_bits, conjunction)
-        support = manager.support(nodes[number])
-        for other_bit, numbers in parts_of_bit.items():
-            numbers -= touching
-            if other_bit in support:
-                numbers.add(number)
-    return [node for node in nodes.values() if node != manager.true]
+    remaining = dict.fromkeys(parts)
+    by_bit = {bit: [part for part in remaining if bit in manager.support(part)] for bit in bits}
+    is_changed = True
+    while is_changed:
+        is_changed = False
+        for bit in bits:
+            touching = [part for part in by_bit[bit] if part in remaining]
+            conjunction = _conjoin_small(manager, touching) if touching else None
+            if conjunction is not None and manager.exist([bit], conjunction) == manager.true:
+                is_changed = True
+                for part in touching:
+                    del remaining[part]
+    return list(remaining)
+
+
+def _conjoin_small(manager: Manager, parts: Iterable[Node]) -> Node | None:
+    """Return the conjunction, or None if it is large."""
+    result = manager.true
+    for part in parts:
+        result = result & part
+        if len(result) > MAX_DEFINITION_NODES:
+            return None
+    return result
 
 
 def _holds_in_ranges(symbols: Symbols, node: Node) -> bool:
