@@ -102,9 +102,7 @@ def test_sm193_unclosed_comments_and_quotes_are_reported():
         "1:6 SM193 this name in quotes is never closed"
     ]
     assert parse_with_diagnostics("part 'abc;")[0] == ["OwningMembership PartUsage abc"]
-    assert list_diagnostics('attribute a = "b;') == [
-        "1:15 SM193 this text in quotes is never closed"
-    ]
+    assert list_diagnostics('attribute a = "b;') == ["1:15 SM193 this string is never closed"]
 
 
 def test_sm194_letters_that_need_quotes_are_reported_at_their_location():
@@ -125,7 +123,7 @@ def test_sm194_a_number_beyond_the_range_of_floats_is_reported():
 
 def test_a_comment_within_a_declaration_is_reported_with_the_notation_of_a_note():
     tree, messages = parse_with_diagnostics("part a /* b */ : C;")
-    assert messages == ["1:8 SM190 unexpected a comment /* */; expected something else"]
+    assert messages == ["1:8 SM190 unexpected comment; expected a note (// or //*)"]
     assert tree == ["OwningMembership PartUsage a FeatureTyping->C"]
     assert "//* ... */" in list_advice("part a /* b */ : C;")[0]
 
@@ -259,7 +257,7 @@ def test_a_very_long_word_is_not_compared_with_keywords():
 
 def test_a_word_that_resembles_no_keyword_is_no_misspelt_one():
     assert list_diagnostics("part def A { foo bar; }") == [
-        "1:18 SM190 unexpected 'bar'; expected ';', '{', '}', '::' or something else"
+        "1:18 SM190 unexpected name 'bar'; expected ';', '{', '}', '::' or something else"
     ]
 
 

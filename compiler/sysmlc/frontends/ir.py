@@ -30,7 +30,12 @@ class IrFrontend(Struct, frozen=True):
     name: str = "ir"
 
     def detect(self, source: Source) -> float:
-        """Return 1 if the first word after comments is a kind of element, else 0."""
+        """Return 1 if the first word after comments is a kind of element, else 0.
+
+        A text of SysML v2 that begins with the misspelt ``Package`` is none.
+        """
+        if source.name.lower().endswith((".sysml", ".kerml")):
+            return 0.0
         match = _FIRST_WORD.match(source.data[:4096])
         return 1.0 if match and match[1] in _KINDS else 0.0
 

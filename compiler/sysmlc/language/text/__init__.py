@@ -51,7 +51,7 @@ def _parse(text: str, path: str, language: str, sink: Sink, source: Source | Non
     bound_rules = _bind_rules(language)
     stack: Stack = [None, 0, tables.start]
     failed = run(tables, bound_rules, tokens, stack, 0) if len(tokens.types) > 1 else -1
-    errors = Errors(tokens, path, language, sink, source)
+    errors = Errors(tokens, tables.types, path, language, sink, source)
     # Builders add faults too (numbers that are too large), so faults are reported after the run.
     if too_deep >= 0 or tokens.faults:
         errors.report_faults(too_deep)
@@ -187,7 +187,7 @@ def check_syntax(tokens: Tokens, errors: Errors) -> None:
         elif node.kind == "Definition":
             _check_bare_definition(tokens, node, errors)
         elif node.owner is not None:
-            _check_owner(node, node.owner, errors)
+            _check_owner(tokens, node, node.owner, errors)
 
 
 def _check_import(node: Node, errors: Errors) -> None:
@@ -215,13 +215,20 @@ def _check_enumeration(node: Node, errors: Errors) -> None:
             _report(member, "a definition", "packages and other definitions", errors)
 
 
-def _check_owner(node: Node, owner: Node, errors: Errors) -> None:
+def _check_owner(tokens: Tokens, node: Node, owner: Node, errors: Errors) -> None:
     key = node.kind if node.kind in _ALLOWED_OWNERS else node.membership
     if node.kind in _STEPS and key not in _ALLOWED_OWNERS:
         key = "action"
     what, kinds, where = _ALLOWED_OWNERS.get(key, ("", (), ""))
-    if kinds and owner.kind not in _with_special_kinds(kinds):
+    is_wrong = bool(kinds) and owner.kind not in _with_special_kinds(kinds)
+    if is_wrong and not _has_unread_head(tokens, owner):
         _report(node, what, where, errors)
+
+
+def _has_unread_head(tokens: Tokens, owner: Node) -> bool:
+    """Whether recovery read a body without the head before it, which has a syntax error."""
+    first = tokens.text[owner.start : owner.start + 1]
+    return owner.kind == "ReferenceUsage" and (first == "{" or first.isspace())
 
 
 def _report(node: Node, what: str, where: str, errors: Errors) -> None:

@@ -1,11 +1,12 @@
 """Syntax errors, reported at their location with the expected tokens and advice."""
 
+import re
 from collections.abc import Collection
 from functools import cached_property
 
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.language.text import hints, rules
-from sysmlc.language.text.lexer import LexicalFault, Tokens
+from sysmlc.language.text.lexer import LexicalFault, Tokens, TokenTypes
 from sysmlc.language.text.nesting import MAX_DEPTH
 from sysmlc.language.tree import ByteOffsets
 from sysmlc.sources import Source
@@ -13,6 +14,8 @@ from sysmlc.sources import Source
 _MAX_ERRORS = 100
 """Errors that are reported for one file."""
 _LAST_NOTE = f"of one file no more than {_MAX_ERRORS} syntax errors are reported"
+_MAX_MARGIN = 1_000
+"""Characters before a brace in which its line begins; a line of megabytes has no indentation."""
 _LANGUAGES = {"kerml": "KerML", "sysml": "SysML"}
 _COMMENT_ADVICE = (
     "a comment /* */ is an element of the model and stands between members, or after `doc` or "
@@ -21,12 +24,17 @@ _COMMENT_ADVICE = (
 _LEXICAL_FAULTS = {
     "comment": ("this comment", "put */ where it ends"),
     "quote": ("this name in quotes", "put ' where it ends, in the same line"),
-    "string": ("this text in quotes", 'put " where it ends'),
+    "string": ("this string", 'put " where it ends'),
     "encoding": (
         "the file is not text in UTF-8",
         "save it in UTF-8; if it is not a model, rename or remove it",
     ),
+    "typography": (
+        "{} is a typographic quotation mark",
+        "write straight quotation marks: 'name' or \"text\"",
+    ),
     "number": ("{} is too large a number", "write it with an exponent below 308"),
+    "negation": ("{} is no operator", "write 'not' for a negation"),
     "character": (
         "{} belongs to no name, symbol or text",
         "take it away, or put the name that it belongs to in single quotes: 'Größe'",
@@ -42,19 +50,33 @@ class Errors:
     """
 
     def __init__(
-        self, tokens: Tokens, path: str, language: str, sink: Sink, source: Source | None
+        self,
+        tokens: Tokens,
+        types: TokenTypes,
+        path: str,
+        language: str,
+        sink: Sink,
+        source: Source | None,
     ) -> None:
         self._tokens = tokens
+        self._types = types
         self._path = path
         self._language = language
         self._sink = sink
         self._source = source
         self._remaining = _MAX_ERRORS
         self._is_unclosed_reported = False
+        self._unclosed_lines: set[int] = set()
         self.beginnings: list[str] = []
 
     def report(self, rule: Rule, offset: int, **facts: object) -> None:
-        """Report an error at a character of the text, unless the maximum is reached."""
+        """Report an error at a character of the text, unless the maximum is reached.
+
+        A syntax error in a line with an unclosed quotation is a consequence of it.
+        """
+        is_syntax = rule in (rules.SYNTAX, rules.MISSING)
+        if is_syntax and self._unclosed_lines and self._find_line(offset) in self._unclosed_lines:
+            return
         self._remaining -= 1
         if self._remaining < 0:
             return
@@ -62,6 +84,10 @@ class Errors:
         facts.setdefault("advice", "")
         notes = () if self._remaining else (_LAST_NOTE,)
         self._sink.report(rule, Subject(place=place), help="", notes=notes, cause="", **facts)
+
+    def _find_line(self, offset: int) -> int:
+        """Return the offset of the line break before a character, or -1."""
+        return self._tokens.text.rfind("\n", 0, offset)
 
     @cached_property
     def _byte_offsets(self) -> ByteOffsets:
@@ -80,11 +106,18 @@ class Errors:
         for fault in self._tokens.faults:
             is_unclosed = fault.what in ("comment", "quote", "string")
             rule = rules.UNCLOSED if is_unclosed else rules.CHARACTER
+            if is_unclosed:
+                self._unclosed_lines.add(self._find_line(fault.start))
             what, advice = _LEXICAL_FAULTS[fault.what]
             self.report(rule, fault.start, what=what.format(_quote_fault(fault)), advice=advice)
 
     def report_unexpected(self, index: int, expected: list[str]) -> None:
         """Report a token in a place where only ``expected`` tokens are valid."""
+        if index > 1 and self._tokens[index - 2] == "->" and self._tokens[index] in (";", "}"):
+            # `a -> b` calls a function with arguments, so that the parser fails behind it.
+            start = self._tokens.starts[index - 2]
+            self.report(rules.SYNTAX, start, found="'->'", expected="'then'", advice=hints.ARROW)
+            return
         self.report(
             rules.SYNTAX,
             self._tokens.starts[index],
@@ -96,7 +129,7 @@ class Errors:
     def report_comment(self, index: int) -> None:
         """Report a comment in a place where no comment is valid."""
         start = self._tokens.starts[index]
-        found, expected = "a comment /* */", "something else"
+        found, expected = "comment", "a note (// or //*)"
         self.report(rules.SYNTAX, start, found=found, expected=expected, advice=_COMMENT_ADVICE)
 
     def report_substitution(self, index: int, substitute: str) -> None:
@@ -117,11 +150,22 @@ class Errors:
         advice = f"'{word}' is not a keyword: did you mean '{keyword}'?"
         self.report(rules.SYNTAX, start, found=f"'{word}'", expected=f"'{keyword}'", advice=advice)
 
+    def report_correction(self, correction: hints.Correction) -> None:
+        """Report a token that the parser replaces, removes or lacks, as in ``part a :: A``."""
+        self.report(
+            rules.SYNTAX,
+            self._tokens.starts[correction.position],
+            found=self._describe_token(correction.position),
+            expected=f"'{correction.expected}'",
+            advice=correction.advice,
+        )
+
     def report_missing(self, index: int, words: str) -> None:
         """Report a missing token before ``index``, where the token before it ends."""
         before = self._find_written_before(index)
         end = self._tokens.ends[before]
-        found = self._describe_token(before)
+        text = self._tokens[before]
+        found = "the string" if text.startswith('"') else _quote_text(text)
         advice = f"put {words} there"
         if words == "';'":
             hint = hints.advise_missing(self._tokens, before, index, self.beginnings)
@@ -152,25 +196,51 @@ class Errors:
         for index in range(len(self._tokens.types)):
             symbol = self._tokens[index]
             if symbol == "{":
-                open_braces.append(index)
+                open_braces.append(self._tokens.starts[index])
             elif symbol == "}" and open_braces:
+                # A `}` further left than its `{` closes an outer body, so that this one is open.
+                if self._is_outdented(open_braces[-1], self._tokens.starts[index]):
+                    break
                 open_braces.pop()
         if open_braces:
             # The innermost open brace is the best guess, as the outer ones may be closed by its
             # `}`.
-            start = self._tokens.starts[open_braces[-1]]
             advice = "put '}' after the last member of this body"
-            self.report(rules.UNCLOSED, start, what="this '{'", advice=advice)
+            self.report(rules.UNCLOSED, open_braces[-1], what="this '{'", advice=advice)
+
+    def _is_outdented(self, opening: int, closing: int) -> bool:
+        """Whether a `}` begins a line that is indented less than the line of a `{`."""
+        margin = _read_margin(self._tokens.text, closing)
+        is_first = margin == _read_line_before(self._tokens.text, closing)
+        return is_first and len(margin) < len(_read_margin(self._tokens.text, opening))
 
     def _describe_token(self, index: int) -> str:
         text = self._tokens[index]
         if not text:
-            return "the end of the text"
+            return "end of file"
         if text.startswith("/*"):
-            return "the comment /* */"
+            return "comment"
         if text.startswith('"'):
-            return "a text in quotes"
-        return text if text.startswith("'") else f"'{_shorten(text)}'"
+            return "string"
+        token_type = self._tokens.types[index]
+        kind = {self._types.name: "name ", self._types.number: "number "}.get(token_type, "")
+        return f"{kind}{_quote_text(text)}"
+
+
+def _read_line_before(text: str, offset: int) -> str:
+    """Return the part of a line before a character."""
+    return re.split(r"[\r\n]", text[max(0, offset - _MAX_MARGIN) : offset])[-1]
+
+
+def _read_margin(text: str, offset: int) -> str:
+    """Return the blanks at the beginning of the line of a character."""
+    line = _read_line_before(text, offset)
+    return line[: len(line) - len(line.lstrip())]
+
+
+def _quote_text(text: str) -> str:
+    """Return the text of a token in quotes; a quoted name already has them."""
+    return text if text.startswith("'") else f"'{_shorten(text)}'"
 
 
 def _quote_fault(fault: LexicalFault) -> str:
@@ -188,10 +258,10 @@ def _shorten(text: str) -> str:
 
 _TERMINALS = {
     "NAME": "a name",
-    "STRING": "a text in double quotes",
+    "STRING": "a string",
     "NUMBER": "a number",
     "BODY": "a comment /* ... */",
-    "$END": "the end of the text",
+    "$END": "end of file",
 }
 _GROUPS = (
     (

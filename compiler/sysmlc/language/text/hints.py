@@ -1,9 +1,11 @@
 """Advice about a token that does not fit: common slips, words of drafts and of other languages."""
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterator
 from difflib import SequenceMatcher
+from typing import NamedTuple
 
 from sysmlc.language.text.lexer import Tokens
+from sysmlc.language.text.spelling import RESERVED
 from sysmlc.support.suggestions import did_you_mean
 
 INITIAL = "':=' gives an initial value, '=' binds for good, 'default' may be overridden"
@@ -15,7 +17,6 @@ _TOKENS = {
     "extends": "write ':>' or 'specializes' before a general type",
     "is": "write ':>' or 'specializes' before a general type, and ':' before the type of a usage",
     "with": "ends of a connection are joined by 'to': connect a to b",
-    "then": "a conditional expression has a question mark: if a ? b else c",
     "when": "write 'accept when c' for a change, 'if c' for a guard, both before 'then'",
 }
 """Advice about a token, wherever it stands."""
@@ -28,6 +29,8 @@ _FIRST_WORDS = {
     "component": "'part' is meant",
     "datatype": "in SysML a type of values is an 'attribute def'",
     "decision": "'decide' is meant",
+    "elif": "'else if' is meant",
+    "elseif": "'else if' is meant",
     "enumeration": "'enum def' is meant",
     "feature": "in SysML a feature is a 'ref', 'attribute', 'part' or 'item'",
     "func": "'calc' is meant",
@@ -58,6 +61,14 @@ _MIN_SIMILARITY = 0.7
 """Ratio of ``difflib`` from which the first word of a member counts as a misspelt keyword."""
 _DOUBLED_OPERATORS = {"&": "'and'", "|": "'or'"}
 _ARROWS = ("-", "->", "=>", "~", ",")
+_CONDITION_HEADS = frozenset({"constraint", "assert", "assume", "require"})
+_ORDER_HEADS = frozenset({"first", "succession", "transition"})
+_PAIR_HEADS = frozenset({"connect", "connection", "flow", "interface", "message"})
+ARROW = "an order is written 'first a then b;', a transition 'transition first a then b;'"
+_JOINED_BY_TO = "ends are joined by 'to': a to b"
+_COMPARISON = "'==' compares two values, '=' binds one"
+_MAX_HEAD = 200
+"""Tokens before a member in which the head of its body is searched for."""
 
 Hint = Callable[[Tokens, int, Collection[str]], str]
 """Returns advice about a token in whose place only other tokens are valid, or an empty string."""
@@ -153,7 +164,7 @@ def _next_tokens(tokens: Tokens, index: int) -> list[str]:
 def _advise_unit(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
     """Advise about a name behind a number: the author probably means a unit, ``5 [kg]``."""
     unit, number = tokens[index], tokens[index - 1] if index else ""
-    is_unit = number[:1].isdigit() and unit[:1].isalpha()
+    is_unit = number[:1].isdigit() and unit[:1].isalpha() and unit not in RESERVED
     return f"units stand in brackets: {number} [{unit}]" if is_unit else ""
 
 
@@ -168,8 +179,11 @@ def _advise_parameters(tokens: Tokens, index: int, expected: Collection[str]) ->
 
 
 def _advise_multiplicity(tokens: Tokens, index: int, expected: Collection[str]) -> str:
-    is_end = tokens[index] == "[" and not _END_TOKENS.isdisjoint(expected)
-    return "write the multiplicity before the end: [0..1] a" if is_end else ""
+    if tokens[index] != "[" or _END_TOKENS.isdisjoint(expected):
+        return ""
+    if "if" in expected and "transition" in _member_before(tokens, index):
+        return "a guard is written with 'if': transition first a if x > 0 then b"
+    return "write the multiplicity before the end: [0..1] a"
 
 
 def _advise_import(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
@@ -207,6 +221,83 @@ def _advise_result(tokens: Tokens, index: int, _expected: Collection[str]) -> st
     return "'return' declares the result: return r = ...;" if is_value else ""
 
 
+def _advise_effect(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
+    """Advise about ``/`` before the effect of a transition, as SysML v1 writes it."""
+    is_effect = tokens[index] == "/" and "accept" in _member_before(tokens, index)
+    return "an effect is written with 'do': accept e do action x then b" if is_effect else ""
+
+
+def _advise_quotes(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
+    """Advise about a declared name with a hyphen or a leading digit: ``part def my-part``."""
+    before, after = tokens[index - 1] if index else "", "".join(_next_tokens(tokens, index)[:1])
+    is_hyphen = tokens[index] == "-" and before.isidentifier() and after.isalnum()
+    is_digit = tokens[index][:1].isdigit() and after.isidentifier() and before == "def"
+    name = f"{before}-{after}" if is_hyphen else f"{tokens[index]}{after}"
+    is_name = is_hyphen or is_digit
+    return (
+        f"put the name in single quotes, here and wherever it is used: '{name}'" if is_name else ""
+    )
+
+
+def _advise_then(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
+    is_conditional = tokens[index] == "then" and "if" in _member_before(tokens, index)
+    return "a conditional expression has a question mark: if a ? b else c" if is_conditional else ""
+
+
+def _advise_call(tokens: Tokens, index: int, expected: Collection[str]) -> str:
+    """Advise about a call as a statement: ``Drill();``."""
+    before = _member_before(tokens, index)
+    is_call = tokens[index] == ";" and list(expected) == ["}"] and before[1:2] == ["("]
+    return f"an action is performed by a usage: action x : {before[0]};" if is_call else ""
+
+
+def _advise_loop(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
+    is_loop = index > 0 and tokens[index] == "(" and tokens[index - 1] == "for"
+    return "a loop runs over a sequence: for i in 1..3 { ... }" if is_loop else ""
+
+
+def _advise_sum(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
+    """Advise about an assignment that changes a value: ``n += 1``."""
+    before = _member_before(tokens, index)
+    is_sum = before[:1] == ["assign"] and _next_tokens(tokens, index)[:1] == ["="]
+    return (
+        f"write the new value: {before[-1]} := {before[-1]} {tokens[index]} ..." if is_sum else ""
+    )
+
+
+def _advise_note(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
+    is_note = _member_before(tokens, index)[:2] == ["-", "-"]
+    return "a note is written // ..." if is_note else ""
+
+
+def _advise_package(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
+    before = _member_before(tokens, index)
+    is_path = tokens[index] == "." and "package" in before
+    return (
+        f"a package in another one is a member of its body: package {before[-1]} {{ package ..."
+        if is_path
+        else ""
+    )
+
+
+def _advise_percent(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
+    is_unit = tokens[index] == "%" and index > 0 and tokens[index - 1] == "["
+    return "a ratio is a number: 0.2 for 20 %" if is_unit else ""
+
+
+def _advise_initial(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
+    return INITIAL if index and tokens[index] == ":" and tokens[index - 1] == "=" else ""
+
+
+def _advise_type_first(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
+    """Advise about a type before a name, as programming languages write it: ``Tank t;``."""
+    before, name = _member_before(tokens, index), tokens[index]
+    is_pair = len(before) == 1 and before[0].isidentifier() and name.isidentifier()
+    if not is_pair or before[0] in _FIRST_WORDS or before[0][:1].islower():
+        return ""
+    return f"write the kind first and the type after ':', such as part {name} : {before[0]};"
+
+
 _SLIPS: tuple[Hint, ...] = (
     _advise_unit,
     _advise_parameters,
@@ -215,6 +306,17 @@ _SLIPS: tuple[Hint, ...] = (
     _advise_ends,
     _advise_result,
     _advise_condition,
+    _advise_effect,
+    _advise_quotes,
+    _advise_percent,
+    _advise_then,
+    _advise_call,
+    _advise_loop,
+    _advise_sum,
+    _advise_note,
+    _advise_package,
+    _advise_initial,
+    _advise_type_first,
 )
 
 
@@ -230,7 +332,7 @@ def _advise_doubled_operator(tokens: Tokens, index: int, _expected: Collection[s
 
 def _advise_comparison(tokens: Tokens, index: int, expected: Collection[str]) -> str:
     is_binding = tokens[index] == "=" and "==" in expected and "=" not in expected
-    return "'==' compares two values, '=' binds one" if is_binding else ""
+    return _COMPARISON if is_binding else ""
 
 
 def _advise_conditional(tokens: Tokens, index: int, expected: Collection[str]) -> str:
@@ -251,7 +353,7 @@ def _advise_comment(tokens: Tokens, index: int, expected: Collection[str]) -> st
 
 def _advise_connection(tokens: Tokens, index: int, expected: Collection[str]) -> str:
     is_arrow = tokens[index] in _ARROWS and "to" in expected
-    return "ends are joined by 'to': a to b" if is_arrow else ""
+    return _JOINED_BY_TO if is_arrow else ""
 
 
 def _advise_spelling(tokens: Tokens, index: int, expected: Collection[str]) -> str:
@@ -272,3 +374,100 @@ _FOREIGN: tuple[Hint, ...] = (
     _advise_connection,
     _advise_spelling,
 )
+
+
+# -- corrections of a member ---------------------------------------------------------------------
+
+
+class Correction(NamedTuple):
+    """Tokens of a member that the parser reads as others: ``length`` of them from ``position``.
+
+    ``words`` are the keywords and symbols in their place, ``expected`` the one to report.
+    """
+
+    position: int
+    length: int
+    words: tuple[str, ...]
+    expected: str
+    advice: str
+
+
+def list_corrections(tokens: Tokens, start: int, index: int) -> Iterator[Correction]:
+    """Yield the corrections that may mend a member that begins at ``start`` and fails at ``index``.
+
+    The parser applies the first with which it accepts the member up to ``index``.
+    """
+    member = [tokens[position] for position in range(start, index + 1)]
+    is_condition = not _CONDITION_HEADS.isdisjoint(_read_body_head(tokens, start))
+    for position, symbol in enumerate(member, start):
+        if is_condition and symbol == "=":
+            yield _replace_by("==", position, _COMPARISON)
+        elif is_condition and symbol in ("=>", "->"):
+            yield _replace_by("implies", position, "an implication is written: a implies b")
+        elif symbol in ("::", ":"):
+            yield from _correct_colon(tokens, member, start, position)
+        elif symbol in _ARROWS and not _ORDER_HEADS.isdisjoint(member):
+            yield _replace_by("then", position, "an order is written: first a then b")
+        elif symbol in _ARROWS and not _PAIR_HEADS.isdisjoint(member):
+            yield _replace_by("to", position, _JOINED_BY_TO)
+        elif symbol == "on" and "satisfy" in member:
+            yield _replace_by("by", position, "write 'by' before what satisfies it")
+    yield from _correct_last_tokens(tokens, member, start, index)
+
+
+def _correct_colon(
+    tokens: Tokens, member: list[str], start: int, index: int
+) -> Iterator[Correction]:
+    """Yield what a colon may stand for: ``part a :: A``, ``part def B : A``, ``part b : > a``."""
+    following = _next_tokens(tokens, index)
+    if member[index - start] == "::":
+        if index > start + 1:
+            advice = "':' stands before a type, '::' joins the names of packages"
+            yield _replace_by(":", index, advice)
+    elif following[:2] == [">", ">"]:
+        yield Correction(index, 3, (":>>",), ":>>", "write ':>>' without blanks")
+    elif following[:1] == [">"]:
+        yield Correction(index, 2, (":>",), ":>", "write ':>' without blanks")
+    elif "def" in member:
+        advice = "':>' stands before a general type, ':' before the type of a usage"
+        yield _replace_by(":>", index, advice)
+
+
+def _correct_last_tokens(
+    tokens: Tokens, member: list[str], start: int, index: int
+) -> Iterator[Correction]:
+    """Yield corrections of the last two tokens of *member*, which ends at ``index``."""
+    before, last = member[-2] if len(member) > 1 else "", member[-1]
+    if (before, last) == ("<", ">"):
+        yield Correction(index - 1, 2, ("!=",), "!=", "'!=' means that two values differ")
+    if before == ",":
+        yield _replace_by(";", index - 1, _TOKENS[","])
+    if before == "then" and last == "{" and "if" in member:
+        advice = "the steps follow without 'then': if x > 0 { ... }"
+        yield Correction(index - 1, 1, (), "{", advice)
+    if last == "do" and _next_tokens(tokens, index)[:1] == ["{"]:
+        advice = "the steps follow without 'do': while x > 0 { ... }"
+        yield Correction(index, 1, (), "{", advice)
+    if last in _DIRECTIONS and "".join(_next_tokens(tokens, index)[:1]).isidentifier():
+        advice = f"write the direction before the kind: {last} {before} ..."
+        yield Correction(index - 1, 2, (last, before), last, advice)
+    if last == "then" and member[0].isidentifier():
+        advice = f"write 'first' before the source: first {member[0]} then ..."
+        yield Correction(start, 0, ("first",), "first", advice)
+    if last.isidentifier() and not _ORDER_HEADS.isdisjoint(member[:-1]):
+        advice = f"write 'then' before the target: then {last}"
+        yield Correction(index, 0, ("then",), "then", advice)
+
+
+def _replace_by(word: str, index: int, advice: str) -> Correction:
+    return Correction(index, 1, (word,), word, advice)
+
+
+def _read_body_head(tokens: Tokens, start: int) -> list[str]:
+    """Return the tokens of the member whose body has a member at ``start``."""
+    depth = 0
+    for position in range(start - 1, max(-1, start - _MAX_HEAD), -1):
+        depth += (tokens[position] == "}") - (tokens[position] == "{")
+        if depth < 0:
+            return _member_before(tokens, position)
+    return []

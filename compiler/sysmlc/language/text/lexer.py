@@ -30,6 +30,7 @@ MAX_INTEGER_DIGITS = 1_000
 """Digits of the longest natural number that is read exactly."""
 _PROBE_LENGTH = 64
 """A file in UTF-16 has a zero among so many first characters."""
+_TYPOGRAPHIC = frozenset("\u201c\u201d\u201e\u2018\u2019\u201a\u00ab\u00bb")
 _CONTROL_CHARACTER = re.compile(r"[\x00-\x08\x0e-\x1f\x7f]")
 _CONTROL_SHARE = 0.05
 """A file is binary if more than this share of its first characters are control characters."""
@@ -44,8 +45,9 @@ class LexicalFault(Struct, frozen=True):
     """A part of a text that is not a token.
 
     ``what`` is the kind of fault: ``comment``, ``quote`` or ``string`` for an unterminated comment,
-    quoted name or string, ``character`` for a character that no token contains, ``number`` for a
-    number that is too large, ``encoding`` for a text that is not UTF-8.
+    quoted name or string, ``character`` for a character that no token contains, ``negation`` for
+    `!`, ``typography`` for a typographic quotation mark, ``number`` for a number that is too large,
+    ``encoding`` for a text that is not UTF-8.
     """
 
     what: str
@@ -94,6 +96,27 @@ class Tokens(Struct, frozen=True, eq=False):
         self.types.insert(index, kind)
         self.starts.insert(index, place)
         self.ends.insert(index, place)
+
+    def replace(self, index: int, length: int, words: Mapping[str, int]) -> None:
+        """Replace tokens by at most as many keywords or symbols, given with their types.
+
+        A keyword in place of no token at all is inserted as an empty token.
+        """
+        if not length:
+            for kind in words.values():
+                self.insert(index, kind)
+            return
+        surplus = slice(index + len(words), index + length)
+        for position, (word, kind) in enumerate(words.items(), index):
+            self.types[position] = kind
+            self.corrections[self.starts[position]] = word
+        del self.types[surplus], self.starts[surplus], self.ends[surplus]
+
+    def forget_from(self, start: int) -> None:
+        """Forget what builders found from a character on: the text from there is parsed again."""
+        self.ref_usages[:] = [node for node in self.ref_usages if node.start < start]
+        self.restricted_nodes[:] = [node for node in self.restricted_nodes if node.start < start]
+        self.build_faults[:] = [fault for fault in self.build_faults if fault.start < start]
 
     def truncate(self, index: int, end: int) -> None:
         """Let the text end before token ``index``."""
@@ -179,9 +202,15 @@ def _skip_invalid(tokens: Tokens, types: TokenTypes, start: int) -> int:
         tokens.starts.append(start)
         tokens.ends.append(end)
         return end
+    # A pair of quotation marks is one fault, and so are all of a text from a word processor.
+    if char in _TYPOGRAPHIC:
+        if all(fault.what != "typography" for fault in tokens.faults):
+            tokens.faults.append(LexicalFault("typography", start, char))
+        return start + 1
     # Each character is reported once: a text in another script would give an error per letter.
     if all(char != fault.text for fault in tokens.faults):
-        tokens.faults.append(LexicalFault("character", start, char))
+        what = "negation" if char == "!" else "character"
+        tokens.faults.append(LexicalFault(what, start, char))
     return start + 1
 
 

@@ -14,6 +14,8 @@ from sysmlc.language.text.table_generator import ACCEPT
 
 _MAX_RECOVERIES = 500
 """Recoveries after which the rest of a text is given up."""
+_MAX_CORRECTED = 100
+"""Tokens of a member before the error, up to which a slip is searched for."""
 _PREFIX_WITH_BODY = "abstract"
 """A prefix that a body may follow, inserted before a body whose head was not understood."""
 
@@ -47,9 +49,10 @@ class Recovery:
         # An error at the very next token follows from the mend, not from the text.
         is_quiet = index <= self._last_error + 1
         self._last_error = index
-        next_index = self._correct_keyword(stack, index, is_quiet)
-        if next_index >= 0:
-            return next_index
+        for correct in (self._correct_keyword, self._correct_member):
+            next_index = correct(stack, index, is_quiet)
+            if next_index >= 0:
+                return next_index
         for mend in _MENDS:
             next_index = mend(self, states, index, is_quiet)
             if next_index >= 0:
@@ -82,6 +85,27 @@ class Recovery:
                 self._errors.report_misspelt_keyword(word_index, keyword)
                 tokens.types[word_index] = self._words[keyword]
                 tokens.corrections[tokens.starts[word_index]] = keyword
+                del stack[3 * body + 3 :]
+                return start
+        return -1
+
+    def _correct_member(self, stack: Stack, index: int, is_quiet: bool) -> int:
+        """Replace a token of the member that only fails later, as in ``part a :: A;``."""
+        tokens = self._tokens
+        start = self._find_member_start(index)
+        if is_quiet or index - start > _MAX_CORRECTED:
+            return -1
+        body = self._find_body(stack[2::3])
+        states = stack[2 : 3 * body + 3 : 3]
+        for correction in hints.list_corrections(tokens, start, index):
+            words = {word: self._words[word] for word in correction.words if word in self._words}
+            before = tokens.types[start : correction.position]
+            end = correction.position + correction.length
+            after = tokens.types[end : max(index, end) + 1]
+            if self._accepts_all(states, (*before, *words.values(), *after)):
+                self._errors.report_correction(correction)
+                tokens.forget_from(tokens.starts[start])
+                tokens.replace(correction.position, correction.length, words)
                 del stack[3 * body + 3 :]
                 return start
         return -1
@@ -122,22 +146,59 @@ class Recovery:
         return -1
 
     def _insert_semicolon(self, states: list[int], index: int, is_quiet: bool) -> int:
-        semicolon = self._words[";"]
-        if not self._may_begin_member(index):
-            return -1
-        if not self._accepts_all(states, (semicolon, self._tokens.types[index])):
+        semicolon, types = self._words[";"], self._tokens.types
+        count = self._count_beginning(index)
+        if not count or not self._accepts_all(states, (semicolon, *types[index : index + count])):
             return -1
         return self._insert(semicolon, "';'", index, is_quiet)
 
-    def _may_begin_member(self, index: int) -> bool:
-        """Whether the token is a keyword or `}`, begins a line, or ends the text."""
+    def _count_beginning(self, index: int) -> int:
+        """Return how many tokens from ``index`` on must fit after an inserted `;`.
+
+        The result is 0 if no member begins at the token or ends before it.
+        """
         tokens = self._tokens
         if index == 0 or tokens[index] in ("}", ""):
-            return index > 0
-        if tokens[index] in self._words and tokens[index].isalpha():
-            return True
-        gap = tokens.text[tokens.ends[index - 1] : tokens.starts[index]]
+            return int(index > 0)
+        if self._begins_line(index):
+            return 1
+        # In the same line the keyword may as well be a superfluous word: `= 3 default;`.
+        return 2 if tokens[index] in self._words and tokens[index].isalpha() else 0
+
+    def _begins_line(self, index: int) -> bool:
+        gap = self._tokens.text[self._tokens.ends[index - 1] : self._tokens.starts[index]]
         return "\n" in gap or "\r" in gap
+
+    def _insert_opening_brace(self, states: list[int], index: int, is_quiet: bool) -> int:
+        """Insert `{` before members that are indented, if the text has a `}` too many for it."""
+        if index == 0 or not self._begins_line(index) or not self._has_extra_brace():
+            return -1
+        start = self._find_member_start(index - 1)
+        if self._find_column(index) <= self._find_column(start):
+            return -1
+        brace = self._words["{"]
+        if not self._accepts_all(states, (brace, self._tokens.types[index])):
+            return -1
+        return self._insert(brace, "'{'", index, is_quiet)
+
+    def _find_column(self, index: int) -> int:
+        start = self._tokens.starts[index]
+        return start - max(self._tokens.text.rfind(end, 0, start) for end in "\n\r")
+
+    def _has_extra_brace(self) -> bool:
+        types = self._tokens.types
+        return types.count(self._words["}"]) > types.count(self._words["{"])
+
+    def _drop_extra_brace(self, states: list[int], index: int, is_quiet: bool) -> int:
+        """Drop a `}` within a declaration, as in ``part x : };``, if no `{` belongs to it."""
+        tokens = self._tokens
+        is_within = tokens[index] == "}" and tokens.types[index + 1] == self._words[";"]
+        if not is_within or not self._has_extra_brace():
+            return -1
+        if not is_quiet:
+            self._errors.report_unexpected(index, self._find_expected(states))
+        tokens.replace(index, 1, {})
+        return index
 
     def _insert_closing_bracket(self, states: list[int], index: int, is_quiet: bool) -> int:
         # Only closing brackets are inserted: an opening one could stand anywhere before.
@@ -161,12 +222,13 @@ class Recovery:
             self._errors.report_stray(index)
         return index + 1
 
-    def _close_body(self, states: list[int], index: int, _is_quiet: bool) -> int:
+    def _close_body(self, states: list[int], index: int, is_quiet: bool) -> int:
         """Insert `}` where the text ends within a body."""
         brace = self._words["}"]
         if self._tokens[index] or not self._accepts(states, brace):
             return -1
-        self._errors.report_unclosed()
+        if not is_quiet:
+            self._errors.report_unclosed()
         self._tokens.insert(index, brace)
         return index
 
@@ -179,11 +241,15 @@ class Recovery:
         for stop, symbol in self._find_stops(index):
             required = ";" if symbol in ("}", "") else symbol
             top = self._find_accepting(stack, body, self._words[required])
+            # A word of another language, as in 'block A;', declares nothing.
+            if index > 0 and self._find_member_start(index) == index - 1:
+                top = -1
             del stack[3 * max(top, body) + 3 :]
             self._last_error = stop
             if top >= 0:
                 if required != symbol:
                     tokens.insert(stop, self._words[required])
+                    self._last_error = stop + 1
                 return stop
             # The head of the member is lost, but its members are still worth reading.
             if symbol == "{":
@@ -201,11 +267,29 @@ class Recovery:
         return -1
 
     def _find_stops(self, index: int) -> Iterator[tuple[int, str]]:
-        """Yield `;`, braces and the end of the text: where a member or its head may end."""
+        """Yield `;`, braces and the end of the text: where a member or its head may end.
+
+        A `;` in parentheses ends nothing, as in the loops of other languages.
+        """
+        closing = -1
         for position in range(index, len(self._tokens.types)):
             text = self._tokens[position]
-            if text in ("{", "}", ";") or not text:
+            if text == "(" and position > closing:
+                closing = self._find_closing(position)
+            if text in ("{", "}") or not text or (text == ";" and position > closing):
                 yield position, text
+
+    def _find_closing(self, index: int) -> int:
+        """Return the `)` of the `(` at ``index``, or ``index`` if a brace or nothing follows."""
+        depth = 0
+        for position in range(index, len(self._tokens.types)):
+            text = self._tokens[position]
+            if text in ("{", "}"):
+                break
+            depth += (text == "(") - (text == ")")
+            if not depth:
+                return position
+        return index
 
     # -- simulation of the parser ----------------------------------------------------------------
 
@@ -246,6 +330,8 @@ class Recovery:
 _MENDS = (
     Recovery._drop_comment,
     Recovery._substitute,
+    Recovery._drop_extra_brace,
+    Recovery._insert_opening_brace,
     Recovery._insert_semicolon,
     Recovery._insert_closing_bracket,
     Recovery._skip_stray,
