@@ -170,3 +170,12 @@ def test_a_reduced_contract_has_its_bits_after_its_own_variables_and_guarantees(
         (Class.SAFETY, "model::Req1"),
     ]
     assert reduce_contract(reduced.contract).contract == reduced.contract
+
+
+def test_an_assumption_is_about_the_inputs_that_the_environment_chooses():
+    """Games evaluate a condition on the present inputs a step late."""
+    variables = tuple(Variable(name, Owner.ENVIRONMENT, BooleanDomain()) for name in "ab")
+    late = Conjunct(parse("G (a -> X (!b & X !b))"), Class.OTHER, "")
+    reduced = reduce_contract(Contract("C", "", variables, (late,), ())).contract
+    assumptions = [(item.class_, print_formula(item.formula)) for item in reduced.assumptions]
+    assert assumptions == [(Class.SAFETY, "a -> !b'"), (Class.SAFETY, "was_1 -> !b'")]

@@ -9,7 +9,11 @@ from sysmlc.logic.formats.draft import SIDES
 from sysmlc.logic.formats.lowering import TooManyValuesError
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var, has_primes, variables
 from sysmlc.logic.printing import print_formula, print_literal
-from sysmlc.logic.reduction.contract_reduction import is_gr1, reduce_contract
+from sysmlc.logic.reduction.contract_reduction import (
+    is_gr1,
+    reduce_contract,
+    state_assumptions_of_inputs,
+)
 from sysmlc.logic.syntax import ARITHMETIC, COMPARISONS
 
 _PREFIX = (Op.NOT, Op.NEXT, Op.ALWAYS, Op.EVENTUALLY)
@@ -157,6 +161,8 @@ def reduce_to_gr1(
 ) -> Contract:
     """Return the contract in GR(1), with history bits where a conjunct needs them.
 
+    Assumptions are written so that a solver evaluates them when the environment chooses inputs.
+
     With ``allow_primed_liveness``, goals of the format may have primes. With ``separate_init``, the
     initial conditions of each side may only have its own variables. Raises NotExpressibleError for
     the first conjunct that the format cannot express.
@@ -168,6 +174,7 @@ def reduce_to_gr1(
 
     conjuncts = (*contract.assumptions, *contract.guarantees)
     game = contract if all(map(is_expressible, conjuncts)) else reduce_contract(contract).contract
+    game = state_assumptions_of_inputs(game)
     for conjunct in (*game.assumptions, *game.guarantees):
         if not is_expressible(conjunct):
             reason = "no reduction to GR(1) is known for it"

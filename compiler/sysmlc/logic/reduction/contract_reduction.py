@@ -8,7 +8,7 @@ from msgspec.structs import replace
 from sysmlc.logic import formula as f
 from sysmlc.logic.classification import classify
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner, drop_trivial
-from sysmlc.logic.formula import Apply, Formula, Var, has_past, has_primes, variable_names
+from sysmlc.logic.formula import Apply, Formula, Op, Var, has_past, has_primes, variable_names
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.formula_reduction import (
     FormulaReduction,
@@ -37,10 +37,12 @@ def reduce_contract(contract: Contract) -> ReducedContract:
     assumptions = tuple(_reduce_conjuncts(contract.assumptions, history, irreducible))
     guarantees = tuple(_reduce_conjuncts(contract.guarantees, history, irreducible))
     extended = _extend(contract, assumptions, guarantees, history)
-    return ReducedContract(_state_assumptions_of_inputs(extended), tuple(irreducible))
+    if list_history_bits(extended):
+        extended = state_assumptions_of_inputs(extended)
+    return ReducedContract(extended, tuple(irreducible))
 
 
-def _state_assumptions_of_inputs(contract: Contract) -> Contract:
+def state_assumptions_of_inputs(contract: Contract) -> Contract:
     """Return the contract in which no safety assumption is about the next value of a history bit.
 
     The rule of the bit replaces it. An assumption about inputs and history bits of one step is
@@ -49,24 +51,44 @@ def _state_assumptions_of_inputs(contract: Contract) -> Contract:
     late, when the system has already had to answer.
     """
     bits = {bit.name: bit for bit in list_history_bits(contract)}
-    if not bits:
-        return contract
+    starts = {name: f.const(bit.start) for name, bit in bits.items()}
     decided = {item.name for item in contract.variables if item.owner is Owner.ENVIRONMENT}
     decided |= bits.keys()
     assumptions: list[Conjunct] = []
     for conjunct in contract.assumptions:
-        names = variable_names(conjunct.formula)
-        if names.isdisjoint(bits) or conjunct.class_ not in (Class.INIT, Class.SAFETY):
+        if conjunct.class_ is Class.INIT:
+            first = substitute(conjunct.formula, starts)
+            assumptions.append(replace(conjunct, formula=first))
+        elif conjunct.class_ is Class.SAFETY:
+            for part in _split_step(conjunct.formula):
+                step = part
+                if not has_primes(part) and variable_names(part) <= decided:
+                    first = substitute(part, starts)
+                    assumptions.append(replace(conjunct, formula=first, class_=Class.INIT))
+                    step = f.prime(part)
+                assumptions.append(replace(conjunct, formula=_replace_next_bits(step, bits)))
+        else:
             assumptions.append(conjunct)
-            continue
-        is_of_one_step = not has_primes(conjunct.formula) and names <= decided
-        if conjunct.class_ is Class.INIT or is_of_one_step:
-            first = substitute(conjunct.formula, {name: f.const(bits[name].start) for name in bits})
-            assumptions.append(replace(conjunct, formula=first, class_=Class.INIT))
-        if conjunct.class_ is Class.SAFETY:
-            step = f.prime(conjunct.formula) if is_of_one_step else conjunct.formula
-            assumptions.append(replace(conjunct, formula=_replace_next_bits(step, bits)))
     return replace(contract, assumptions=drop_trivial(assumptions))
+
+
+def _split_step(formula: Formula) -> Iterator[Formula]:
+    """Yield the conjuncts of a condition on one step or two."""
+    match formula:
+        case Apply(Op.AND, args):
+            for arg in args:
+                yield from _split_step(arg)
+        case Apply(Op.NOT, (Apply(Op.OR, args),)):
+            for arg in args:
+                yield from _split_step(f.negate(arg))
+        case Apply(Op.NOT, (Apply(Op.IMPLIES, (left, right)),)):
+            yield from _split_step(left)
+            yield from _split_step(f.negate(right))
+        case Apply(Op.IMPLIES, (left, right)):
+            for part in _split_step(right):
+                yield f.implies(left, part)
+        case _:
+            yield formula
 
 
 def _replace_next_bits(formula: Formula, bits: Mapping[str, HistoryBit]) -> Formula:
