@@ -212,3 +212,74 @@ def test_a_guard_and_an_effect_of_sysml_v1_have_their_notation_in_v2(tmp_path):
     ):
         findings = list_findings(MODEL.format(member=states % clause), tmp_path)
         assert [advice in help for _, help in findings] == [True]
+
+
+# -- names of other languages ---------------------------------------------------------------------
+
+IMPORTS = "private import ScalarValues::*; private import SI::*;"
+TYPES = {
+    "Int": "ScalarValues::Integer",
+    "integer": "ScalarValues::Integer",
+    "DINT": "ScalarValues::Integer",
+    "uint": "ScalarValues::Natural",
+    "bool": "ScalarValues::Boolean",
+    "string": "ScalarValues::String",
+    "float": "ScalarValues::Real",
+    "double": "ScalarValues::Real",
+    "duration": "ISQ::DurationValue",
+}
+UNITS = {
+    "degC": "SI::'°C'",
+    "ms": "SysMLC::Units::ms",
+    "SI::ms": "SysMLC::Units::ms",
+    "sec": "SI::s",
+    "us": "SysMLC::Units::'µs'",
+    "Nm": "SI::'N⋅m'",
+    "m3": "SI::'m³'",
+    "bar": "SysMLC::Units::bar",
+    "kWh": "SysMLC::Units::kWh",
+}
+
+
+@pytest.mark.parametrize("name", TYPES)
+def test_a_type_of_another_language_has_the_name_of_the_library_as_advice(name, tmp_path):
+    text = "package P {{ attribute a : {}; }}"
+    assert list_findings(text.format(name), tmp_path) == [
+        (f"1:27 unknown name '{name}'", f"did you mean '{TYPES[name]}'?")
+    ]
+    assert list_findings(text.format(TYPES[name]), tmp_path) == []
+
+
+@pytest.mark.parametrize("name", UNITS)
+def test_another_spelling_of_a_unit_has_the_name_of_the_library_as_advice(name, tmp_path):
+    text = "package P {{ attribute a = 20 [{}]; }}"
+    ((message, advice),) = list_findings(text.format(name), tmp_path)
+    assert message == f"1:31 unknown name '{name}'"
+    assert UNITS[name] in advice
+    assert list_findings(text.format(UNITS[name]), tmp_path) == []
+
+
+def test_the_advice_has_the_short_name_if_the_library_is_imported(tmp_path):
+    text = f"package P {{ {IMPORTS} attribute a : Int; attribute b = 20 [degC]; }}"
+    advice = [advice for _, advice in list_findings(text, tmp_path)]
+    assert advice == ["did you mean 'Integer'?", "did you mean '°C'?"]
+
+
+def test_the_percent_sign_is_no_unit(tmp_path):
+    ((_, advice),) = list_findings("package P { attribute a = 20 [%]; }", tmp_path)
+    assert advice == "a ratio is a number: 0.2 for 20 %"
+
+
+def test_a_usage_in_place_of_a_type_gets_its_two_remedies(tmp_path):
+    ((message, advice),) = list_findings("package P { part a; part b : a; }", tmp_path)
+    assert message.endswith("but 'a' is a part")
+    assert advice == (
+        "write 'part def a' to declare a type, or ':> a' for a usage that is one of these"
+    )
+
+
+def test_a_dot_behind_a_package_is_two_colons(tmp_path):
+    text = "package P { package Q { part def A; } part b : P.Q.A; }"
+    assert [advice for _, advice in list_findings(text, tmp_path)] == [
+        "names of packages are joined by '::': P::Q::A"
+    ]

@@ -295,13 +295,21 @@ def check_types(model: Model, document: Document, node: Node, sink: Sink) -> Non
     usage = f"{describe_kind(node).partition(' ')[2]} '{name}'" if name else describe_kind(node)
     for type_ in types:
         if type_.kind not in requirement.kinds:
+            found = describe_kind(type_)
+            keyword, type_name = found.partition(" ")[2], model.name(type_)
+            is_usage = type_.kind.endswith("Usage")
+            advice = (
+                f"write '{keyword} def {type_name}' to declare a type, or ':> {type_name}' for a "
+                "usage that is one of these"
+            )
             sink.report(
                 TYPED_BY,
                 place,
+                help=advice if is_usage else "",
                 usage=usage,
                 wanted=requirement.words,
-                type=model.name(type_),
-                found=describe_kind(type_),
+                type=type_name,
+                found=found,
             )
             return
     if requirement.single and len(types) > 1:

@@ -6,6 +6,7 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.language.metaclasses import describe_kind, kinds_of
 from sysmlc.language.names import contexts
 from sysmlc.language.names.expression_results import find_result
+from sysmlc.language.names.foreign_names import find_type, find_unit_name
 from sysmlc.language.names.generals import GENERALIZATION_KINDS
 from sysmlc.language.names.lookup import Lookup
 from sysmlc.language.names.model import Model
@@ -51,6 +52,7 @@ _UNITS_OF_LIBRARY = ("SI",)
 _CLASSIFIERS = kinds_of("Classifier")
 _FEATURES = kinds_of("Feature")
 _OPERATORS = frozenset({"OperatorExpression"})
+_PACKAGES = kinds_of("Package")
 _MEMBERSHIP_IMPORTS = kinds_of("MembershipImport")
 
 
@@ -68,9 +70,10 @@ def _make_advice(
     obstacle = _explain_obstacle(lookup, relation, names, context, container, searches_imports)
     if obstacle:
         return obstacle
-    package = _find_unimported_package(model, use, names, context) if container is None else None
-    if package is not None:
-        return _advise_import(names[0], package, lookup, context)
+    if container is None:
+        package = _find_unimported_package(model, use, names, context)
+        if package is not None:
+            return _advise_import(names[0], package, lookup, context)
     unknown, container = _find_unknown_part(lookup, names, context, container)
     if relation.kind in _IMPORT_RELATIONS and container is None:
         scope_names = {scope.name for scope in contexts.list_scopes(context)}
@@ -81,9 +84,10 @@ def _make_advice(
     )
     if container is None and unknown != names[-1]:
         known_names += model.packages()
-    similar = find_similar(unknown, known_names)
+    similar = _name_in_library(model, use, names, context) or find_similar(unknown, known_names)
     if similar:
-        return f"did you mean '{similar}'?"
+        quoted = similar if "'" in similar else f"'{similar}'"
+        return f"did you mean {quoted}?"
     if container is not None and container.name:
         return _advise_declaration(model, container, known_names)
     return _NOT_INHERITED if context.inherited else _UNKNOWN
@@ -102,6 +106,10 @@ def _explain_obstacle(
     if of_other_kind is not None and relation.kind in _EXPECTED_WORDS:
         kind, expected = describe_kind(of_other_kind), _EXPECTED_WORDS[relation.kind]
         advice = f"'{names[-1]}' is {kind}, {expected} is needed here"
+        chain = relation.reference.chain
+        if len(chain) > 1 and of_other_kind.kind in _PACKAGES:
+            joined = "::".join(name for link in chain for name in link)
+            return f"names of packages are joined by '::': {joined}"
         keyword, definition, _ = kind.partition(" ")[2].partition(" definition")
         # 'satisfy R' refers to a usage; 'satisfy requirement : R' declares one.
         declares = definition and relation.kind == "ReferenceSubsetting"
@@ -188,6 +196,27 @@ def _find_unimported_package(
     if relation.kind == "Membership" and _is_unit(node):
         return _find_library_package(model, names[0], _UNITS_OF_LIBRARY, None)
     return None
+
+
+def _name_in_library(
+    model: Model,
+    use: tuple[Node, Relation],
+    names: tuple[str, ...],
+    context: contexts.LookupContext,
+) -> str:
+    """Return what the libraries call a type or unit with the name of another language, or nothing.
+
+    The name is qualified unless it is visible where it is used.
+    """
+    node, relation = use
+    name = ""
+    if relation.kind == "FeatureTyping" and names[:-1] in ((), ("ScalarValues",)):
+        name = find_type(names[-1])
+    elif relation.kind == "Membership" and names[:-1] in ((), ("SI",)) and _is_unit(node):
+        name = find_unit_name(model, names[-1])
+    own_name = name.rpartition("::")[2]
+    is_visible = name and model.lookup.search(context, (own_name.strip("'"),), None) is not None
+    return own_name if is_visible else name
 
 
 def _is_unit(node: Node) -> bool:
