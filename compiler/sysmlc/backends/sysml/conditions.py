@@ -46,9 +46,17 @@ def format_condition(writer: Writer, scope: Member | None, element: Element, tex
     if _NUMBER.fullmatch(text.strip()):
         return declare_condition(writer, scope, element, text)
     feature = look_up(writer.plan, scope, text.strip())
-    if feature is not None and feature.shape.keyword in ("item", "part"):
+    if feature is not None and (
+        feature.shape.keyword in ("item", "part") or _is_guard(writer, feature)
+    ):
         return declare_condition(writer, scope, element, text)
     return _format(writer, scope, element, text, "ScalarValues::Boolean")
+
+
+def _is_guard(writer: Writer, member: Member) -> bool:
+    """Whether the member is a constraint that is only written as the guard of a transition."""
+    element = member.element
+    return element is not None and bool(writer.graph.sources(element, Edge.GUARD))
 
 
 def _format_duration(writer: Writer, scope: Member | None, element: Element, text: str) -> str:
