@@ -1,8 +1,12 @@
 """Names in the formulas of requirements: paths of parts, and advice for unknown names."""
 
 import json
+import re
+from pathlib import Path
 
 import pytest
+
+PAGE = Path(__file__).parents[2] / "docs" / "contracts.md"
 
 LINE = """package Line {{
   private import ScalarValues::*;
@@ -41,7 +45,8 @@ LINE = """package Line {{
         ("G event!=Goo", "'Goo' is neither a variable nor a literal; did you mean 'Go'?"),
         (
             "G !r.holdin",
-            "'r.holdin' denotes no feature, state or event of 'Robot'; did you mean 'holding'?",
+            "'r.holdin' denotes no feature, value, state or event of 'Robot'; "
+            "did you mean 'holding'?",
         ),
         ("G (Busy -> F holding)", "'Busy' is not Boolean; did you mean 'state=Busy'?"),
     ],
@@ -89,3 +94,69 @@ def test_an_action_of_several_states_is_named_with_one_of_them(workspace, all_pa
     workspace.write("model.sysml", text.replace("running(wait)", "running(S0.wait)"))
     result = workspace.sysmlc("contracts", "check", "model.sysml")
     assert [result.exit_code, result.stderr.count("SM522")] == [0, 0]
+
+
+OVEN = PAGE.read_text(encoding="utf-8").partition("<!-- names in formulas -->\n```sysml\n")[2]
+OVEN = OVEN.partition("```")[0]
+
+
+def test_the_documented_names_of_regions_and_nested_actions_hold(workspace, all_passes):
+    workspace.write("oven.sysml", OVEN)
+    result = workspace.sysmlc("contracts", "check", "oven.sysml", "--format", "json")
+    entries = json.loads(result.stdout)["requirements"]
+    assert [entry["verdict"] for entry in entries] == ["holds"] * 5
+
+
+@pytest.mark.parametrize(
+    ("formula", "reason"),
+    [
+        ("G Run.Heater.Hot", "did you mean 'Heater.state=Hot'? (column 3)"),
+        ("G !running(grip)", "write job.left.grip or job.right.grip (column 4)"),
+        ("G Heater.state", "'Heater.state' is not Boolean; compare it: 'Heater.state=Hot'"),
+        ("G mode = Mode::fats", "did you mean 'Mode::fast'? (column 10)"),
+        ("G mode = Oven.fast", "did you mean 'mode=fast'? (column 10)"),
+    ],
+)
+def test_a_name_is_answered_with_the_nearest_one(workspace, all_passes, formula, reason):
+    workspace.write("oven.sysml", re.sub("/\\* always .* \\*/", f"/* {formula} */", OVEN))
+    assert reason in workspace.sysmlc("contracts", "check", "oven.sysml").stderr
+
+
+@pytest.mark.parametrize("path", ["Run.Heater", "Machine.Run.Heater", "Heater", "o.Heater"])
+def test_a_region_of_a_parallel_substate_has_the_path_of_its_states(workspace, all_passes, path):
+    machine = "exhibit state Machine { entry; then Run; state Run parallel {"
+    text = OVEN.replace("exhibit state Run parallel {", machine)
+    text = text.replace("        perform action job", "        } perform action job", 1)
+    text = text.replace("        }\n        } perform", "        }}\n        perform")
+    text = text.replace("subject oven", "subject o").replace("Run.Heater.state", f"{path}.state")
+    workspace.write("oven.sysml", text)
+    result = workspace.sysmlc("contracts", "check", "oven.sysml", "--format", "json")
+    entries = json.loads(result.stdout)["requirements"]
+    assert [entry["verdict"] for entry in entries] == ["holds"] * 5
+
+
+def test_equal_actions_in_places_without_names_are_to_be_renamed(workspace, all_passes):
+    actions = "first start; then action { action grip; } then action { action grip; } then done;"
+    workspace.write(
+        "p.sysml",
+        f"""package P {{ part def M {{ perform action job {{ {actions} }} }}
+        requirement R {{ subject m : M;
+            require constraint {{ language "ltl" /* G !running(grip) */ }} }} }}""",
+    )
+    result = workspace.sysmlc("contracts", "check", "p.sysml")
+    assert "in several places: give these actions different names (column 4)" in result.stderr
+
+
+def test_a_text_of_another_language_is_answered_with_the_language_that_reads_it(
+    workspace, all_passes
+):
+    text = OVEN.replace("Globally, it is always the case that not (mode = Mode::fast) holds.", "{}")
+    for sentence, language in (
+        ("mode = Mode::fast never holds", "pattern"),
+        ("Oven shall satisfy mode = Mode::slow", "FRET"),
+        ("G F mode = Mode::slow", "LTL"),
+    ):
+        workspace.write("oven.sysml", text.replace("{}", sentence))
+        result = workspace.sysmlc("contracts", "check", "oven.sysml")
+        advice = f"it is written in english; write the language '{language}' to have it read"
+        assert advice in result.stdout

@@ -93,7 +93,7 @@ def test_the_parser_agrees_with_the_grammar(words):
     [
         ("p &", (1, 4), "the end is not expected here"),
         ("p ->\n  (q &\n   nn=1)", (3, 4), "'nn' is neither a variable nor a literal"),
-        ("p & n", (1, 5), "'n' is not Boolean"),
+        ("p & n", (1, 5), "'n' is not Boolean; compare it: 'n=9'"),
         ("p & (q | r", (1, 11), "')' is expected, not the end"),
         ("n=p", (1, 2), "'n' and 'p' cannot be compared"),
         ("p q", (1, 3), "'q' is not expected here"),

@@ -352,12 +352,12 @@ def test_sentences_in_other_words(sentence, formula):
         (
             "the gate shall within 3 weeks satisfy r",
             (1, 25),
-            "'hours' or 'hour' is expected, not 'weeks'",
+            "a unit of time such as 'ticks', 'ms', 'seconds' or 'minutes' is expected, not 'weeks'",
         ),
         (
             "the gate shall for 65 ticks satisfy r",
             (1, 20),
-            "a number of steps from 0 to 64 is expected",
+            "a duration has at most 64 steps of 1 s, not 65",
         ),
         (
             "the gate shall within 1500 milliseconds satisfy r",

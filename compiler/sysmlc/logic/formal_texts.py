@@ -12,16 +12,18 @@ from msgspec.structs import replace
 
 from sysmlc.logic import formula as f
 from sysmlc.logic import property_patterns as patterns
+from sysmlc.logic.advice import suggest_form
 from sysmlc.logic.contract import Domain
 from sysmlc.logic.formula import PAST, Formula, Op, has_future, has_primes
 from sysmlc.logic.infix import FormulaReader, Term
 from sysmlc.logic.property_patterns import Scope
 from sysmlc.logic.sentences import SENTENCE_SYNTAX, WordReader, read_requirement
 from sysmlc.logic.syntax import (
-    NEUTRAL,
+    AUTHOR_SYNTAX,
     PAST_WORDS,
     Cursor,
     FormulaError,
+    Token,
     line_and_column,
     tokenize,
 )
@@ -32,10 +34,16 @@ _SENTENCE = re.compile(
     re.IGNORECASE | re.DOTALL,
 )
 """The start of a sentence that no informal text contains: tools label any prose as English."""
+_ENDING = re.compile(
+    r"\bholds\s+(at\s+most\s+(once|twice|\d+\s+times)|again\s+and\s+again"
+    r"|within\s+\d+\s*\w+)\s*\.?\s*\Z",
+    re.IGNORECASE,
+)
+"""The end of such a sentence."""
 _REQUIREMENT = re.compile(
     r"\bshall(?:\s+the\s+\w+)?(?:\s+|\s*,\s*)(always|never|immediately|eventually|finally|until|before"
-    r"|at\s+the\s+(next|last)\s+timepoint|(within|for|after)\s+\d+\s+"
-    r"(tick|step|(micro|milli)?sec(ond)?|minute|hour)s?)\b",
+    r"|at\s+the\s+(next|last)\s+timepoint|(within|for|after)\s+\d+\s*"
+    r"(tick|step|(micro|milli)?sec(ond)?|minute|hour|[mµu]?s|min|hr?)s?)\b",
     re.IGNORECASE,
 )
 """Words that only a structured requirement contains, before the word "satisfy"."""
@@ -45,11 +53,19 @@ _MAX_TIMES = 32
 
 
 def is_formal(language: str, text: str) -> bool:
-    """Whether a text in a language is meant as a formula or as a sentence of a pattern."""
+    """Whether a text in a language is meant as a formula or as a sentence of a pattern.
+
+    Unmistakable sentences count under any name of a language, since tools offer few of them.
+    """
     name = language.lower()
     if any(part in name for part in _LANGUAGES):
         return True
-    return "english" in name and (_SENTENCE.match(text) is not None or _is_requirement(text))
+    return _is_sentence(text) or _is_requirement(text)
+
+
+def _is_sentence(text: str) -> bool:
+    """Whether a text is a sentence of a pattern that no informal text resembles."""
+    return _SENTENCE.match(text) is not None or _ENDING.search(text) is not None
 
 
 def _is_requirement(text: str) -> bool:
@@ -75,10 +91,11 @@ def read_formal(
     if not text.strip():
         raise FormulaError("it is empty", 0)
     name = language.lower()
-    if "fret" in name or ("english" in name and _is_requirement(text)):
+    is_requirement = _is_requirement(text) or ("fret" in name and not _is_sentence(text))
+    if is_requirement and "pattern" not in name:
         return read_requirement(text, variables, components, tick_seconds)
-    if "pattern" in name or "english" in name:
-        return read_sentence(text, variables)
+    if "pattern" in name or _is_sentence(text):
+        return read_sentence(text, variables, tick_seconds)
     return read_temporal_logic(text, variables)
 
 
@@ -86,17 +103,21 @@ def describe_error(error: FormulaError, text: str) -> str:
     """Return the message of an error with its column, and with its line in a longer text."""
     if not text.strip():
         return str(error)
+    advice = "" if "; " in str(error) else suggest_form(text, error.offset)
+    reason = f"{error}; {advice}" if advice else str(error)
     line, column = line_and_column(text, error.offset)
     location = f"line {line}, column {column}" if "\n" in text.strip() else f"column {column}"
-    return f"{error} ({location})"
+    return f"{reason} ({location})"
 
 
 # -- temporal logic ------------------------------------------------------------------------------
 
+_TEMPORAL_WORDS = {"always": Op.ALWAYS, "eventually": Op.EVENTUALLY, "next": Op.NEXT}
+_TEMPORAL_SIGNS = {"□": Op.ALWAYS, "◇": Op.EVENTUALLY, "○": Op.NEXT}
 _TEMPORAL_SYNTAX = replace(
-    NEUTRAL,
-    prefix={**NEUTRAL.prefix, **PAST_WORDS},
-    infix={**NEUTRAL.infix, "S": Op.SINCE},
+    AUTHOR_SYNTAX,
+    prefix={**AUTHOR_SYNTAX.prefix, **PAST_WORDS, **_TEMPORAL_WORDS, **_TEMPORAL_SIGNS},
+    infix={**AUTHOR_SYNTAX.infix, "S": Op.SINCE, "until": Op.UNTIL, "since": Op.SINCE},
 )
 
 
@@ -112,7 +133,21 @@ class _TemporalReader(FormulaReader):
     """Reader that rejects operators of the past whose operands are about the future."""
 
     def _read_prefix(self, op: Op, min_precedence: int) -> Term:
-        return self._check_past(op, super()._read_prefix(op, min_precedence))
+        word, is_bracketed = self.cursor.next, self.cursor.after_next.text in self._syntax.brackets
+        term = self._check_past(op, super()._read_prefix(op, min_precedence))
+        if word.text.lower() in _TEMPORAL_WORDS:
+            self._check_extent(word, is_bracketed)
+        return term
+
+    def _check_extent(self, word: Token, is_bracketed: bool) -> None:
+        """Reject ``always p implies q``, which formulas and English read differently."""
+        follower = self._peek_operator(0)
+        if follower is None or (is_bracketed and follower not in (Op.IMPLIES, Op.IFF)):
+            return
+        sign = self.cursor.next.text
+        reason = f"it is not clear how far '{word.text}' reaches"
+        advice = f"write '{word.text} (P {sign} Q)' or '({word.text} P) {sign} Q'"
+        raise FormulaError(f"{reason}; {advice}", word.offset)
 
     def _read_infix(self, op: Op, left: Term) -> Term:
         return self._check_past(op, super()._read_infix(op, left))
@@ -136,9 +171,9 @@ _ENDINGS: dict[str, Callable[[Scope, Formula], Formula]] = {
 }
 
 
-def read_sentence(text: str, variables: Mapping[str, Domain]) -> Formula:
+def read_sentence(text: str, variables: Mapping[str, Domain], tick_seconds: float = 1.0) -> Formula:
     """Return the formula of a sentence. Raises FormulaError with the offset of the fault."""
-    reader = _PatternReader(Cursor(tokenize(text, SENTENCE_SYNTAX)), variables)
+    reader = _PatternReader(Cursor(tokenize(text, SENTENCE_SYNTAX)), variables, tick_seconds)
     formula = reader.read()
     reader.read_end()
     return formula
@@ -156,6 +191,8 @@ class _PatternReader(WordReader):
         for adverb in ("always", "never", "eventually"):
             if self._accept(adverb):
                 return self._read_after_adverb(scope, adverb)
+        if self._accept("if"):
+            return self._read_implication(scope)
         return self._read_condition_first(scope)
 
     def _read_scope(self) -> Scope:
@@ -164,7 +201,9 @@ class _PatternReader(WordReader):
         elif self._accept("before"):
             scope = Scope("before", end=self._read_condition())
         elif self._accept("between"):
+            self._conditions.is_before_and = True
             start = self._read_condition()
+            self._conditions.is_before_and = False
             self._expect("and")
             scope = Scope("between", start, self._read_condition())
         elif self._accept("after"):
@@ -212,7 +251,7 @@ class _PatternReader(WordReader):
         if self._accept("eventually", "holds") or self._accept("holds", "eventually"):
             return patterns.response(scope, trigger, answer)
         if self._accept("holds", "within"):
-            steps = self._read_count(_MAX_TIMES, "steps", "step")
+            steps = self._read_duration(_MAX_TIMES)
             return patterns.bounded_response(scope, trigger, answer, steps)
         self._accept("holds")
         if self._cursor.is_at_end or self._cursor.is_next("."):

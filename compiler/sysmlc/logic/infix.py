@@ -21,6 +21,7 @@ from sysmlc.logic.syntax import (
     FormulaError,
     Syntax,
     Token,
+    UnknownNameError,
     tokenize,
 )
 from sysmlc.support.interpreter import allow_recursion
@@ -71,12 +72,18 @@ class FormulaReader:
     def require_boolean(self, term: Term) -> Formula:
         """Return the formula of a term that must be Boolean. Raises FormulaError."""
         if term.kind != BOOLEAN:
+            if self.cursor.next.kind in ("name", "number"):
+                self.cursor.fail()  # "state is Idle": the operator is the fault
             reason = f"{self.describe(term)} is not Boolean{self._suggest_comparison(term)}"
             raise FormulaError(reason, term.offset)
         return term.formula
 
     def _suggest_comparison(self, term: Term) -> str:
         """Return the advice to compare a literal that stands where a condition is expected."""
+        if isinstance(term.formula, Var):
+            domain = self.variables.get(term.formula.name)
+            values = () if domain is None else domains.values(domain)
+            return f"; compare it: '{term.formula.name}={values[-1]}'" if values else ""
         if term.kind != WORD or not isinstance(term.formula, Const):
             return ""
         literal = str(term.formula.value)
@@ -118,10 +125,7 @@ class FormulaReader:
 
     def _peek_operator(self, min_precedence: int) -> Op | None:
         """Return the infix operator that comes next, unless its precedence is too low."""
-        token = self.cursor.next
-        if token.kind not in ("sign", "name"):
-            return None
-        op = self._syntax.infix.get(token.text)
+        op = self._syntax.find_infix(self.cursor.next)
         is_strong = op is not None and self._syntax.precedence[op] >= min_precedence
         return op if is_strong else None
 
@@ -192,21 +196,27 @@ class FormulaReader:
 
     def _read_prefix_or_operand(self, min_precedence: int) -> Term:
         token = self.cursor.next
-        op = self._syntax.prefix.get(token.text) if token.kind in ("sign", "name") else None
+        op = self._syntax.find_prefix(token)
         if op is not None and not (token.kind == "name" and self._is_variable(token)):
             return self._read_prefix(op, min_precedence)
         return self.read_operand()
 
     def _is_variable(self, token: Token) -> bool:
-        """Whether a word that is also an operator, such as ``G``, is a variable here.
+        """Whether a word that is also an operator, such as ``G``, is a variable or literal here.
 
-        It is if a variable of this name is declared and no operand follows.
+        It is if a variable or literal of this name is declared and no operand follows.
         """
         follower = self.cursor.after_next
-        is_opening = follower.text in self._syntax.prefix or follower.text in self._syntax.brackets
+        is_prefix = self._syntax.find_prefix(follower) is not None
+        is_opening = is_prefix or follower.text in self._syntax.brackets
         is_operand = follower.kind in ("name", "number", "string") or is_opening
-        is_infix = follower.kind == "name" and follower.text in self._syntax.infix
-        return token.text in self.variables and (not is_operand or is_infix)
+        is_infix = follower.kind == "name" and self._syntax.find_infix(follower) is not None
+        return (not is_operand or is_infix) and self._is_declared(token.text)
+
+    def _is_declared(self, name: str) -> bool:
+        """Whether there is a variable or a literal with this name."""
+        is_literal = any(domains.contains(domain, name) for domain in self.variables.values())
+        return name in self.variables or is_literal
 
     def _read_prefix(self, op: Op, min_precedence: int) -> Term:
         """Read a prefix operator and its operand."""
@@ -227,8 +237,9 @@ class FormulaReader:
             return Term(Const(self.cursor.read_integer()), NUMBER, token.offset)
         if token.kind == "name":
             self.cursor.take()
-            if token.text in self._syntax.booleans:
-                return Term(Const(self._syntax.booleans[token.text]), BOOLEAN, token.offset)
+            boolean = self._syntax.find_boolean(token)
+            if boolean is not None and token.text not in self.variables:
+                return Term(Const(boolean), BOOLEAN, token.offset)
             return self.resolve_name(token)
         return self.cursor.fail()
 
@@ -245,12 +256,10 @@ class FormulaReader:
         """
         if token.text in self.variables:
             return self.build_variable(token, self.cursor.accept("'"))
-        if any(domains.contains(domain, token.text) for domain in self.variables.values()):
+        if self._is_declared(token.text):
             return Term(Const(token.text), WORD, token.offset)
-        reason = f"'{token.text}' is neither a variable nor a literal"
         similar = find_similar(token.text, self._iter_words())
-        advice = f"; did you mean '{similar}'?" if similar else ""
-        raise FormulaError(f"{reason}{advice}", token.offset)
+        raise UnknownNameError(token.text, similar, token.offset)
 
     def _iter_words(self) -> Iterator[str]:
         """Yield the names of variables and the literals of enumerations."""

@@ -5,6 +5,7 @@ present in the neutral form.
 """
 
 from collections.abc import Collection, Mapping
+from fractions import Fraction
 from typing import NoReturn
 
 from msgspec.structs import replace
@@ -12,7 +13,7 @@ from msgspec.structs import replace
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Domain, EnumerationDomain
-from sysmlc.logic.formula import Formula, has_future, has_primes
+from sysmlc.logic.formula import Formula, Op, has_future, has_primes
 from sysmlc.logic.infix import BOOLEAN, FormulaReader, Term
 from sysmlc.logic.structured_sentences import (
     Sentence,
@@ -22,14 +23,19 @@ from sysmlc.logic.structured_sentences import (
     formalize_occurred,
     formalize_persisted,
 )
-from sysmlc.logic.syntax import NEUTRAL, Cursor, FormulaError, Token, tokenize
+from sysmlc.logic.syntax import AUTHOR_SYNTAX, Cursor, FormulaError, Token, tokenize
 from sysmlc.support.suggestions import find_similar
+from sysmlc.support.units import find_unit
 
-SENTENCE_SYNTAX = replace(NEUTRAL, signs=(",", "."))
+SENTENCE_SYNTAX = replace(AUTHOR_SYNTAX, signs=(",", "."))
 
 
+QUALIFIERS = ("when", "if", "upon", "where", "whenever", "unless")
+"""Words in front of the condition of a structured requirement."""
 MAX_STEPS = 64
 """Most steps of a duration; the formula has an X or a Y for each."""
+_MAX_DURATION = 10**9
+_STEP_UNITS = ("tick", "ticks", "step", "steps")
 _PREDICATES = {"persisted": formalize_persisted, "occurred": formalize_occurred}
 _NO_PREDICATES = {
     "persists": "write a timing, 'for 3 ticks', or persisted(3, p) about the past",
@@ -49,6 +55,22 @@ class ConditionReader(FormulaReader):
     """
 
     inside: Formula | None = None
+    is_before_and = False
+    """Whether ``and`` outside of brackets ends the condition, as in ``between P and Q``."""
+
+    def _peek_operator(self, min_precedence: int) -> Op | None:
+        token, follower = self.cursor.next, self.cursor.after_next
+        if token.kind == "name" and follower.text.lower() in QUALIFIERS:
+            return None  # when P and if Q
+        if self.is_before_and and token.text.lower() == "and":
+            return None
+        return super()._peek_operator(min_precedence)
+
+    def _read_brackets(self) -> Term:
+        is_before_and, self.is_before_and = self.is_before_and, False
+        term = super()._read_brackets()
+        self.is_before_and = is_before_and
+        return term
 
     def resolve_name(self, token: Token) -> Term:
         if self.inside is None or not self.cursor.is_next("("):
@@ -70,7 +92,9 @@ class ConditionReader(FormulaReader):
         offset = self.cursor.next.offset
         formula = super().read_formula(min_precedence)
         if has_primes(formula) or has_future(formula):
-            raise FormulaError("a condition of a sentence is about the present", offset)
+            reason = "a condition of a sentence is about the present"
+            advice = "write G, F, X, U and x' with the language 'ltl'"
+            raise FormulaError(f"{reason}; {advice}", offset)
         return formula
 
 
@@ -86,9 +110,12 @@ def read_number(cursor: Cursor, largest: int) -> int:
 class WordReader:
     """Reads words in any letter case, and conditions, from a cursor."""
 
-    def __init__(self, cursor: Cursor, variables: Mapping[str, Domain]) -> None:
+    def __init__(
+        self, cursor: Cursor, variables: Mapping[str, Domain], tick_seconds: float = 1.0
+    ) -> None:
         self._cursor = cursor
         self._variables = variables
+        self._tick_seconds = tick_seconds
         self._conditions = ConditionReader(cursor, SENTENCE_SYNTAX, variables)
 
     def read_end(self) -> None:
@@ -105,6 +132,35 @@ class WordReader:
         number = read_number(self._cursor, largest)
         self._expect_one_of(*units)
         return number
+
+    def _read_duration(self, most_steps: int = MAX_STEPS) -> int:
+        """Read a number and a unit of time; return the number of steps."""
+        start = self._cursor.next.offset
+        number = read_number(self._cursor, _MAX_DURATION)
+        steps = self._count_steps(number, start)
+        if steps > most_steps:
+            reason = f"a duration has at most {most_steps} steps of {self._tick_seconds:g} s"
+            raise FormulaError(f"{reason}, not {steps}; increase tick_seconds", start)
+        return steps
+
+    def _count_steps(self, number: int, start: int) -> int:
+        """Read a unit; return the number of steps in *number* of these units."""
+        token = self._cursor.next
+        if token.text.lower() in _STEP_UNITS:
+            self._cursor.take()
+            return number
+        unit = find_unit(token.text.lower())
+        if unit is None or unit.quantity != "time":
+            self._fail("a unit of time such as 'ticks', 'ms', 'seconds' or 'minutes'")
+        self._cursor.take()
+        steps = number * Fraction(unit.factor) / Fraction(str(self._tick_seconds))
+        if steps.denominator != 1:
+            reason = (
+                f"{number} {token.text} are no whole number of steps of {self._tick_seconds:g} s: "
+                "write ticks, or change tick_seconds"
+            )
+            raise FormulaError(reason, start)
+        return int(steps)
 
     def _expect(self, *words: str) -> None:
         for word in words:
@@ -132,7 +188,6 @@ class WordReader:
 
 # -- structured requirements -----------------------------------------------------------------------
 
-_QUALIFIERS = ("when", "if", "upon", "where", "whenever", "unless")
 _SCOPES = ("in", "during", "while", "before", "after", "only", "except", "not")
 _TIMINGS = {
     "immediately": "immediately",
@@ -147,20 +202,6 @@ _TIMINGS = {
     "finally": "finally",
     "at the last timepoint": "finally",
 }
-_SECONDS = {
-    "tick": 0.0,
-    "step": 0.0,
-    "microsecond": 1e-6,
-    "microsec": 1e-6,
-    "millisecond": 1e-3,
-    "millisec": 1e-3,
-    "second": 1.0,
-    "sec": 1.0,
-    "minute": 60.0,
-    "hour": 3600.0,
-}
-"""Units of durations in seconds; 0 for steps. Each may have a plural s."""
-_MAX_DURATION = 10**9
 _TIMING_WORDS = (*_TIMINGS, "within", "for", "after", "until", "before")
 
 
@@ -176,8 +217,7 @@ def read_requirement(
     *tick_seconds* is the length of a step. Raises FormulaError with the offset of the fault.
     """
     cursor = Cursor(tokenize(text, SENTENCE_SYNTAX))
-    reader = _RequirementReader(cursor, variables)
-    reader.tick_seconds = tick_seconds
+    reader = _RequirementReader(cursor, variables, tick_seconds)
     sentence = reader.read(components)
     reader.read_end()
     return formalize(sentence)
@@ -188,8 +228,6 @@ class _RequirementReader(WordReader):
 
     In sentences with "only", the component may follow "shall".
     """
-
-    tick_seconds = 1.0
 
     def read(self, components: Collection[str]) -> Sentence:
         scope, mode = self._read_scope()
@@ -279,7 +317,7 @@ class _RequirementReader(WordReader):
     def _read_conditions(self) -> tuple[Formula | None, bool]:
         """Return the condition, None without one, and whether it triggers in each step."""
         word = self._cursor.next.text.lower()
-        if word not in _QUALIFIERS:
+        if word not in QUALIFIERS:
             return None, False
         condition = self._read_qualified_condition()
         while True:
@@ -288,7 +326,7 @@ class _RequirementReader(WordReader):
             joins = f.either if self._accept("or") else f.both
             if joins is f.both:
                 self._accept("and")
-            if self._cursor.next.text.lower() not in _QUALIFIERS:
+            if self._cursor.next.text.lower() not in QUALIFIERS:
                 self._cursor.reset(start)
                 break
             self._check_qualifier(word)
@@ -340,7 +378,7 @@ class _RequirementReader(WordReader):
         """Raise an error about *token*, where a scope, a condition or the component is expected."""
         names = " or ".join(f"'{name}'" for name in dict.fromkeys(components))
         expected = f"the component {names}".strip()
-        similar = find_similar(token.text, (*_QUALIFIERS, *_SCOPES, *components))
+        similar = find_similar(token.text, (*QUALIFIERS, *_SCOPES, *components))
         advice = f" (did you mean '{similar}'?)" if similar else ""
         actual = f"'{token.text}'" if token.kind != "end" else "the end"
         reason = f"{expected} is expected before 'shall', not {actual}{advice}"
@@ -368,23 +406,6 @@ class _RequirementReader(WordReader):
         if similar and token.text not in (similar, *self._variables) and not is_value:
             self._fail(f"'{similar}' or a condition")
         return Timing()
-
-    def _read_duration(self) -> int:
-        """Read a number and a unit; return the number of steps."""
-        start = self._cursor.next.offset
-        number = read_number(self._cursor, _MAX_DURATION)
-        unit = self._expect_one_of(*(f"{unit}{end}" for unit in _SECONDS for end in ("s", "")))
-        seconds = _SECONDS[unit.removesuffix("s")]
-        steps = number * seconds / self.tick_seconds if seconds else number
-        if abs(steps - round(steps)) > 1e-9 * steps:
-            reason = (
-                f"{number} {unit} are no whole number of steps of {self.tick_seconds:g} s: write "
-                "ticks, or change tick_seconds"
-            )
-            raise FormulaError(reason, start)
-        if steps > MAX_STEPS:
-            raise FormulaError(f"a number of steps from 0 to {MAX_STEPS} is expected", start)
-        return round(steps)
 
     def _read_response(self) -> Formula:
         """Read a condition, or ``if P then Q``."""

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from typing import NamedTuple, NoReturn
 
 from msgspec import Struct
+from msgspec.structs import replace
 
 from sysmlc.logic.formula import Op
 
@@ -42,6 +43,12 @@ CONNECTIVE_SIGNS = {
     "&": Op.AND,
     "&&": Op.AND,
 }
+CONNECTIVE_WORDS = {"and": Op.AND, "or": Op.OR, "implies": Op.IMPLIES, "iff": Op.IFF}
+CONNECTIVE_SPELLINGS = {"=>": Op.IMPLIES, "<=>": Op.IFF, "→": Op.IMPLIES, "↔": Op.IFF}
+CONNECTIVE_SPELLINGS |= {"∧": Op.AND, "/\\": Op.AND, "∨": Op.OR, "\\/": Op.OR}
+CONNECTIVE_SPELLINGS |= {"≠": Op.NE, "≤": Op.LE, "≥": Op.GE}
+"""Signs for operators that authors take from other languages and from textbooks."""
+NEGATION_SPELLINGS = {"not": Op.NOT, "~": Op.NOT, "¬": Op.NOT}
 COMPARISON_SIGNS = {"=": Op.EQ, "==": Op.EQ, "!=": Op.NE} | {str(op): op for op in ORDERINGS}
 ARITHMETIC_SIGNS = {str(op): op for op in ARITHMETIC}
 BOOLEANS = {"true": True, "false": False, "TRUE": True, "FALSE": False}
@@ -56,6 +63,16 @@ class FormulaError(ValueError):
     def __init__(self, reason: str, offset: int = 0) -> None:
         super().__init__(reason)
         self.offset = offset
+
+
+class UnknownNameError(FormulaError):
+    """A name that denotes nothing; ``has_advice`` tells whether the message has a similar name."""
+
+    def __init__(self, name: str, similar: str, offset: int) -> None:
+        advice = f"; did you mean '{similar}'?" if similar else ""
+        super().__init__(f"'{name}' is neither a variable nor a literal{advice}", offset)
+        self.name = name
+        self.has_advice = bool(similar)
 
 
 class Token(NamedTuple):
@@ -82,6 +99,25 @@ class Syntax(Struct, frozen=True):
     name: str = r"[^\W\d]\w*"
     string: str = r'"(?:[^"\\\n]|\\.)*"'
     right_associative: frozenset[Op] = RIGHT_ASSOCIATIVE
+    ignores_case: bool = False
+    """Whether operators of two letters or more, and constants, may be in any letter case."""
+
+    def find_prefix(self, token: Token) -> Op | None:
+        """Return the prefix operator that a token is, or None."""
+        return self.prefix.get(self._spell(token)) if token.kind in ("sign", "name") else None
+
+    def find_infix(self, token: Token) -> Op | None:
+        """Return the infix operator that a token is, or None."""
+        return self.infix.get(self._spell(token)) if token.kind in ("sign", "name") else None
+
+    def find_boolean(self, token: Token) -> bool | None:
+        """Return the Boolean constant that a token is, or None."""
+        return self.booleans.get(self._spell(token))
+
+    def _spell(self, token: Token) -> str:
+        """Return the text of a token as the tables spell it; ``g`` and ``G`` remain different."""
+        is_folded = self.ignores_case and len(token.text) > 1
+        return token.text.lower() if is_folded else token.text
 
 
 NEUTRAL = Syntax(
@@ -94,6 +130,15 @@ NEUTRAL = Syntax(
 """The neutral form of corpus/gr1, which ``printing`` writes, extended by the operators of LTL and
 by their spelling in SPIN.
 """
+
+
+AUTHOR_SYNTAX = replace(
+    NEUTRAL,
+    prefix={**NEUTRAL.prefix, **NEGATION_SPELLINGS},
+    infix={**NEUTRAL.infix, **CONNECTIVE_WORDS, **CONNECTIVE_SPELLINGS},
+    ignores_case=True,
+)
+"""The neutral form as authors write it in models, with words and other spellings of operators."""
 
 
 def tokenize(text: str, syntax: Syntax) -> list[Token]:

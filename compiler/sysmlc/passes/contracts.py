@@ -291,7 +291,7 @@ def _add_formula(
     subject = graph.subject(constraint)
     body = str(constraint.attrs.get("body", ""))
     try:
-        language = str(constraint.attrs["language"])
+        language = str(constraint.attrs.get("language", ""))
         formula = read_formal(body, language, domains, (), tick_seconds)
         if scope is not None:
             formula = scope.substitute_constants(formula)

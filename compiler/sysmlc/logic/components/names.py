@@ -5,6 +5,7 @@ a state, ``m1.state`` and ``m1.event`` about a part, ``m1.using`` about a featur
 """
 
 import re
+from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
@@ -80,7 +81,8 @@ class ComponentNames:
         if name in self._states:
             variables = self._states[name]
             if len(variables) > 1:
-                raise ComponentError(f"'{name}' names several state machines")
+                choices = " or ".join(self._spell_region(variable) for variable, _ in variables)
+                raise ComponentError(f"'{name}' is ambiguous: write {choices}")
             return Meaning(f.var(variables[0][0]), variables[0][1])
         path, dot, last = name.rpartition(".")
         if last == EVENT and self._component.tree.find_object(path) is not None:
@@ -89,14 +91,25 @@ class ComponentNames:
 
     def list_names(self, kind: str = "running") -> list[str]:
         """List the shortest names of regions, events and actions; *kind* is asked of actions."""
-        regions: dict[str, str] = {}
-        for name, variables in self._states.items():
-            if len(variables) == 1:
-                variable, _ = variables[0]
-                regions[variable] = min(name, regions.get(variable, name), key=len)
+        variables = dict.fromkeys(pair[0] for pairs in self._states.values() for pair in pairs)
+        regions = map(self._spell_region, variables)
         events = (f"{path}.{EVENT}" if path else EVENT for path in self._component.events)
         actions = (f"{kind}({path})" for path in self._list_actions())
-        return [*regions.values(), *events, *actions]
+        features = (
+            f"{object_.path}.{name}"
+            for object_ in self._component.tree.objects
+            if object_.path
+            for name, feature in self._component.tree.context(object_).features.items()
+            if feature.domain is not None
+        )
+        return [*features, *regions, *events, *actions]
+
+    def _spell_region(self, variable: str) -> str:
+        """Return the shortest unambiguous name of a region."""
+        names = [
+            name for name, pairs in self._states.items() if [variable] == [v for v, _ in pairs]
+        ]
+        return min(names, key=len, default=variable)
 
     def _list_actions(self) -> Iterator[str]:
         """Yield the shortest unambiguous path of each action."""
@@ -174,10 +187,12 @@ class ComponentNames:
         if not candidates:
             return None
         if len(candidates) > 1:
-            texts = sorted({".".join(action.names) for action in actions} - {path})
+            counts = Counter(".".join(action.names) for action in actions)
+            texts = sorted(text for text, count in counts.items() if count == 1)
             more = "..." * (len(texts) > _LISTED_PATHS)
             listed = " or ".join(texts[:_LISTED_PATHS])
-            raise ComponentError(f"'{path}' is performed in several places: write {listed}{more}")
+            advice = f"write {listed}{more}" if texts else "give these actions different names"
+            raise ComponentError(f"'{path}' is performed in several places: {advice}")
         formulas = self._component.formulas
         node = formulas.graph.node(candidates[0])
         running: Formula = f.var(node.run)
@@ -209,22 +224,51 @@ def _iter_regions(component: "Component", machine: PlacedMachine) -> Iterator[tu
     named = f"{prefix}{machine.element.name}."
     count = sum(other.owner is machine.owner for other in component.machines)
     regions = machine.machine.regions
-    if len(machine.machine.top) == 1:
-        variable = regions[machine.machine.top[0]].variable
-        yield f"{named}state", variable
-        if count == 1:
-            yield f"{prefix}state", variable
+    for id in machine.machine.top:
+        variable = regions[id].variable
+        if len(machine.machine.top) == 1:
+            yield f"{named}state", variable
+            if count == 1:
+                yield f"{prefix}state", variable
+        else:
+            region = component.graph[element_id(id)].name
+            yield f"{prefix}{region}.state", variable
+            yield f"{named}{region}.state", variable
     for state in machine.machine.list_states():
-        if len(state.regions) == 1:
-            name = component.graph[element_id(state.id)].name
-            outer = [
-                component.graph[element_id(id)].name
-                for id in reversed(machine.machine.list_enclosing_states(state.id))
-            ]
-            variable = regions[state.regions[0]].variable
-            for path in dict.fromkeys((name, ".".join((*outer, name)))):
-                yield f"{prefix}{path}.state", variable
-                yield f"{named}{path}.state", variable
+        for id in state.regions:
+            for path in _list_region_paths(component, machine, id):
+                yield f"{prefix}{path}.state", regions[id].variable
+                yield f"{named}{path}.state", regions[id].variable
+
+
+def _list_region_paths(component: "Component", machine: PlacedMachine, region: str) -> list[str]:
+    """Return the paths of a region in a state: its own name, from its state on, and the whole path.
+
+    A region that is the only one of its state has the name of the state.
+    """
+    levels = list(_iter_levels(component, machine, region))[::-1]
+    state, name = levels[-1]
+    states = [state for state, _ in levels if state]
+    whole = [part for level in levels for part in level if part]
+    paths = ([name], [state, name], whole, [*states, name])
+    return list(dict.fromkeys(".".join(filter(None, path)) for path in paths if any(path)))
+
+
+def _iter_levels(
+    component: "Component", machine: PlacedMachine, region: str
+) -> Iterator[tuple[str, str]]:
+    """Yield the names of the state and the region at each level around a region, inside out.
+
+    A region without siblings has no name, and a region of the machine no state.
+    """
+    graph, vertices = component.graph, machine.machine.vertices
+    id = region
+    while id:
+        state = machine.machine.regions[id].state
+        siblings = vertices[state].regions if state else machine.machine.top
+        name = graph[element_id(id)].name if len(siblings) > 1 else ""
+        yield graph[element_id(state)].name if state else "", name
+        id = vertices[state].region if state else ""
 
 
 # -- atoms of runs ---------------------------------------------------------------------------------

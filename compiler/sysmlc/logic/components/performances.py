@@ -7,6 +7,7 @@ creates an execution for each call). All performances of a component are one tok
 """
 
 from collections.abc import Iterable, Mapping
+from itertools import takewhile
 
 from msgspec.structs import replace
 
@@ -263,12 +264,19 @@ class Performances:
         done = None if node.done is None else f.rename_variables(node.done, copy.variables)
         new = replace(node, id=ids[node.id], region=regions[node.region], run=run, done=done)
         is_work = node.kind is NodeKind.ACTION and bool(node.run)
-        names = (*copy.caller.names, element.name)
+        names = (*copy.caller.names, *self._list_enclosing_actions(element), element.name)
         if run and element.name:
             self.paths.append(ActionPath(names, new.id))
         if is_work and self._graph.targets(element, Edge.CALLS) and _is_call(element):
             new = self._add_call(new, element, copy, names, around)
         self.nodes.append(new)
+
+    def _list_enclosing_actions(self, element: Element) -> list[str]:
+        """List the names of the actions in an activity that contain *element*, outermost first."""
+        enclosing = takewhile(
+            lambda owner: owner.kind is Kind.STRUCTURED, self._graph.ancestors(element)
+        )
+        return [owner.name for owner in enclosing if owner.name][::-1]
 
     def _add_call(
         self,

@@ -1,6 +1,7 @@
 """Contracts of the subjects of requirements (thesis, 2.2.1)."""
 
-from collections.abc import Iterable, Iterator
+import re
+from collections.abc import Iterable, Iterator, Mapping
 
 from msgspec import Struct
 from msgspec.structs import replace
@@ -13,9 +14,9 @@ from sysmlc.logic.components.derivation import (
     ComponentBehaviour,
     describe_component,
 )
-from sysmlc.logic.components.names import ComponentNames
+from sysmlc.logic.components.names import ComponentNames, Meaning
 from sysmlc.logic.components.objects import ComponentError
-from sysmlc.logic.contract import Conjunct, Contract
+from sysmlc.logic.contract import Conjunct, Contract, Domain
 from sysmlc.logic.expressions.context import report_range
 from sysmlc.logic.expressions.elaboration import ElaborationError, Fault, elaborate_condition
 from sysmlc.logic.expressions.expression import ExpressionError
@@ -38,7 +39,7 @@ from sysmlc.logic.requirements.statements import (
     component_of,
     list_subject_names,
 )
-from sysmlc.logic.syntax import FormulaError
+from sysmlc.logic.syntax import FormulaError, UnknownNameError
 
 NOT_A_FORMULA = rule(
     "SM522",
@@ -215,7 +216,6 @@ def _read_statement(
 
     *obstacle* is the reason if the names of states, actions and parts are not available.
     """
-    constraint = statement.constraint
     subject_names = list_subject_names(graph, statement.requirement)
     scope = replace(scope, component_names=(*scope.component_names, *subject_names))
     # Tools append a version: "OCL2.0", "KerML 1.0".
@@ -230,7 +230,7 @@ def _read_statement(
         formula = _read_condition(scope, statement, informal)
         reading = None if formula is None else Reading(formula)
     else:
-        informal.add(statement, f"it is written in {constraint.attrs['language']}")
+        informal.add(statement, _describe_language(scope, statement))
     if reading is not None:
         _report_ranges(graph, scope, reading.formula, sink)
     return reading
@@ -239,11 +239,11 @@ def _read_statement(
 def _read_temporal(graph: Graph, scope: Scope, statement: Statement, sink: Sink) -> Reading | None:
     constraint = statement.constraint
     body = str(constraint.attrs.get("body", ""))
+    meanings: Mapping[str, Meaning] = {}
     try:
         text, meanings = scope.replace_names(body)
         all_domains = scope.domains | {name: item.domain for name, item in meanings.items()}
-        component = scope.component_names, scope.tick_seconds
-        formula = read_formal(text, statement.language, all_domains, *component)
+        formula = _read_names(scope, text, statement.language, all_domains)
     except FormulaError as error:
         sink.report(
             NOT_A_FORMULA,
@@ -252,11 +252,44 @@ def _read_temporal(graph: Graph, scope: Scope, statement: Statement, sink: Sink)
             requirement=statement.requirement.name,
             about=scope.context.name,
             names=scope.describe_names(),
-            reason=describe_error(error, body),
+            reason=_restore_text(describe_error(error, body), meanings),
         )
         return None
     wording = restore_names(formula, meanings) if meanings else None
     return Reading(replace_meanings(scope.substitute_constants(formula), meanings), wording)
+
+
+def _restore_text(message: str, meanings: Mapping[str, Meaning]) -> str:
+    """Return a message with the names of the author instead of the variables for them."""
+    return re.sub(r"\b__\d+\b", lambda match: meanings[match[0]].name, message)
+
+
+def _describe_language(scope: Scope, statement: Statement) -> str:
+    """Return that a text is not read, with the language under which it would be."""
+    reason = f"it is written in {statement.language}"
+    body = str(statement.constraint.attrs.get("body", ""))
+    for language in ("pattern", "FRET", "LTL"):
+        try:
+            text, meanings = scope.replace_names(body)
+            all_domains = scope.domains | {name: item.domain for name, item in meanings.items()}
+            _read_names(scope, text, language, all_domains)
+        except FormulaError:
+            continue
+        return f"{reason}; write the language '{language}' to have it read"
+    return reason
+
+
+def _read_names(
+    scope: Scope, text: str, language: str, all_domains: Mapping[str, Domain]
+) -> Formula:
+    """Return the formula of a text; an unknown name is explained by the names of the component."""
+    try:
+        return read_formal(text, language, all_domains, scope.component_names, scope.tick_seconds)
+    except UnknownNameError as error:
+        advice = "" if error.has_advice else scope.suggest_name(error.name)
+        if not advice:
+            raise
+        raise FormulaError(f"{error}; {advice}", error.offset) from None
 
 
 def _read_condition(

@@ -9,7 +9,8 @@ from msgspec.structs import replace
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.logic.components.names import ComponentNames, Meaning
 from sysmlc.logic.components.objects import ComponentError
-from sysmlc.logic.contract import Contract, Domain, Owner, Variable
+from sysmlc.logic.contract import BooleanDomain, Contract, Domain, Owner, Variable
+from sysmlc.logic.domains import contains
 from sysmlc.logic.expressions.context import Context, context_of, find_literal
 from sysmlc.logic.expressions.elaboration import Symbol
 from sysmlc.logic.expressions.features import Feature
@@ -25,9 +26,10 @@ from sysmlc.support.suggestions import find_similar
 
 _NAME = re.compile(
     r"(?:[^\W\d]\w*\.)*(?:running|finished)\(\s*[\w.]+\s*\)"
+    r"|[^\W\d]\w*(?:::[^\W\d]\w*)+"
     r"|[^\W\d]\w*(?:(?:\.|\#\(\d+\)\.)[^\W\d]\w*)*"
 )
-"""A name in a formula: of an action, dotted, or plain."""
+"""A name in a formula: of an action, qualified, dotted, or plain."""
 _MAX_NAMES = 12
 """Most names that a message lists."""
 _SELF = ("self", "this")
@@ -109,16 +111,37 @@ class Scope(Struct, frozen=True):
         """Return the list of names for a message, shortened if there are many."""
         names = self.list_names()
         further = f" and {len(names) - _MAX_NAMES} more" if len(names) > _MAX_NAMES else ""
-        return ", ".join(names[:_MAX_NAMES]) + further
+        return (", ".join(names[:_MAX_NAMES]) + further) or "none: the subject has no features"
 
     def _describe_unknown(self, name: str) -> str:
         """Return the message about a dotted name, or one of an action, that denotes nothing."""
         is_action = name.endswith(")")
         kind = "finished" if "finished(" in name else "running"
-        similar = find_similar(self._drop_subject(name) or name, self.list_names(kind))
-        advice = f"; did you mean '{similar}'?" if similar else ""
-        sort = "action" if is_action else "feature, state or event"
-        return f"'{name}' denotes no {sort} of '{self.context.name}'{advice}"
+        advice = self.suggest_name(self._drop_subject(name) or name, kind)
+        sort = "action" if is_action else "feature, value, state or event"
+        return "; ".join(
+            filter(None, (f"'{name}' denotes no {sort} of '{self.context.name}'", advice))
+        )
+
+    def suggest_name(self, name: str, kind: str = "running") -> str:
+        """Return advice on what an unknown name probably means; empty without an idea."""
+        names = self.list_names(kind)
+        last = re.split(r"::|\.", name)[-1]
+        machine = f"{name}.state"
+        if similar := find_similar(name, [*names, *filter(_is_qualified, self.context.literals)]):
+            candidates = [similar]
+        elif self.names is not None and name.isidentifier() and self.names.find(machine):
+            candidates = [machine]
+        else:
+            candidates = [f"{k}={last}" for k in names if contains(self.find_domain(k), last)]
+            candidates += [k for k in names if k.endswith(f".{name}") or k.startswith(f"{name}.")]
+            candidates += [last] * (last in names)
+        return f"did you mean '{candidates[0]}'?" if candidates else ""
+
+    def find_domain(self, name: str) -> Domain:
+        """Return the values of one of the names that ``list_names`` lists."""
+        symbol = self.find_symbol(name)
+        return BooleanDomain() if symbol is None or symbol.domain is None else symbol.domain
 
     def replace_names(self, text: str) -> tuple[str, dict[str, Meaning]]:
         """Replace names that are no variables (``tank.filling``, ``running(pick)``) by variables.
@@ -145,6 +168,9 @@ class Scope(Struct, frozen=True):
                 raise FormulaError(f"'{name}' has several values", match.start())
             if is_plain:
                 return name
+            literal = find_literal(self.context, name)
+            if feature is None and literal is not None and isinstance(literal.formula, Const):
+                return str(literal.formula.value).ljust(len(name))
             if feature is None:
                 raise FormulaError(self._describe_unknown(name), match.start())
             return feature.variable.ljust(len(name))
@@ -176,6 +202,10 @@ class Scope(Struct, frozen=True):
         """Whether the formula has variables, and the environment decides all of them."""
         owners = {self.variables[name].owner for name in variable_names(formula)}
         return owners == {Owner.ENVIRONMENT}
+
+
+def _is_qualified(name: str) -> bool:
+    return "::" in name
 
 
 def replace_meanings(formula: Formula, meanings: Mapping[str, Meaning]) -> Formula:
