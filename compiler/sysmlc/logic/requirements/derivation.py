@@ -266,7 +266,7 @@ def _restore_text(message: str, meanings: Mapping[str, Meaning]) -> str:
 
 def _describe_language(scope: Scope, statement: Statement) -> str:
     """Return that a text is not read, with the language under which it would be."""
-    reason = f"it is written in {statement.language}"
+    reason = f"it is written in {statement.constraint.attrs['language']}"
     body = str(statement.constraint.attrs.get("body", ""))
     for language in ("pattern", "FRET", "LTL"):
         try:
