@@ -125,7 +125,11 @@ def test_equal_contracts_have_equal_verdicts(start):
         # An output in an assumption may be outside GR(1) in one of the spellings only.
         if None not in (verdicts[0][0], verdicts[1][0]):
             decided += 1
-            assert verdicts[0] == verdicts[1], words
+            assert verdicts[0][1] == verdicts[1][1], words
+            # A component that can end the game by violating an assumption itself (SM535) need not
+            # satisfy guarantees without X in the step in which it does so (docs/synthesis.md).
+            if "SM535" not in verdicts[0][1]:
+                assert verdicts[0] == verdicts[1], words
             behaviour = draw_behaviour(seed)
             assert check_behaviour(behaviour, contract) == check_behaviour(behaviour, equal), words
         for concrete, abstract in ((contract, equal), (equal, contract)):
