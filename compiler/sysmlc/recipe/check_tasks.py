@@ -1,7 +1,7 @@
 """Checks of tasks, their materials, and OPC UA calls (REC001, REC002, REC007, REC011, REC012)."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from sysmlc.diagnostics import Severity, rule
 from sysmlc.recipe.flow import find_cycles
@@ -79,19 +79,20 @@ def check_precedence(model: Model, tables: Tables) -> Iterator[Finding]:
 
 
 def check_machines(model: Model, tables: Tables) -> Iterator[Finding]:
-    """REC007: the machines of a task offer its services."""
+    """REC007: the machines of a task offer its services, or each service has a machine."""
     for task in model.recipe.tasks:
         yield from _check_machines_of_task(task, tables)
 
 
 def _check_machines_of_task(task: Task, tables: Tables) -> Iterator[Finding]:
+    providers_by_service = _find_providers(task, tables)
     if not task.equipment:
-        yield _make_finding(task, "no machine is related to it")
+        yield from _check_services_of_task(task, providers_by_service)
         return
     equipment = {machine for mode in task.equipment for machine in mode.machines}
     offers = {
         service: {provider.machine for provider in providers}
-        for service, providers in _find_providers(task, tables).items()
+        for service, providers in providers_by_service.items()
     }
     for service, offering in sorted(offers.items()):
         if not offering & equipment:
@@ -101,10 +102,20 @@ def _check_machines_of_task(task: Task, tables: Tables) -> Iterator[Finding]:
                 facts = {"service": service, "machine": machine, "task": task.id}
                 yield Finding(PROVIDER_OUTSIDE, tables.services[service].element, facts)
     offered = {machine for offering in offers.values() for machine in offering}
-    if not offers:
-        return
-    for machine in sorted(equipment - offered):
+    # Services that no machine offers are reported above.
+    for machine in sorted(equipment - offered) if offered else ():
         yield _make_finding(task, f"its machine '{machine}' offers none of its services")
+
+
+def _check_services_of_task(
+    task: Task, providers_by_service: Mapping[str, tuple[Provider, ...]]
+) -> Iterator[Finding]:
+    """Report services without a machine of a task that only its services relate to machines."""
+    if not providers_by_service:
+        yield _make_finding(task, "no machine is related to it")
+    for service, providers in sorted(providers_by_service.items()):
+        if not providers:
+            yield _make_finding(task, f"no machine is related to it or to its service '{service}'")
 
 
 def _find_providers(task: Task, tables: Tables) -> dict[str, tuple[Provider, ...]]:

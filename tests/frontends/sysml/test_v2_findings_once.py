@@ -138,8 +138,8 @@ package Plant {
 
 def test_an_exit_that_competes_with_several_transitions_has_one_finding():
     assert list_messages(CROSSING.replace("WHEN", "hot"), "contracts") == [
-        "SM427: 'calm to halted' leaves an orthogonal state while 'turning to slow' or 'slow to "
-        "turning' can be taken in another of its regions; the component gets no contract"
+        "SM427: 'calm to halted' leaves a parallel state while 'turning to slow' or 'slow to "
+        "turning' can be taken in another of its states; the component gets no contract"
     ]
 
 

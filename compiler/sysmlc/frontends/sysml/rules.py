@@ -62,11 +62,37 @@ SEVERITIES: dict[str, Severity | None] = {
 }
 
 
+_CAPABILITY = "dependency from <service> to <machine> {{ @Capability {{ duration = 9 [SI::s]; }} }}"
+_LOOP = "write 'decide d {{ @Loop {{ maxIterations = 3; }} }}' for the decision"
+
 WORDINGS = {
     "SM300": Wording("", "say what flows through the ports, such as 'in item part : Part;'"),
+    "SM303": Wording(
+        "port '{port}' has multiplicity {multiplicity}, so that nothing has it",
+        "remove the port, or allow at least one",
+    ),
     "SM310": Wording(
         "flow '{flow}' {way} port '{port}', whose direction is {direction}",
         "reverse the flow, or conjugate the type of the port (~)",
+    ),
+    "SM311": Wording(
+        "flow '{flow}' conveys '{item}', which port '{port}' does not pass",
+        "declare an item of type '{item}' in the port definition, or convey what it passes",
+    ),
+    "SM315": Wording(
+        "connection '{connector}' joins {first} '{one}' with {second} '{other}'",
+        "conjugate the type of one of the ports (~), choose another type for it, or connect "
+        "another port",
+    ),
+    "SM316": Wording(
+        "connection '{connector}' joins '{one}' of type '{type}' with '{other}' of type "
+        "'{other_type}'",
+        "type both ports by the same port definition, one of them conjugated (~)",
+    ),
+    "SM317": Wording(
+        "connection '{connector}' carries physical items ({physical}) and information "
+        "({information})",
+        "write one connection for the material or energy and one for the information",
     ),
     "SM410": Wording(
         "",
@@ -77,9 +103,22 @@ WORDINGS = {
         "treats the condition as an input",
         "pass the value to {context}, by a property or a signal, for a contract about it",
     ),
+    "SM420": Wording(
+        "", "remove it, write it with other states and transitions, or do without a contract"
+    ),
     "SM421": Wording(
         "state '{owner}' has substates, but no entry transition to the first of them",
         "write 'entry; then <substate>;' into the state",
+    ),
+    "SM426": Wording(
+        "'{first}' and '{second}' of parallel states can both assign '{variable}' in one step; the "
+        "component gets no contract",
+        "assign it in one of the states only, or on different events",
+    ),
+    "SM427": Wording(
+        "'{first}' leaves a parallel state while {others} can be taken in another of its states; "
+        "the component gets no contract",
+        "let the transition start at the parallel state, or use another event",
     ),
     "SM450": Wording(
         "action '{activity}' has no first step: a succession leads to each of its steps",
@@ -88,6 +127,16 @@ WORDINGS = {
     "SM451": Wording(
         "action '{activity}' starts with several actions at once: {actions}",
         "write 'first <action> then <action>;' if only one of them is meant to start",
+    ),
+    "SM454": Wording(
+        "{flow} may get a second token while it still holds one; the action gets no contract",
+        "bring parallel branches together in a 'join'",
+    ),
+    "SM455": Wording(
+        "action '{activity}' has too many markings to search (at most {limit}); whether each "
+        "succession holds at most one token was not decided, so that it gets no contract",
+        "move steps into actions of their own, or raise the limit (option max_markings of the "
+        "pass activities)",
     ),
     "SM458": Wording(
         "", "use properties of the action, or of the part that performs it, for a contract"
@@ -100,10 +149,79 @@ WORDINGS = {
         "action '{activity}' never finishes",
         "let a succession lead to 'done' if it is meant to end",
     ),
+    "SM468": Wording("", "put a 'decide' before the succession and say what happens else"),
+    "SM472": Wording("", "let the succession lead to a 'merge' after 'start', or delete it"),
+    "SM479": Wording(
+        "loops and conditions of action '{activity}' are nested more than {limit} deep; it gets no "
+        "contract",
+        "move what is inside into actions of their own, or raise the limit (option max_depth of "
+        "the pass activities)",
+    ),
+    "SM483": Wording(
+        "", "to choose another level, set it in [recipe.levels] or specialise RecipeLevels"
+    ),
     "SM486": Wording(
         "action '{activity}' does not order its steps; it gets no contract",
         "order the steps with 'first <step> then <step>;'",
     ),
+    "SM502": Wording(
+        "",
+        "let '{component}' exhibit a state or perform an action, or move the formula to a "
+        "component that does",
+    ),
+    "SM526": Wording("", "connect the parts, or name them in the flow"),
+    "SM545": Wording("", "correct the name, or declare an attribute of that name"),
+    "SM601": Wording(
+        "", "let '{missing}' specialise RecipeLevels::Machine, or relate '{user}' to a machine"
+    ),
+    "SM604": Wording(
+        "",
+        "let a 'decide' leave the cycle; join all branches of a fork, and merge those of a "
+        "'decide'",
+    ),
+    "SM605": Wording(
+        "", "write guards that exclude one another, and 'else': if ok then a; else b;"
+    ),
+    "SM606": Wording(
+        "",
+        "declare an attribute of that name in the action, with a value when it is read before it "
+        "is set",
+    ),
+    "SM607": Wording("", f"write '{_CAPABILITY}' for each service, or for the task"),
+    "SM609": Wording(
+        "",
+        "correct the duration of a function, or of @Capability of the dependency from '{service}' "
+        "to '{machine}'",
+    ),
+    "SM614": Wording(
+        "", "let it specialise its level of RecipeLevels, so that the model states it"
+    ),
+    "SM615": Wording("", "write loops and choices with 'decide' and 'merge'"),
+    "SM619": Wording(
+        "'{element}' is not refined, and the action '{other}' has the same name",
+        "to refine it, type the step by the action: action step : {other};",
+    ),
+    "SM620": Wording("", _LOOP),
+    "SM621": Wording("", "perform tasks in the action: action step : SomeTask;"),
+    "SM622": Wording(
+        "'{tag}' of {stereotype} on '{element}' is '{value}', but must be {expected}; it is "
+        "ignored",
+        "correct the value",
+    ),
+    "SM642": Wording("", f"{_LOOP}, or state the missing duration"),
+    "SM643": Wording(
+        "'{tag}' of {stereotype} on '{element}' is '{value}', but {problem}", "{advice}"
+    ),
+    "SM644": Wording(
+        "'{tag}' of {stereotype} on '{element}' is '{value}': unit '{unit}' is unknown, and the "
+        "value is ignored",
+        "write the value in a usual unit, such as 9 [SI::s] or 2 [SI::kW]",
+    ),
+    "SM649": Wording("", "correct maxIterations of @Loop, or the guards"),
+    "SM650": Wording("", "correct the duration of @Capability of the task or of a service"),
+    "SM651": Wording("", f"state its duration at the service, or write '{_CAPABILITY}'"),
+    "SM715": Wording("", "write 'satisfy <requirement> by <part>;'"),
+    "SM716": Wording("", "write 'objective {{ verify <requirement>; }}' into a verification"),
 }
 """Texts of shared rules in the words of SysML v2, which has no initial nodes, pins and regions."""
 

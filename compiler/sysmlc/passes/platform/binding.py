@@ -16,7 +16,7 @@ NOT_IN_PLANT = rule(
     "machine-not-in-plant",
     Severity.WARNING,
     "machine '{machine}' is bound to no element of the plant",
-    help="name the element: by amlId of «Machine», an allocation, or the overlay",
+    help="name the element: by amlId of the machine, an allocation, or the overlay",
 )
 SEVERAL_ELEMENTS = rule(
     "SM625",
@@ -309,7 +309,9 @@ def _report_several(context: Context, machine: Machine, elements: list[PlantElem
 def _report_missing(context: Context, machine: Machine) -> None:
     element = context.graph[machine.element]
     suggestion = context.suggest_similar(element.name)
-    advice = suggestion or "name the element: by amlId of «Machine», an allocation, or the overlay"
+    advice = (
+        suggestion or "name the element: by amlId of the machine, an allocation, or the overlay"
+    )
     subject = context.graph.subject(element)
     context.sink.report(NOT_IN_PLANT, subject, help="{advice}", machine=machine.id, advice=advice)
 
