@@ -8,7 +8,10 @@ from driver_helpers import list_inputs
 from sysmlc.driver import Request, compile_model, select_backends
 
 HEAD = '<CAEXFile xmlns="http://www.dke.de/CAEX" SchemaVersion="3.0" FileName="{}">'
-ROLES = '<RoleClassLib Name="Shared"><RoleClass Name="Base"/></RoleClassLib>'
+ROLES = (
+    '<RoleClassLib Name="Shared"><RoleClass Name="Base" '
+    'RefBaseClassPath="AutomationMLBaseRoleClassLib/AutomationMLBaseRole"/></RoleClassLib>'
+)
 REFERRING_ROLES = (
     '<ExternalReference Path="libs/roles.aml" Alias="Al"/><RoleClassLib Name="Roles">'
     '<RoleClass Name="Gate" RefBaseClassPath="Al@Shared/Base"/></RoleClassLib>'
@@ -115,7 +118,8 @@ LINE = (
     '<InternalElement Name="gate" ID="3"><ExternalInterface Name="p" ID="4"/></InternalElement>'
     '<InternalLink Name="l" RefPartnerSideA="2" RefPartnerSideB="4"/>'
     "</InternalElement></InstanceHierarchy>"
-    '<InterfaceClassLib Name="I"><InterfaceClass Name="P"/></InterfaceClassLib>'
+    '<InterfaceClassLib Name="I"><InterfaceClass Name="P" RefBaseClassPath='
+    '"AutomationMLInterfaceClassLib/AutomationMLBaseInterface"/></InterfaceClassLib>'
     '<SystemUnitClassLib Name="Lib"><SystemUnitClass Name="Line">'
     '<ExternalInterface Name="way" ID="5" RefBaseClassPath="I/P"/>'
     '<InternalElement Name="gate" ID="6">'

@@ -374,7 +374,7 @@ def test_an_unresolved_side_is_reported_and_the_link_becomes_a_dependency(side, 
 def test_an_open_side_is_an_info():
     reading = Read(cell_with_link("10", ""))
     assert reading.findings == []
-    assert reading.infos == ["SM136: link 'l' has no side B"]
+    assert "SM136: link 'l' has no side B" in reading.infos
     assert reading.targets("Plant::cell::l", "client") == ["Plant::cell::a::out"]
 
 

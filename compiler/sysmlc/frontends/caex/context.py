@@ -210,8 +210,14 @@ class Context:
             self._report_elements_without_id(document)
 
     def _report_elements_without_id(self, document: Document) -> None:
-        """Report the first InternalElement without ID; the message counts the others."""
+        """Report the first element without ID; the message counts the others.
+
+        Links of CAEX 3.0 find interfaces by their IDs.
+        """
         rows = self.ids.list_rows_without_id(document, "InternalElement")
+        if document.version.startswith("3"):
+            interfaces = self.ids.list_rows_without_id(document, "ExternalInterface")
+            rows = sorted([*rows, *interfaces])
         if rows:
             node, rest = document.node(rows[0]), len(rows) - 1
             count = f", nor have {rest} more elements of the file" if rest else ""

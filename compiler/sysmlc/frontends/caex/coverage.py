@@ -8,7 +8,7 @@ from operator import not_
 from sysmlc.diagnostics import Coverage, Place, Subject, Verdict
 from sysmlc.diagnostics.coverage import FileCoverage
 from sysmlc.diagnostics.locations import Location, locate
-from sysmlc.frontends.caex import conformance, rules
+from sysmlc.frontends.caex import conformance, rules, standard
 from sysmlc.frontends.caex.context import Context, qualified_name
 from sysmlc.frontends.caex.data_types import report_values
 from sysmlc.frontends.caex.document import Document, Node
@@ -34,8 +34,10 @@ def report_coverage(context: Context, coverage: Coverage, sources: Sequence[Sour
         _count_verdicts(document, coverage.file(document.name))
         _report_unread(context, document)
         conformance.report_order(context, document)
+        standard.report_interfaces(context, document)
     _report_missing_targets(context, sources)
     context.report_ids()
+    standard.report_repeated_across_files(context)
     report_unknown_units(context)
     report_values(context)
     conformance.report_repeated_names(context)

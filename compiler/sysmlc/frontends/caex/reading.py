@@ -9,7 +9,7 @@ from urllib.parse import unquote
 
 from sysmlc.diagnostics import Coverage, Severity, Sink, Verdict, rule
 from sysmlc.frontends.base import read_or_report
-from sysmlc.frontends.caex import libraries, rules
+from sysmlc.frontends.caex import libraries, rules, standard
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.coverage import report_coverage
 from sysmlc.frontends.caex.document import Document, Node, read_document
@@ -82,6 +82,7 @@ def _lower_classes(context: Context) -> list[Type]:
     for document in context.documents:
         types += libraries.lower_libraries(context, document)
     libraries.connect_base_classes(context, types)
+    standard.report_classes_without_base(context, types)
     for type in libraries.order_by_base(types):
         libraries.lower_features(context, type)
     return types
