@@ -270,6 +270,7 @@ def test_an_unread_condition_makes_no_contract_unrealizable(workspace, all_passe
     assert "Lamp: not decided" in result.stdout
     message = "a system can satisfy the contract of 'Lamp': it depends on 'temp > 80.0'"
     assert message in result.stdout + result.stderr
+    assert "warning[SM547 depends-on-unread-condition]" in result.stderr
     assert result.exit_code == 2
 
 

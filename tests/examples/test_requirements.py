@@ -126,7 +126,7 @@ def test_a_deliberate_fault_is_refuted_with_a_run_that_is_drawn(
     broken = [entry for entry in document["requirements"] if entry["verdict"] == "broken"]
     assert result.exit_code == 1
     assert f"G ({formula})" in [entry["formula"] for entry in broken]
-    diagrams = {path.name: path.read_text("utf-8") for path in (tmp_path / "runs").iterdir()}
+    diagrams = {path.name: path.read_text("utf-8") for path in (tmp_path / "runs").glob("*.puml")}
     drawn = "\n".join(diagrams.values())
     assert all(step in drawn for step in steps)
     if not list_missing_tools():

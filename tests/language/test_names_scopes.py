@@ -367,6 +367,7 @@ def test_recursive_imports_may_form_a_cycle():
 
 
 def test_a_package_that_two_files_declare_is_one_finding():
+    """SM243 is an info: both files are read."""
     files = (
         "package Films { package Phase1 { part def Robot; } }",
         "package Films { package Phase1 { part def Crane; } }",
