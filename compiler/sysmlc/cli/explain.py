@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator
+from difflib import SequenceMatcher
 from typing import TYPE_CHECKING
 
 import click
@@ -49,14 +50,32 @@ def _explanation(rule: "Rule") -> Iterator[str]:
     yield ""
     yield f"  {_format_message(rule.phrase)}"
     page = rule.read_page()
-    for title, text in (
-        ("Why", page.why),
-        ("What to do", _format_message(rule.help)),
-        ("Wrong", page.wrong),
-        ("Right", page.right),
-        ("In Papyrus", page.papyrus),
+    wrong, right = page.wrong.strip("\n").splitlines(), page.right.strip("\n").splitlines()
+    # A sentence differs as a whole, and an advice may consist of what the finding fills in.
+    marks = page.language != ""
+    advice = "" if re.fullmatch(r"\{\w+\}", rule.help) else rule.help
+    for title, lines in (
+        ("Why", _indent(page.why.splitlines())),
+        ("What to do", _indent(_format_message(advice).splitlines())),
+        ("Wrong", _mark_differences(wrong, right) if marks else _indent(wrong)),
+        ("Right", _mark_differences(right, wrong) if marks else _indent(right)),
+        ("In Papyrus", _indent(page.papyrus.splitlines())),
     ):
-        if text:
+        if lines:
             yield ""
             yield f"{title}:"
-            yield from (f"  {line}" for line in text.strip("\n").splitlines())
+            yield from lines
+
+
+def _indent(lines: list[str]) -> list[str]:
+    return [f"  {line}" for line in lines]
+
+
+def _mark_differences(lines: list[str], counterpart: list[str]) -> list[str]:
+    """Return the lines with a mark before those that the counterpart lacks, unless it lacks all."""
+    blocks = SequenceMatcher(None, lines, counterpart, autojunk=False).get_matching_blocks()
+    common = {index for block in blocks for index in range(block.a, block.a + block.size)}
+    return [
+        f"  {line}" if index in common or not common else f"> {line}"
+        for index, line in enumerate(lines)
+    ]

@@ -105,7 +105,6 @@ MUTATIONS = {
     "another format": lambda c: c.update(format="sysmlc-recipe/2"),
     "short hash": lambda c: c["source"][0].update(sha256="abc"),
     "task without equipment": lambda c: find_entry(c, *TASK).pop("equipment"),
-    "empty equipment": lambda c: find_entry(c, *TASK).update(equipment=[]),
     "mode without machines": lambda c: find_entry(c, *TASK, "equipment", 0).update(machines=[]),
     "fraction of a millisecond": lambda c: find_entry(c, *TASK, "equipment", 0).update(
         duration=1.5
