@@ -26,12 +26,12 @@ def format_member_names():
 
 
 def find_member_names(model, base):
-    """Return the names and short names of all members of a definition that are not private."""
+    """Return the effective names and the short names of all members that are not private."""
     definition = model.find(base)
     if definition is None:
         raise KeyError(base)
     members = [member for member in model.members(definition) if member.visibility != "private"]
-    return {name for member in members for name in (member.name, member.short_name) if name}
+    return {name for member in members for name in (model.name(member), member.short_name) if name}
 
 
 if __name__ == "__main__":

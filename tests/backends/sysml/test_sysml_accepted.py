@@ -217,3 +217,29 @@ def test_parameters_of_the_same_kind_keep_their_keywords():
     model = REDEFINED_IN_ANOTHER_ORDER.format(first="in", type="flag", other="piece")
     assert find_errors(model) == []
     assert "in attribute element : Flag;" in lines_of(model)
+
+
+LAW = """
+Package p "Plant"
+  Signal add "Add"
+  DataType real "Real" external=true
+  Class law "Newton 2.0" role="constraint block"
+    Constraint law.c "" body="force == 2 * mass"
+    Property law.f "force" role="constraint parameter"
+      -> typed-by real
+    Port law.m "mass" role="constraint parameter"
+      -> typed-by real
+  Class line "Line" role="interface block"
+    Reception line.add ""
+      -> typed-by add
+"""
+
+
+def test_the_result_of_a_constraint_block_ends_its_body():
+    lines = lines_of(LAW)
+    assert lines[lines.index("force == 2 * mass") + 1] == "}"
+    assert find_errors(LAW) == []
+
+
+def test_a_reception_of_an_interface_block_is_a_reference():
+    assert "ref action action1 accept : Add { @Named; }" in lines_of(LAW)

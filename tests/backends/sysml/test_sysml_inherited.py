@@ -29,7 +29,7 @@ def test_the_shipped_names_are_those_of_the_standard_library():
 def test_definitions_have_the_names_of_their_usages(keyword):
     assert "self" in list_inherited_names("attribute")
     names = list_inherited_names(keyword)
-    assert names == list_inherited_names(f"{keyword} def") != frozenset()
+    assert names == list_inherited_names(f"{keyword} def") | {"that"} != {"that"}
 
 
 @pytest.mark.parametrize(

@@ -160,7 +160,7 @@ def _write_send(writer: Writer, member: Member, element: Element) -> Line:
     body = _write_body(writer, member, element)
     signal_name = None
     for signal in writer.graph.targets(element, Edge.CALLS):
-        signal_name = writer.refer_to(member.parent, element, Edge.CALLS, signal)
+        signal_name = writer.refer_to(member, element, Edge.CALLS, signal)
     port = writer.graph.get(str(element.attrs.get("on_port", element.attrs.get("port", ""))))
     port_name = ""
     if port is not None:
@@ -171,10 +171,11 @@ def _write_send(writer: Writer, member: Member, element: Element) -> Line:
 
 
 def _write_accept(writer: Writer, member: Member, element: Element) -> Line:
-    body = _write_body(writer, member, element)
     triggers = _list_triggers(writer, element)
     writer.expressed.update(trigger.id for trigger in triggers)
+    # Triggers may declare attributes in the body.
     accepts = [format_trigger(writer, member, trigger) for trigger in triggers]
+    body = _write_body(writer, member, element)
     if len(accepts) > 1:
         construct = "an accept action with several triggers"
         writer.record_approximation(element, construct, "its first one")

@@ -5,7 +5,7 @@ and performed actions; in all other languages it stays text.
 """
 
 from sysmlc.backends.sysml.comments import write_opaque_bodies
-from sysmlc.backends.sysml.declarations import make_definition_head
+from sysmlc.backends.sysml.declarations import is_referential_owner, make_definition_head
 from sysmlc.backends.sysml.definitions import write_contents
 from sysmlc.backends.sysml.expressions import UnknownNameError, print_expression, resolve_name
 from sysmlc.backends.sysml.plan import Member
@@ -44,6 +44,8 @@ def write_behaviour(writer: Writer, member: Member) -> list[Line]:
     if owner is not None and element in writer.graph.targets(owner, Edge.CLASSIFIER_BEHAVIOR):
         word = _RUN_BY_CLASSIFIER.get(member.shape.keyword)
         head.prefixes += [word] if word else []
+    elif is_referential_owner(member.parent):
+        head.prefixes.append("ref")
     is_method = bool(writer.graph.sources(element, Edge.METHOD))
     regions = [child for child in writer.graph.owned(element) if child.kind is Kind.REGION]
     if not is_method and element.kind is Kind.STATE_MACHINE and len(regions) > 1:

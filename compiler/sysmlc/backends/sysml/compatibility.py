@@ -1,9 +1,26 @@
 """Specialisations, subsets and redefinitions of UML that SysML v2 does not allow."""
 
+from collections.abc import Iterable
+
+from sysmlc.backends.sysml.elided_elements import iter_types
+from sysmlc.backends.sysml.library import find_scalar_type
 from sysmlc.backends.sysml.plan import Member, Plan
 from sysmlc.backends.sysml.references import is_accessible
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import bounds, conforms, generals, type_of
+
+_VALUES = frozenset({"attribute", "enum", ""})
+_BEHAVIOURS = frozenset({"action", "state", "verification", "use case", "constraint"})
+_ALLOWED_TYPES = {
+    "attribute": _VALUES,
+    "port": frozenset({"port"}),
+    "constraint": frozenset({"constraint"}),
+    "action": _BEHAVIOURS,
+    "state": _BEHAVIOURS,
+}
+"""Keywords of the types that a usage may have (SysML 2.0, 8.3.6 to 8.3.19)."""
+_OBJECTS = frozenset({"item", "part", "occurrence"})
+"""Keywords of usages that may have all types except values."""
 
 
 def is_invalid_subset(plan: Plan, feature: Element, subsetted: Element) -> bool:
@@ -31,9 +48,57 @@ def is_incompatible(plan: Plan, feature: Element, general_feature: Element) -> b
     specific = plan.find(plan.graph.owner(feature))
     if has_incompatible_ends(plan, general, specific):
         return True
+    if members[0] is not None and forbids_inherited_types(plan, members[0], [general_feature]):
+        return True
     if Kind.PORT in (feature.kind, general_feature.kind):
         return False
     return _upper_bound(feature) > _upper_bound(general_feature)
+
+
+def forbids_inherited_types(plan: Plan, member: Member, generals: Iterable[Element]) -> bool:
+    """Whether a feature with this keyword must not have its own types and those of its generals.
+
+    A reference (``ref``) may have any types.
+    """
+    keyword = member.shape.keyword
+    keywords = _collect_type_keywords(plan, [member.require_element(), *generals])
+    types = [type_ for type_ in keywords.values() if type_]
+    is_single = keyword in ("attribute", "constraint")
+    if is_single and len(types) > 1 and not {"enum", "constraint"}.isdisjoint(types):
+        # An enumeration or a constraint definition is the only type of a feature.
+        return True
+    if keyword in _ALLOWED_TYPES:
+        return not _ALLOWED_TYPES[keyword].issuperset(keywords.values())
+    return keyword in _OBJECTS and not _VALUES.isdisjoint(keywords.values())
+
+
+def _collect_type_keywords(plan: Plan, features: Iterable[Element]) -> dict[str, str]:
+    """Return the keywords of the types of features and of all that they specialise, by type id.
+
+    The keyword of an attribute without types is empty: it has a value of an unknown type.
+    """
+    keywords: dict[str, str] = {}
+    seen: set[str] = set()
+    worklist = list(features)
+    while worklist:
+        feature = worklist.pop()
+        if feature.id in seen:
+            continue
+        seen.add(feature.id)
+        member = plan.find(feature)
+        is_port = member is not None and member.shape.keyword == "port"
+        for type_ in iter_types(plan.graph, feature):
+            type_member = plan.find(type_)
+            keyword = "attribute" if find_scalar_type(type_) else ""
+            keyword = type_member.shape.usage_keyword if type_member is not None else keyword
+            # A type that is no port definition becomes the type of a feature inside the port.
+            if keyword and not (is_port and keyword != "port"):
+                keywords[type_.id] = keyword
+        if member is not None and member.shape.keyword == "attribute":
+            keywords[feature.id] = ""
+        for edge in (Edge.REDEFINES, Edge.SUBSETS):
+            worklist += plan.graph.targets(feature, edge)
+    return keywords
 
 
 def has_incompatible_ends(plan: Plan, general: Member | None, specific: Member | None) -> bool:

@@ -7,18 +7,17 @@ namespace declares.
 import re
 
 from sysmlc.backends.sysml.annotations import make_annotation
-from sysmlc.backends.sysml.expressions import format_expression
-from sysmlc.backends.sysml.library import UNITS
+from sysmlc.backends.sysml.expressions import format_expression, is_condition
+from sysmlc.backends.sysml.library import IMPORTED, ROOTS, UNITS
 from sysmlc.backends.sysml.plan import Member
 from sysmlc.backends.sysml.printing import Line, quote_name
-from sysmlc.backends.sysml.references import look_up, visible_members
+from sysmlc.backends.sysml.references import look_up
 from sysmlc.backends.sysml.rules import TEXT_AS_NAME
 from sysmlc.backends.sysml.shapes import Shape
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import Edge, Element
 
 _DURATION = re.compile(r"\s*(\d+(?:\.\d+)?)\s*([a-zµ]*)\s*", re.IGNORECASE)
-_NUMBER = re.compile(r"-?\d+(\.\d+)?")
 _TIME_UNITS = {
     "": "s",
     "sec": "s",
@@ -41,22 +40,13 @@ _WITHOUT_DECLARATIONS = frozenset({"transition", "succession", "flow", "constrai
 def format_condition(writer: Writer, scope: Member | None, element: Element, text: str) -> str:
     """Return a condition as an expression, else as the name of a Boolean attribute.
 
-    The name of an item or a part is no condition, and neither is a number.
+    A number, a text, or a feature whose type is not Boolean is no condition.
     """
-    if _NUMBER.fullmatch(text.strip()):
-        return declare_condition(writer, scope, element, text)
-    feature = look_up(writer.plan, scope, text.strip())
-    if feature is not None and (
-        feature.shape.keyword in ("item", "part") or _is_guard(writer, feature)
-    ):
-        return declare_condition(writer, scope, element, text)
-    return _format(writer, scope, element, text, "ScalarValues::Boolean")
-
-
-def _is_guard(writer: Writer, member: Member) -> bool:
-    """Whether the member is a constraint that is only written as the guard of a transition."""
-    element = member.element
-    return element is not None and bool(writer.graph.sources(element, Edge.GUARD))
+    if is_condition(writer, scope, text):
+        expression = format_expression(writer, scope, text)
+        if expression is not None:
+            return expression
+    return declare_condition(writer, scope, element, text)
 
 
 def _format_duration(writer: Writer, scope: Member | None, element: Element, text: str) -> str:
@@ -102,6 +92,9 @@ def _declare(writer: Writer, scope: Member | None, element: Element, text: str, 
         return quote_name(name)
     key = (namespace, text, type_)
     if key not in writer.condition_names:
+        if scope is not None and name in scope.shape.library_names:
+            # The feature that the scope inherits would hide the attribute.
+            name = f"{name}_2"
         writer.condition_names[key] = _declare_attribute(writer, namespace, name, text, type_)
     return writer.condition_names[key]
 
@@ -112,9 +105,9 @@ def _declare_attribute(writer: Writer, namespace: Member, name: str, text: str, 
     Unless the name is the text and an identifier, a keyword tells readers that the attribute stands
     for a text; metadata states the text if the name is another one.
     """
-    visible = visible_members(writer.plan, namespace)
     free_name, number = name, 2
-    while free_name in visible:
+    while free_name in ROOTS | IMPORTED or look_up(writer.plan, namespace, free_name) is not None:
+        # The attribute must hide no name to which the text already refers.
         free_name, number = f"{name}_{number}", number + 1
     attribute = writer.plan.add(Shape("attribute"), namespace, free_name, None)
     attribute.is_declared = True
@@ -158,16 +151,29 @@ def _format_message_payload(writer: Writer, scope: Member, trigger: Element) -> 
     type_ = writer.graph.target(trigger, Edge.TYPED_BY)
     member = writer.plan.find(type_)
     if trigger.subkind == "call" and (type_ is None or member is None):
-        return f"call : {writer.refer_to_sysmlc(scope, 'Call')}"
+        return (
+            f"{_declare_payload(writer, scope, 'call')} : {writer.refer_to_sysmlc(scope, 'Call')}"
+        )
     if type_ is None or member is None:
         if trigger.subkind != "any":
             writer.record_approximation(trigger, "a trigger without an event", "any event")
-        return f"any : {writer.refer_to_library(scope, 'Base::Anything')}"
+        payload = _declare_payload(writer, scope, "any")
+        return f"{payload} : {writer.refer_to_library(scope, 'Base::Anything')}"
     if member.shape.is_definition:
         name = writer.refer_to(scope, trigger, Edge.TYPED_BY, type_)
-        payload = trigger.attrs.get("payload")
-        if payload:
-            return f"{quote_name(str(payload))} : {name}"
+        if trigger.attrs.get("payload"):
+            payload = _declare_payload(writer, scope, str(trigger.attrs["payload"]))
+            return f"{payload} : {name}"
         # The OpenMBEE toolkit does not read a payload that starts with the root ('$::').
         return f": {name}" if str(name).startswith("$") else str(name)
-    return f"{quote_name(member.name)} : {writer.refer_to_sysmlc(scope, 'Call')}"
+    return (
+        f"{_declare_payload(writer, scope, member.name)} : {writer.refer_to_sysmlc(scope, 'Call')}"
+    )
+
+
+def _declare_payload(writer: Writer, scope: Member, name: str) -> str:
+    """Return the name of a payload as written; it hides other members of this name in *scope*."""
+    payload = writer.plan.add(Shape("ref"), scope, name, None)
+    payload.is_declared = True
+    scope.visible_names = None
+    return quote_name(name)

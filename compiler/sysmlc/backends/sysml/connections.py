@@ -3,6 +3,7 @@
 from sysmlc.backends.sysml.annotations import write_annotations
 from sysmlc.backends.sysml.declarations import (
     format_multiplicity,
+    is_referential_owner,
     list_types,
     list_visibility,
     make_definition_head,
@@ -127,6 +128,7 @@ def _format_connection(
         keyword = type_.shape.usage_keyword
     joined_ends = f"({', '.join(end_texts)})" if len(end_texts) > 2 else " to ".join(end_texts)
     prefixes = list_visibility(writer, element)
+    prefixes += ["ref"] if is_referential_owner(member.parent) else []
     if not member.name and not types:
         word = "interface" if keyword == "interface" else "connect"
         return " ".join([*prefixes, word, joined_ends])

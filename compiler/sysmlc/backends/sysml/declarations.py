@@ -19,23 +19,6 @@ from sysmlc.ir.query import type_of
 _VISIBILITIES = ("private", "protected")
 _REFERENTIAL_OWNERS = frozenset({"port", "attribute", "metadata"})
 """Keywords of owners that may have no composite features but ports and attributes."""
-_CONFORMING = frozenset(
-    {
-        ("part", "item"),
-        ("part", "occurrence"),
-        ("item", "occurrence"),
-        ("port", "occurrence"),
-        ("action", "occurrence"),
-        ("state", "action"),
-        ("verification", "action"),
-        ("enum", "attribute"),
-        ("connection", "part"),
-        ("interface", "connection"),
-        ("interface", "part"),
-        ("connection", "occurrence"),
-    }
-)
-"""Pairs of different keywords of which the first may specialise the second."""
 
 
 @dataclass(slots=True)
@@ -133,12 +116,7 @@ def _is_invalid(plan: Plan, general: Member, specific: Member) -> bool:
     """Whether a definition or usage must not specialise one of the other kind."""
     if has_incompatible_ends(plan, general, specific):
         return True
-    keywords = (specific.shape.usage_keyword, general.shape.usage_keyword)
-    return (
-        keywords[0] != keywords[1]
-        and keywords not in _CONFORMING
-        and general.shape.is_definition == specific.shape.is_definition
-    )
+    return not specific.shape.may_specialize(general.shape)
 
 
 # -- features ------------------------------------------------------------------------------------
@@ -189,12 +167,14 @@ def _needs_ref(member: Member, keyword: str) -> bool:
         return True
     if keyword in ("attribute", "port"):
         return False
-    owner_is_referential = (
-        member.parent is not None and member.parent.shape.usage_keyword in _REFERENTIAL_OWNERS
-    )
     is_part = element.attrs.get("aggregation") == "composite" or element.role == "part"
     is_property = element.kind in (Kind.PROPERTY, Kind.FLOW_PROPERTY)
-    return owner_is_referential or (is_property and not is_part)
+    return is_referential_owner(member.parent) or (is_property and not is_part)
+
+
+def is_referential_owner(namespace: Member | None) -> bool:
+    """Whether a namespace may have no composite features but ports and attributes."""
+    return namespace is not None and namespace.shape.usage_keyword in _REFERENTIAL_OWNERS
 
 
 def list_types(

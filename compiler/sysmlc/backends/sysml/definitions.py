@@ -12,7 +12,7 @@ from sysmlc.backends.sysml.library import (
 )
 from sysmlc.backends.sysml.plan import Member
 from sysmlc.backends.sysml.printing import Line, format_comment, quote_name
-from sysmlc.backends.sysml.references import format_qualified_name
+from sysmlc.backends.sysml.references import format_library_name, format_qualified_name, look_up
 from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import Edge, Element, Kind
@@ -35,11 +35,12 @@ def write_package(writer: Writer, member: Member) -> list[Line]:
     head = " ".join([*prefixes, member.shape.keyword, quote_name(member.name)])
     body += writer.write_members(member)
     own_imports = {line.head.partition(" ")[2] for line in body}
-    libraries = sorted(
-        library for library in member.imports if f"import {library}::*" not in own_imports
+    libraries = (
+        format_library_name(writer.plan, member, library) for library in sorted(member.imports)
     )
-    imports = [Line(f"private import {library}::*") for library in libraries]
-    return [Line(head, [*imports, *body])]
+    imports = [f"import {library}::*" for library in libraries]
+    lines = [Line(f"private {import_}") for import_ in imports if import_ not in own_imports]
+    return [Line(head, [*lines, *body])]
 
 
 def write_import(writer: Writer, member: Member) -> list[Line]:
@@ -110,7 +111,11 @@ def write_contents(writer: Writer, member: Member) -> list[Line]:
         types = writer.graph.targets(element, Edge.TYPED_BY)
         writer.expressed.update(type_.id for type_ in types if writer.plan.find(type_) is member)
     body += _write_realizations(writer, member, element)
-    return body + member.take_added_lines()
+    body += member.take_added_lines()
+    if member.shape.keyword == "constraint def":
+        # A result expression, which has no head, ends the body (SysML 2.0, 8.2.2.19.1).
+        body.sort(key=lambda line: not line.head)
+    return body
 
 
 def _write_realizations(writer: Writer, member: Member, element: Element) -> list[Line]:
@@ -139,7 +144,7 @@ def write_enumeration(writer: Writer, member: Member) -> list[Line]:
     head = make_definition_head(writer, member)
     if head.subsets and member.element is not None:
         writer.record_approximation(member.element, "generalization of Enumeration", "comment")
-        comment = Line("", text=["/* :> " + ", ".join(head.subsets) + " */"])
+        comment = Line("", text=format_comment(":> " + ", ".join(head.subsets)))
         head.subsets = []
         return [Line(head.format(), [comment, *write_contents(writer, member)])]
     return [Line(head.format(), write_contents(writer, member))]
@@ -236,10 +241,10 @@ def write_requirement(writer: Writer, member: Member) -> list[Line]:
 
 
 def _is_free_id(writer: Writer, requirement: Member, id: str) -> bool:
-    """Whether neither a sibling's name nor the id of an earlier requirement equals the id."""
+    """Whether the id hides no other name, and no earlier requirement beside it has the same id."""
     parent = requirement.parent
     siblings = writer.plan.roots if parent is None else parent.members
-    if any(sibling.name == id for sibling in siblings):
+    if look_up(writer.plan, parent, id) is not None:
         return False
     earlier = siblings[: siblings.index(requirement)]
     return not any(

@@ -6,7 +6,7 @@ before all other members, because the client must contain them when it is writte
 
 from collections.abc import Callable
 
-from sysmlc.backends.sysml.declarations import list_visibility
+from sysmlc.backends.sysml.declarations import is_referential_owner, list_visibility
 from sysmlc.backends.sysml.definitions import write_contents
 from sysmlc.backends.sysml.plan import Member
 from sysmlc.backends.sysml.printing import Line, quote_name
@@ -132,6 +132,8 @@ def _write_satisfaction(writer: Writer, member: Member) -> list[Line]:
         return []
     if client.shape.is_usage and client.shape.keyword != "requirement":
         definition = _find_definition(client)
+        if definition is not None and definition.shape.keyword == "enum def":
+            return _write_plain(writer, member)
         scope = member.parent if definition is None else definition
         end = f" by {format_reference(writer.plan, scope, client)}"
         lines = _write_requirement_references(writer, member, scope, suppliers, keyword, end)
@@ -173,6 +175,8 @@ def _write_requirement_references(
     end: str,
 ) -> list[Line]:
     """Return a line for each requirement; the first line bears the name of the dependency."""
+    if scope is not None and is_referential_owner(scope):
+        keyword = f"ref {keyword}"
     name, lines = member.name, []
     for requirement in requirements:
         reference = str(format_reference(writer.plan, scope, requirement))
@@ -241,6 +245,8 @@ def _write_usage_allocation(
     """Write an allocation between two features, which *scope* may be the definition of."""
     name = quote_name(member.name) if member.name else ""
     head = f"allocation {name} allocate" if name else "allocate"
+    if scope is not None and is_referential_owner(scope):
+        head = f"ref {head}"
     names = [format_reference(writer.plan, scope, end) for end in ends]
     line = Line(f"{head} {names[0]} to {names[1]}", write_contents(writer, member))
     if scope is member.parent or scope is None:

@@ -23,6 +23,7 @@ _WITHOUT_VALUE = frozenset({"transition", "succession", "flow", "comment", "depe
 _QUALIFIED = (Kind.ENUMERATION_LITERAL, Kind.PROPERTY, Kind.PORT, Kind.OPERATION, Kind.INSTANCE)
 """Kinds that an incomplete qualified name may denote."""
 _NUMBERS = frozenset({"Integer", "Real", "UnlimitedNatural", "Number"})
+_ARITHMETIC = frozenset("+-*/%")
 SIGNS = {"bound": "=", "initial": ":=", "default": "default =", "default initial": "default :="}
 """Words before a value, by its kind."""
 
@@ -49,6 +50,43 @@ def format_expression(writer: Writer, scope: Member | None, text: str) -> str | 
 def print_expression(writer: Writer, scope: Member | None, tree: syntax.Expression) -> str:
     """Return the SysML v2 text of an expression. Raises UnknownNameError."""
     return _ExpressionPrinter(writer.plan, scope).print(tree, 0)
+
+
+def is_condition(writer: Writer, scope: Member | None, text: str) -> bool:
+    """Whether a text is an expression whose value may be Boolean."""
+    try:
+        return _may_be_boolean(writer, scope, parse_expression(text))
+    except (syntax.ExpressionError, UnknownNameError, RecursionError):
+        return False
+
+
+def _may_be_boolean(writer: Writer, scope: Member | None, tree: syntax.Expression) -> bool:
+    match tree:
+        case syntax.Literal(value):
+            return isinstance(value, bool)
+        case syntax.Unary(op):
+            return op == "not"
+        case syntax.Binary(op):
+            return op not in _ARITHMETIC
+        case syntax.Conditional(_, then, otherwise):
+            return all(_may_be_boolean(writer, scope, branch) for branch in (then, otherwise))
+        case syntax.Name() | syntax.Member():
+            member = resolve_name(writer, scope, tree)
+            return member is None or member.element is None or _has_boolean_type(writer, member)
+    return True
+
+
+def _has_boolean_type(writer: Writer, member: Member) -> bool:
+    """Whether a feature is Boolean by its type and its default, as far as they are known."""
+    element = member.element
+    if element is None or member.shape.keyword not in ("attribute", "ref"):
+        return element is None
+    default = element.attrs.get("default", True)
+    type_ = type_of(writer.graph, element)
+    if type_ is None:
+        return isinstance(default, bool)
+    family = [type_, *generals(writer.graph, type_)]
+    return isinstance(default, bool | str) and any(general.name == "Boolean" for general in family)
 
 
 def resolve_name(writer: Writer, scope: Member | None, tree: syntax.Expression) -> Member | None:
@@ -87,7 +125,8 @@ class _ExpressionPrinter:
             feature = None
             if base_member is not None:
                 feature = find_by_model_name(self._plan, base_member, tree.name)
-            if feature is None:
+            if feature is None or (base_member is not None and not base_member.shape.is_usage):
+                # A definition or a package has no values of its features.
                 raise UnknownNameError(tree.name)
             return f"{base}.{quote_name(feature.name)}", feature
         return self.print(tree, POSTFIX), None
@@ -98,10 +137,14 @@ class _ExpressionPrinter:
             case syntax.Literal(value):
                 return _print_literal(value), POSTFIX
             case syntax.Name() | syntax.Member():
-                return self.print_chain(tree)[0], POSTFIX
+                text, member = self.print_chain(tree)
+                if member is not None and not member.shape.is_usage:
+                    # A definition or a package has no value.
+                    raise UnknownNameError(member.name)
+                return text, POSTFIX
             case syntax.Call(function, args):
                 arguments = ", ".join(self.print(arg, 0) for arg in args)
-                return f"{self.print(function, POSTFIX)}({arguments})", POSTFIX
+                return f"{self.print_chain(function)[0]}({arguments})", POSTFIX
             case syntax.Index(base, index):
                 return f"{self.print(base, POSTFIX)}#({self.print(index, 0)})", POSTFIX
             case syntax.Unary(op, operand):

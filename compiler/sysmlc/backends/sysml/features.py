@@ -1,10 +1,11 @@
 """Features: properties, ports, operations, parameters, pins and object nodes."""
 
 from sysmlc.backends.sysml.comments import write_opaque_bodies
-from sysmlc.backends.sysml.compatibility import is_without_parameters
+from sysmlc.backends.sysml.compatibility import forbids_inherited_types, is_without_parameters
 from sysmlc.backends.sysml.connections import write_association_end
 from sysmlc.backends.sysml.declarations import (
     Head,
+    is_referential_owner,
     list_types,
     make_definition_head,
     make_feature_head,
@@ -13,9 +14,9 @@ from sysmlc.backends.sysml.definitions import write_contents
 from sysmlc.backends.sysml.expressions import SIGNS, format_value
 from sysmlc.backends.sysml.plan import Member
 from sysmlc.backends.sysml.printing import Line, quote_name
-from sysmlc.backends.sysml.references import is_accessible
+from sysmlc.backends.sysml.references import is_accessible, iter_generals
 from sysmlc.backends.sysml.writer import Writer
-from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir import Edge, Element, Kind
 from sysmlc.ir.query import direction_of, flow_directions, type_of
 
 _DIRECTIONS = ("in", "out", "inout")
@@ -62,11 +63,12 @@ def write_port(writer: Writer, member: Member) -> list[Line]:
     if member.shape.keyword == "part":
         keyword = "fullPort" if is_full_port else "blockPort"
         head.prefixes = [word for word in head.prefixes if word not in ("ref", *_DIRECTIONS)]
+        head.prefixes += ["ref"] if is_referential_owner(member.parent) else []
         head.prefixes.append(f"#{writer.refer_to_sysmlc(member.parent, keyword)}")
         head.types = [type_.removeprefix("~") for type_ in head.types or ()]
         return [Line(head.format(), body)]
     if not _has_port_type(writer, element):
-        body = _move_type_inside(element, head) + body
+        body = _move_type_inside(writer, member, head) + body
     if is_full_port:
         head.prefixes.append(f"#{writer.refer_to_sysmlc(member.parent, 'fullPort')}")
     return [Line(head.format(), body)]
@@ -83,13 +85,14 @@ def _has_port_type(writer: Writer, port: Element) -> bool:
     return member.shape.keyword == "port def"
 
 
-def _move_type_inside(port: Element, head: Head) -> list[Line]:
+def _move_type_inside(writer: Writer, member: Member, head: Head) -> list[Line]:
     """Return a feature typed by the port's type, whose values flow through a port in SysML 1.2."""
-    types = [type_.removeprefix("~") for type_ in head.types or ()]
+    port = member.require_element()
+    if not head.types:
+        return []
+    types = [type_.removeprefix("~") for type_ in list_types(writer, member, port)[0]]
     head.types = []
     direction = str(port.attrs.get("direction", ""))
-    if not types:
-        return []
     head.prefixes = [word for word in head.prefixes if word != direction]
     return [Line(f"{direction or 'ref'} : {', '.join(types)}")]
 
@@ -101,8 +104,7 @@ def write_operation(writer: Writer, member: Member) -> list[Line]:
     """Write an operation as an action of its owner; it specialises a method of another name."""
     element = member.require_element()
     head = make_definition_head(writer, member)
-    owner = member.parent
-    if owner is not None and owner.shape.usage_keyword in ("port", "attribute"):
+    if is_referential_owner(member.parent):
         head.prefixes.append("ref")
     body = write_contents(writer, member)
     for method in writer.graph.targets(element, Edge.METHOD):
@@ -134,9 +136,10 @@ def _redefine_operations(writer: Writer, member: Member, element: Element, head:
 
 def write_reception(writer: Writer, member: Member) -> list[Line]:
     """Write a reception: an action that accepts the signal."""
-    types, _ = list_types(writer, member.parent, member.require_element())
+    types, _ = list_types(writer, member, member.require_element())
     payload = f" accept : {types[0]}" if types else ""
-    return [Line(f"action {quote_name(member.name)}{payload}", write_contents(writer, member))]
+    keyword = "ref action" if is_referential_owner(member.parent) else "action"
+    return [Line(f"{keyword} {quote_name(member.name)}{payload}", write_contents(writer, member))]
 
 
 def write_parameter(writer: Writer, member: Member) -> list[Line]:
@@ -144,7 +147,7 @@ def write_parameter(writer: Writer, member: Member) -> list[Line]:
     element = member.require_element()
     head = make_feature_head(writer, member)
     _add_direction(head)
-    if _redefines_other_kind(writer, member, element):
+    if _redefines_other_kind(writer, member):
         # A reference may have the types of both parameters.
         head.keyword = "ref"
     if "default" in element.attrs:
@@ -154,30 +157,25 @@ def write_parameter(writer: Writer, member: Member) -> list[Line]:
     return [Line(head.format(), write_contents(writer, member))]
 
 
-def _redefines_other_kind(writer: Writer, member: Member, parameter: Element) -> bool:
-    """Whether only one of the parameters at the same position of redefined operations is a value.
+def _redefines_other_kind(writer: Writer, member: Member) -> bool:
+    """Whether a parameter cannot have the types of the parameter that it redefines.
 
-    In SysML v2, a parameter redefines the parameter at its position.
+    In SysML v2, a parameter redefines the parameters at its position in the generals of its owner.
     """
-    graph = writer.graph
-    operation = graph.owner(parameter)
-    if operation is None:
+    plan, owner = writer.plan, member.parent
+    if owner is None:
         return False
-    position = _list_parameters(graph, operation).index(parameter)
-    for redefined in graph.targets(operation, Edge.REDEFINES):
-        general = writer.plan.find(next(iter(_list_parameters(graph, redefined)[position:]), None))
-        if general is not None and _are_value_and_object(member, general):
-            return True
-    return False
+    position = _list_parameters(owner).index(member)
+    generals = list(iter_generals(plan, owner))
+    methods = [] if owner.element is None else writer.graph.targets(owner.element, Edge.METHOD)
+    generals += [general for method in methods if (general := plan.find(method)) is not None]
+    redefined = [p for general in generals for p in _list_parameters(general)[position:][:1]]
+    return forbids_inherited_types(plan, member, [p.require_element() for p in redefined])
 
 
-def _list_parameters(graph: Graph, operation: Element) -> list[Element]:
-    return [element for element in graph.owned(operation) if element.kind is Kind.PARAMETER]
-
-
-def _are_value_and_object(first: Member, second: Member) -> bool:
-    keywords = {first.shape.keyword, second.shape.keyword}
-    return "attribute" in keywords and bool(keywords & {"item", "part", "occurrence"})
+def _list_parameters(behaviour: Member) -> list[Member]:
+    kinds = (Kind.PARAMETER, Kind.PIN, Kind.ACTIVITY_PARAMETER)
+    return [m for m in behaviour.members if m.element is not None and m.element.kind in kinds]
 
 
 def _add_direction(head: Head) -> None:
@@ -199,6 +197,8 @@ def write_pin(writer: Writer, member: Member) -> list[Line]:
     parameter = _find_parameter(writer, element)
     if parameter is not None:
         _redefine_parameter(writer, member, parameter, head)
+    elif _redefines_other_kind(writer, member):
+        head.keyword = "ref"
     value = format_value(writer, member.parent, element, element)
     value = value or _format_result(writer, member, element)
     sign = SIGNS[str(element.attrs.get("value_kind", "bound"))]
@@ -212,8 +212,8 @@ def _redefine_parameter(writer: Writer, member: Member, parameter: Element, head
     general = writer.plan.find(parameter)
     if name is None or general is None:
         return
-    if _are_value_and_object(member, general):
-        # A reference may have the type of the pin although its parameter is no attribute.
+    if forbids_inherited_types(writer.plan, member, [parameter]):
+        # A reference may have the types of both.
         head.keyword = "ref"
     head.redefines = [*(head.redefines or ()), name]
     if name == quote_name(member.name):

@@ -92,7 +92,8 @@ def _write_slot(writer: Writer, member: Member, slot: Element) -> list[Line]:
             writer.record_unreachable(slot, "instance-of")
         return children
     value = _format_slot_value(writer, member, slot, feature)
-    keyword = "port " if feature.kind is Kind.PORT else ""
+    is_port = feature_member is not None and feature_member.shape.keyword == "port"
+    keyword = "port " if is_port else ""
     values = tuple(
         f"{key.removeprefix('value.')}={format_fact_value(value)}"
         for key, value in slot.attrs.items()

@@ -163,8 +163,10 @@ IMPORTED = frozenset().union(*IMPORTS.values(), _SYSMLC_LONG_NAMES.split())
 MEMBER_NAMES_FILE = "library-members.txt"
 """Names by base, in ``metamodels``; ``tests/backends/sysml/library_names.py`` writes it."""
 BASES = {
+    "accept": "Actions::AcceptAction",
     "action": "Actions::Action",
     "allocation": "Allocations::Allocation",
+    "assign": "Actions::AssignmentAction",
     "attribute": "Base::Anything",
     "connection": "Connections::Connection",
     "constraint": "Constraints::ConstraintCheck",
@@ -178,13 +180,21 @@ BASES = {
     "port": "Ports::Port",
     "ref": "Base::Anything",
     "requirement": "Requirements::RequirementCheck",
+    "send": "Actions::SendAction",
     "state": "States::StateAction",
+    "transition": "States::StateTransitionAction",
+    "trigger": "TransitionPerformances::TransitionPerformance",
     "use case": "UseCases::UseCase",
     "verification": "VerificationCases::VerificationCase",
     "view": "Views::View",
     "viewpoint": "Views::ViewpointCheck",
 }
 """Bases of usages by keyword."""
+_SPECIAL_BASES = {
+    "action": (BASES["accept"], BASES["assign"], BASES["send"]),
+    "transition": (BASES["trigger"],),
+}
+"""More bases: the keyword of an action does not tell whether it sends, accepts or assigns."""
 _CONTROL_NODES = ("decide", "merge", "fork", "join")
 """Keywords of control nodes, whose base is that of actions."""
 _PRIVATELY_IMPORTED_NAMES = frozenset(("add", "addAt", "remove", "removeAt"))
@@ -249,6 +259,11 @@ def list_inherited_names(keyword: str) -> frozenset[str]:
     usage_keyword = keyword.removesuffix(" def")
     base = BASES.get("action" if usage_keyword in _CONTROL_NODES else usage_keyword)
     names = _read_member_names().get(base or "", frozenset())
+    if base and keyword == usage_keyword:
+        # A usage is a feature, and inherits from Base::things, which have an owner of this name.
+        names |= {"that"}
+    special_bases = _SPECIAL_BASES.get(usage_keyword, ())
+    names = names.union(*(_read_member_names()[base] for base in special_bases))
     return names | _PRIVATELY_IMPORTED_NAMES if usage_keyword == "action" else names
 
 

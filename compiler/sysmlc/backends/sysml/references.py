@@ -43,15 +43,23 @@ def visible_members(plan: Plan, namespace: Member) -> dict[str, Member]:
     """Return own and inherited members by name. The dictionary is shared between all calls.
 
     Inherited members of the same name hide one another (KerML 1.0, 8.3.2.4), unless one of them
-    redefines the other.
+    redefines the other. What an own member redefines is not inherited.
     """
     if namespace.visible_names is None:
         own_members = {member.name: member for member in namespace.members if member.name}
         # In a cycle of generalisations, the namespace is asked again before it is complete.
         namespace.visible_names = own_members
+        redefined = {
+            plan.find(feature)
+            for member in namespace.members
+            if member.element is not None
+            for feature in plan.graph.targets(member.element, Edge.REDEFINES)
+        }
         inherited: dict[str, Member | None] = {}
         for general in _iter_direct_generals(plan, namespace):
             for name, member in visible_members(plan, general).items():
+                if member in redefined:
+                    continue
                 rival = inherited.setdefault(name, member)
                 if rival is None or rival is member or is_or_redefines(plan, rival, member):
                     continue
@@ -121,8 +129,20 @@ def _iter_direct_generals(plan: Plan, namespace: Member) -> Iterator[Member]:
             if general is namespace and target is not element:
                 # The target is the property-specific class of the feature: skip to its generals.
                 yield from _iter_class_generals(plan, target)
-            elif general is not None:
+            elif general is not None and _inherits_from(namespace, edge, general):
                 yield general
+
+
+def _inherits_from(namespace: Member, edge: Edge, general: Member) -> bool:
+    """Whether the target of an edge is a general in the text.
+
+    A feature inside a port has types that are no port definitions; dependencies express
+    specialisations that SysML v2 does not allow.
+    """
+    if edge is Edge.SPECIALIZES and not namespace.shape.may_specialize(general.shape):
+        return False
+    is_port_type = edge is Edge.TYPED_BY and namespace.shape.keyword == "port"
+    return not is_port_type or general.shape.usage_keyword == "port"
 
 
 def _iter_class_generals(plan: Plan, class_: Element) -> Iterator[Member]:

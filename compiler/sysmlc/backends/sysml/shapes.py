@@ -19,6 +19,24 @@ _NAMESPACES = frozenset(
     {"package", "library package", "comment", "doc", "dependency", "import", "start"}
 )
 
+_CONFORMING = frozenset(
+    {
+        ("part", "item"),
+        ("part", "occurrence"),
+        ("item", "occurrence"),
+        ("port", "occurrence"),
+        ("action", "occurrence"),
+        ("state", "action"),
+        ("verification", "action"),
+        ("enum", "attribute"),
+        ("connection", "part"),
+        ("interface", "connection"),
+        ("interface", "part"),
+        ("connection", "occurrence"),
+    }
+)
+"""Pairs of different keywords of which the first may specialise the second."""
+
 
 class Shape(Struct, frozen=True):
     """The keyword of a member, and whether the text has to name the member."""
@@ -40,6 +58,15 @@ class Shape(Struct, frozen=True):
     def usage_keyword(self) -> str:
         """The keyword of a usage, also for the definition of such usages."""
         return self.keyword.removesuffix(" def")
+
+    def may_specialize(self, general: "Shape") -> bool:
+        """Whether this definition may specialise *general*, or this usage have it as a type."""
+        keywords = (self.usage_keyword, general.usage_keyword)
+        return (
+            keywords[0] == keywords[1]
+            or keywords in _CONFORMING
+            or general.is_definition != self.is_definition
+        )
 
     @property
     def library_names(self) -> frozenset[str]:
