@@ -97,7 +97,8 @@ def test_a_run_uses_the_names_that_requirements_use(workspace, all_passes):
         "step 2: gripper.event=none, gripper.state=Closed, finished(handle)=true, "
         "running(pick)=false, finished(pick)=false, running(close)=false, finished(close)=false, "
         "running(store)=true",
-        "step 3: holds=true, running(handle)=false, finished(handle)=false, running(store)=false",
+        "step 3: holds=true, running(handle)=false, finished(handle)=false, running(store)=false"
+        "  <-- violated here",
         "step 4: nothing changes",
         "then again from step 4",
     ]

@@ -121,7 +121,7 @@ def test_a_failing_scenario_is_exit_code_1(tmp_path):
     model = str(ROOT / "examples/lego-recipe/lego-recipe.uml")
     result = CliRunner().invoke(sysmlc, ["simulate", model, "--scenario", str(scenario)])
     assert result.exit_code == 1
-    assert "step 2: closed is true, expected false" in result.stdout
+    assert "step 3: closed is true, expected false" in result.stdout
 
 
 def test_make_has_the_documented_targets():

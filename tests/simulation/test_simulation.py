@@ -79,7 +79,7 @@ def test_a_scenario_that_follows_the_diagram_passes():
 def test_properties_keep_their_value_and_done_inputs_last_one_step():
     narrow = PULLS.replace("- expect: {run_read: true}", "- inputs: {angle: 30}", 1)
     report, _ = simulate(narrow.replace("angle: 90", "angle: 30, done_read: false"))
-    assert str(report.results[0].difference) == "step 3: run_pull is false, expected true"
+    assert str(report.results[0].difference) == "step 4: run_pull is false, expected true"
 
 
 def test_the_first_difference_is_reported_with_its_line():
@@ -87,7 +87,7 @@ def test_the_first_difference_is_reported_with_its_line():
     assert not report.passed
     assert report.as_text() == (
         "FAILED  Gate.pass: a wide gate pulls\n"
-        "        s.yaml:10: step 3: run_pull is true, expected false\n"
+        "        s.yaml:10: step 4: run_pull is true, expected false\n"
         "0 of 1 scenarios passed\n"
     )
 
@@ -103,7 +103,7 @@ def test_junit_has_a_case_for_each_scenario():
     good, bad = root.iter("testcase")
     assert (good.get("classname"), good.get("name")) == ("Gate.pass", "a wide gate pulls")
     assert good.find("failure") is None
-    assert bad.find("failure").get("message") == "step 3: run_pull is true, expected false"
+    assert bad.find("failure").get("message") == "step 4: run_pull is true, expected false"
     assert report.as_junit() == simulate(two_scenarios)[0].as_junit()
 
 
@@ -115,16 +115,16 @@ def test_the_failing_run_is_drawn_with_a_message_for_each_change():
         "hide footbox\n"
         "participant environment\n"
         'participant "Gate.pass" as component\n'
-        "== step 0 ==\n"
+        "== step 1 ==\n"
         "environment -> component : angle = 90\n"
         "component -> environment : run_read = true\n"
-        "== step 1 ==\n"
-        "environment -> component : done_read = true\n"
         "== step 2 ==\n"
+        "environment -> component : done_read = true\n"
+        "== step 3 ==\n"
         "environment -> component : done_read = false\n"
         "component -> environment : run_read = false\n"
         "component -> environment : at_read_to_wide = true\n"
-        "== step 3 ==\n"
+        "== step 4 ==\n"
         "environment -> component : done_pull = true\n"
         "component -> environment : run_pull = true\n"
         "component -> environment : at_read_to_wide = false\n"

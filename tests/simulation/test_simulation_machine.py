@@ -63,21 +63,21 @@ def test_a_guard_that_does_not_hold_keeps_the_state():
     report = simulate(
         SCENARIO.replace("count: 2}\n  - expect: {state: d", "}\n  - expect: {state: d")
     )
-    assert str(report.results[0].difference) == "step 4: state is down, expected up"
+    assert str(report.results[0].difference) == "step 5: state is down, expected up"
 
 
 def test_the_run_is_drawn_message_by_message():
     lines = simulate(SCENARIO).sequence_diagram().splitlines()
-    assert lines[lines.index("== step 1 ==") :] == [
-        "== step 1 ==",
+    assert lines[lines.index("== step 2 ==") :] == [
+        "== step 2 ==",
         "environment -> component : event = Go",
         "environment -> component : count = 2",
-        "== step 2 ==",
+        "== step 3 ==",
         "environment -> component : event = none",
         "component -> environment : state = down",
-        "== step 3 ==",
-        "environment -> component : event = Back",
         "== step 4 ==",
+        "environment -> component : event = Back",
+        "== step 5 ==",
         "environment -> component : event = none",
         "component -> environment : state = up",
         "@enduml",

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Protocol
 import click
 from msgspec.structs import replace
 
+from sysmlc.support.counts import count
 from sysmlc.support.escapes import escape_undecodable
 
 if TYPE_CHECKING:
@@ -163,11 +164,15 @@ def print_findings(
 
 
 def _shorten_finding(finding: "Finding") -> "Finding":
-    """Return the finding without its XPath and with the first of many notes."""
+    """Return the finding without its XPath and with the first and the key one of many notes."""
+    from sysmlc.diagnostics import KEY_MARK
+
     notes = finding.diagnostic.notes
     if len(notes) > _MAX_NOTES:
-        rest = len(notes) - _MAX_NOTES + 1
-        short_notes = (*notes[: _MAX_NOTES - 1], f"{rest} more notes; --verbose shows them")
+        key = [note for note in notes[_MAX_NOTES - 1 :] if KEY_MARK in note][:1]
+        first = notes[: _MAX_NOTES - 1 - len(key)]
+        rest = count(len(notes) - len(first) - len(key), "more note")
+        short_notes = (*first, *key, f"{rest}; --verbose shows them")
         finding = replace(finding, diagnostic=replace(finding.diagnostic, notes=short_notes))
     return replace(finding, xpath="") if finding.xpath else finding
 

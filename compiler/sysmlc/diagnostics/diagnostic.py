@@ -4,6 +4,9 @@ from msgspec import Struct
 
 from sysmlc.diagnostics.rule import Rule, Severity
 
+KEY_MARK = "  <-- "
+"""What a note contains that is shown even if others are not, in front of the reason."""
+
 
 class Place(Struct, frozen=True):
     """A position in an input, from which line and column are computed when they are shown.

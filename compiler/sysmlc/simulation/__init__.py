@@ -143,7 +143,7 @@ def _follow_runs(
     is_complete = True
     inputs = dict(resting_values)
     traces: list[_Trace] = [()]
-    for number, step in enumerate(scenario.steps):
+    for number, step in enumerate(scenario.steps, 1):
         # Inputs that are not pulses retain their value until the scenario sets them again.
         inputs.update({name: resting_values[name] for name in player.pulses})
         inputs.update({entry.name: entry.value for entry in step.inputs})

@@ -7,12 +7,13 @@ from msgspec import Struct, field
 
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.machines.interpreter import Valuation
+from sysmlc.support.counts import count
 from sysmlc.support.escapes import escape_invisible
 from sysmlc.support.plantuml_text import escape_line
 
 
 class Difference(Struct, frozen=True):
-    """The first value that differs from the expected one; steps count from 0, lines from 1."""
+    """The first value that differs from the expected one; steps and lines count from 1."""
 
     step: int
     variable: str
@@ -70,7 +71,7 @@ class Report(Struct, frozen=True):
     def _iter_result_lines(self, result: Result) -> Iterator[str]:
         title = escape_invisible(f"{result.component}: {result.name}")
         if result.passed:
-            yield f"passed  {title} ({_count_steps(len(result.trace))}){result.range_text}"
+            yield f"passed  {title} ({count(len(result.trace), 'step')}){result.range_text}"
         elif not result.is_decided:
             yield f"not decided {title}"
         elif result.difference is None:
@@ -128,10 +129,6 @@ def _drop_invalid_characters(text: str) -> str:
     return "".join(c for c in text if c in "\t\n" or (c >= " " and not "\ud800" <= c <= "\udfff"))
 
 
-def _count_steps(number: int) -> str:
-    return "1 step" if number == 1 else f"{number} steps"
-
-
 def show_value(value: Literal | None) -> str:
     """Return a value as scenarios spell it."""
     if isinstance(value, bool):
@@ -149,7 +146,7 @@ def _iter_diagram_lines(result: Result) -> Iterator[str]:
     yield "participant environment"
     yield f'participant "{escape_line(result.component)}" as component'
     previous: Valuation = {}
-    for number, valuation in enumerate(result.trace):
+    for number, valuation in enumerate(result.trace, 1):
         messages = list(_iter_message_lines(result, previous, valuation))
         is_failing = result.difference is not None and result.difference.step == number
         if messages or is_failing:

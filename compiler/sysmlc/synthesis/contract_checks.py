@@ -13,7 +13,7 @@ from sysmlc.logic.contract import Conjunct, Contract, Owner
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import reduce_contract
 from sysmlc.synthesis.algebra.composition import conjoin_viewpoints
-from sysmlc.synthesis.algebra.fair_systems import DomainError
+from sysmlc.synthesis.algebra.fair_systems import DomainError, Trace
 from sysmlc.synthesis.algebra.refinement import Failure, find_refinement_failures
 from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.bdd.manager import Manager
@@ -35,6 +35,7 @@ from sysmlc.synthesis.witnesses import (
     Witness,
     describe_named_run,
     manager_factory,
+    mark_violation,
     name_conjunct,
     name_run,
     print_temporal,
@@ -259,7 +260,10 @@ def _check_requirements(
         report_failure(ASSUMES, failure, contract.component, subject, sink, atoms=behaviour.atoms)
     undischarged = [failure.conjunct for failure in failures]
     check = BehaviourCheck(behaviour, requirements, tuple(undischarged), options)
-    verdicts = tuple(check.decide_requirements())
+    verdicts = tuple(
+        replace(answer, trace=answer.trace and _trim_run(answer.trace, answer.conjunct, contract))
+        for answer in check.decide_requirements()
+    )
     for requirement in verdicts:
         _report_verdict(behaviour, requirement, place, sink)
     findings = _find_behaviour_findings(check, behaviour, requirements, place, sink)
@@ -274,6 +278,18 @@ def _check_requirements(
         for answer in verdicts
     )
     return CheckedContract(verdict, named, bool(undischarged), findings, witnesses=witnesses)
+
+
+def _trim_run(trace: Trace, broken: Conjunct, behaviour: Contract) -> Trace:
+    """Return a run with its violated step marked, and without the inputs that nothing reads."""
+    formulas = (*behaviour.guarantees, *behaviour.assumptions, broken)
+    read = f.variable_names(*(conjunct.formula for conjunct in formulas))
+    unread = {
+        variable.name
+        for variable in behaviour.variables
+        if variable.owner is Owner.ENVIRONMENT and variable.name not in read
+    }
+    return replace(mark_violation(trace, broken), auxiliary=trace.auxiliary | unread)
 
 
 def _find_behaviour_findings(

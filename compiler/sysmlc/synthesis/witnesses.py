@@ -5,13 +5,15 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from msgspec import Struct
 from msgspec.structs import replace
 
-from sysmlc.diagnostics import Rule, Sink, Subject
+from sysmlc.diagnostics import KEY_MARK, Rule, Sink, Subject
 from sysmlc.logic import formula as f
 from sysmlc.logic.components.names import Atom
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.evaluate import value_of
 from sysmlc.logic.formula import Literal, rename_variables
 from sysmlc.logic.printing import print_formula, print_literal
+from sysmlc.logic.violations import find_violated_step
+from sysmlc.support.counts import count
 from sysmlc.support.output import assign_file_names
 from sysmlc.support.plantuml_text import escape_line, format_label
 from sysmlc.synthesis.algebra.fair_systems import Trace
@@ -22,6 +24,8 @@ from sysmlc.synthesis.games.game import OutsideGr1Error
 
 _MAX_SHOWN_STEPS = 12
 """Steps of a run that a message lists; further steps are only counted."""
+_NAMES_OF_VIOLATIONS = {False: "violated here", True: "never fulfilled from here on"}
+"""How texts mark the violated step of a run, by whether a demand stays open."""
 _ENVIRONMENT = "environment"
 
 Values = Mapping[str, Literal]
@@ -43,6 +47,14 @@ class Witness(Struct, frozen=True):
     parties: tuple[Party, ...]
 
 
+def mark_violation(trace: Trace, broken: Conjunct) -> Trace:
+    """Return a run with the step that violates a conjunct, both in the variables of a behaviour."""
+    if trace.violated is not None or trace.loop == len(trace.steps):
+        return trace
+    step, is_decided = find_violated_step(broken, trace.steps, trace.loop) or (None, True)
+    return replace(trace, violated=step, is_open=not is_decided)
+
+
 def _iter_changes(trace: Trace) -> Iterator[Values]:
     """Yield for each step the values that have changed; for the first step all values.
 
@@ -61,15 +73,28 @@ def describe_run(trace: Trace, broken: Conjunct | None = None) -> Iterator[str]:
     text of *broken* names are shown.
     """
     hidden = _hidden_variables(trace, broken)
+    marked = mark_violation(trace, broken) if broken is not None else trace
+    violated = 0 if marked.violated is None else marked.violated + 1
+    last_shown = 0
     for number, changed in enumerate(_iter_changes(trace), 1):
-        if number > _MAX_SHOWN_STEPS:
-            yield f"and {len(trace.steps) - _MAX_SHOWN_STEPS} more"
-            break
+        if number > _MAX_SHOWN_STEPS and number != violated:
+            continue
+        if number > last_shown + 1:
+            yield f"and {count(number - last_shown - 1, 'more step')}"
         shown_names = [name for name in changed if name not in hidden]
         unchanged = "only auxiliary variables change" if changed else "nothing changes"
-        yield f"step {number}: {_print_values(changed, shown_names) or unchanged}"
+        mark = _describe_violation(marked) if number == violated else ""
+        yield f"step {number}: {_print_values(changed, shown_names) or unchanged}{mark}"
+        last_shown = number
+    if last_shown < len(trace.steps):
+        yield f"and {count(len(trace.steps) - last_shown, 'more step')}"
     is_ended = trace.loop == len(trace.steps)
     yield "then there is no answer" if is_ended else f"then again from step {trace.loop + 1}"
+
+
+def _describe_violation(trace: Trace) -> str:
+    """Return the mark at the line of the violated step."""
+    return KEY_MARK + _NAMES_OF_VIOLATIONS[trace.is_open]
 
 
 def _hidden_variables(trace: Trace, broken: Conjunct | None) -> Set[str]:
@@ -105,7 +130,7 @@ def name_run(trace: Trace, atoms: Sequence[Atom]) -> Trace:
     )
     auxiliary = {atom.variable.name for atom in atoms if atom.variable.is_auxiliary}
     quiet = frozenset(atom.variable.name for atom in atoms if atom.is_quiet)
-    return Trace(steps, trace.loop, trace.auxiliary | auxiliary, quiet)
+    return replace(trace, steps=steps, auxiliary=trace.auxiliary | auxiliary, quiet=quiet)
 
 
 def name_conjunct(conjunct: Conjunct, atoms: Sequence[Atom]) -> Conjunct:
@@ -116,7 +141,8 @@ def name_conjunct(conjunct: Conjunct, atoms: Sequence[Atom]) -> Conjunct:
 
 def describe_named_run(trace: Trace, broken: Conjunct, atoms: Sequence[Atom]) -> tuple[str, ...]:
     """Return the lines of ``describe_run`` with *atoms* in place of variables."""
-    return tuple(describe_run(name_run(trace, atoms), name_conjunct(broken, atoms)))
+    named = name_run(mark_violation(trace, broken), atoms)
+    return tuple(describe_run(named, name_conjunct(broken, atoms)))
 
 
 def export_run(trace: Trace) -> dict[str, object]:
@@ -125,7 +151,7 @@ def export_run(trace: Trace) -> dict[str, object]:
         {name: value for name, value in values.items() if name not in trace.auxiliary}
         for values in trace.steps
     ]
-    return {"steps": steps, "loop": trace.loop}
+    return {"steps": steps, "loop": trace.loop, "violated": trace.violated}
 
 
 def witness_files(witnesses: Iterable[Witness]) -> Iterator[tuple[str, str]]:
@@ -147,7 +173,8 @@ def witness_diagram(witness: Witness) -> str:
         {name: value for name, value in values.items() if name not in hidden}
         for values in witness.trace.steps
     )
-    return run_diagram(title, replace(witness.trace, steps=steps), witness.parties)
+    trace = replace(mark_violation(witness.trace, witness.broken), steps=steps)
+    return run_diagram(title, trace, witness.parties)
 
 
 def run_diagram(title: str, trace: Trace, parties: Sequence[Party]) -> str:
@@ -186,6 +213,8 @@ def _diagram_steps(trace: Trace, contracts: Sequence[Contract]) -> Iterator[str]
             yield "group again and again"
         yield f"== step {number + 1} =="
         yield from _diagram_messages(changed, contracts)
+        if number == trace.violated:
+            yield f"note over p1 #FFDDDD : {_NAMES_OF_VIOLATIONS[trace.is_open]}"
     is_ended = trace.loop == len(trace.steps)
     yield "note over p1 : no answer is left" if is_ended else "end"
 

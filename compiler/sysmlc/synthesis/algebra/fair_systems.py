@@ -305,12 +305,16 @@ class Trace(Struct, frozen=True):
     A run may also end because one side has no allowed values. Then ``loop`` is the number of steps,
     and the variables of this side have no value in the last step. ``auxiliary`` are the names of
     auxiliary variables (``Variable``), ``quiet`` those that texts omit while they have been false.
+    ``violated`` is the step that violates the formula which the run refutes, if one is to blame;
+    ``is_open`` means that the formula only demands something later that never comes.
     """
 
     steps: tuple[Mapping[str, Literal], ...]
     loop: int
     auxiliary: frozenset[str] = frozenset()
     quiet: frozenset[str] = frozenset()
+    violated: int | None = None
+    is_open: bool = False
 
 
 def shortest_path(runs: Runs, target: Node) -> list[Node]:
