@@ -50,7 +50,7 @@ def test_auxiliary_variables_are_omitted_unless_the_conjunct_names_them():
 
 def test_a_long_run_is_cut():
     lines = list(describe_run(Trace(tuple({"n": number} for number in range(30)), 0)))
-    assert lines[-2:] == ["and 18 more", "then again from step 1"]
+    assert lines[-2:] == ["and 18 more steps", "then again from step 1"]
     assert len(lines) == 14
 
 
