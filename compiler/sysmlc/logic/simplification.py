@@ -48,6 +48,8 @@ def rebuild(op: Op, args: tuple[Formula, ...]) -> Formula:
         return Const(value_of(Apply(op, args), {}))
     if op in _CONNECTIVES:
         return _CONNECTIVES[op](*args)
+    if op is Op.MOD and args[1] == Const(1):
+        return Const(0)  # the values are whole numbers
     return _move_constant_right(op, args) if op in _OPPOSITE else Apply(op, args)
 
 

@@ -119,6 +119,8 @@ def make_contract(
         for statement, reading in assumed
         for viewpoint in _list_viewpoints(graph, statement, names)
         for conjunct in _classify(scope, statement, reading, viewpoint, is_assumed=True)
+        # The values of constants may make an assumption true: it assumes nothing.
+        if conjunct.formula != f.TRUE
     ]
     inputs, outputs = state_initial_values(scope, _list_used_names(scope, (*assumptions, *demands)))
     component = component_of(graph, subject)
