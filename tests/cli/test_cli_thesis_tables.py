@@ -9,6 +9,7 @@ import re
 from pathlib import Path
 
 import pytest
+import spot
 
 pytestmark = pytest.mark.usefixtures("all_passes")
 
@@ -111,6 +112,29 @@ def test_printed_guarantees_that_the_library_lacks_make_it_unrealizable(workspac
         "Cells::Cell.printed: unrealizable",
         "Cells::Cell.shipped: realizable",
     ]
+
+
+SMALL = """package Cells {
+    private import DIN8580::*;
+    part def Cell {
+        action move : Move { constant attribute :>> columns = 2; constant attribute :>> rows = 1; }
+        action place : Place;
+    }
+    part def Coordinator :> Picking, Placing, Turning { constant attribute :>> positions = 2; }
+}
+"""
+
+
+@pytest.mark.parametrize("component", ["Cell.move", "Cell.place", "Coordinator"])
+def test_spot_realizes_the_contracts_with_printed_guarantees(workspace, component):
+    workspace.write("cells.sysml", SMALL)
+    workspace.sysmlc("cells.sysml", "-o", "out", "--emit", "+spot")
+    formula, parts = (
+        workspace.read(f"out/contracts/Cells.{component}.spot.{suffix}")
+        for suffix in ("ltl", "part")
+    )
+    outputs = re.search(r"\.outputs (.*)", parts)[1].split()
+    assert spot.solve_game(spot.ltl_to_game(formula.strip(), outputs))
 
 
 def read_loader():
