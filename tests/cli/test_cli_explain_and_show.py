@@ -9,11 +9,11 @@ def test_explain_shows_a_wrong_and_a_right_model(workspace):
     assert lines[2] == "  a port of '<owner>' has no name"
     assert lines[-6:] == [
         '  Class gate "Gate"',
-        ">     Port gate.in",
+        ">   Port gate.in",
         "",
         "Right:",
         '  Class gate "Gate"',
-        '>     Port gate.in "in"',
+        '>   Port gate.in "in"',
     ]
     assert workspace.sysmlc("explain", "sm942").stdout.splitlines() == lines
     assert workspace.sysmlc("explain", "SM942").stdout.splitlines() == lines
