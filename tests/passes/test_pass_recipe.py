@@ -17,6 +17,8 @@ RULES = [
     for rule in load_full_catalogue().values()
     if "SM601" <= rule.code <= "SM622" and rule.code != "SM621"
 ]
+IN_TEXT_FORM = [rule for rule in RULES if rule.read_page().language == "ir"]
+"""Rules whose examples are graphs; ``test_driver_rule_pages`` compiles those in SysML v2."""
 
 
 def list_recipe_codes(text: str, **options: object) -> list[str]:
@@ -31,7 +33,7 @@ def find_task(text: str, name: str) -> Task:
 # -- rules -------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("rule", RULES, ids=lambda rule: f"{rule.code}-{rule.name}")
+@pytest.mark.parametrize("rule", IN_TEXT_FORM, ids=lambda rule: f"{rule.code}-{rule.name}")
 def test_rule_reports_its_wrong_example_and_not_its_right_one(rule):
     assert rule.code in list_recipe_codes(rule.read_page().wrong)
     assert list_recipe_codes(rule.read_page().right) == []

@@ -44,7 +44,7 @@ VALID = [samples.task(), samples.task(steps=LOOP), samples.recipe()]
 VALID += [
     rule.read_page().right
     for rule in load_full_catalogue().values()
-    if "SM601" <= rule.code <= "SM622"
+    if "SM601" <= rule.code <= "SM622" and rule.read_page().language == "ir"
 ]
 
 
