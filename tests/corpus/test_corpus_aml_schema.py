@@ -45,14 +45,18 @@ def test_files_violate_their_schema_as_measured(corpus, expected_validity):
         (
             "bad/i40_wrong_order.aml",
             "Conveyors::BASIC_36-12-04-01 Conveyor::Conveyor2::PortLink",
-            "'InternalLink' stands where 'MappingObject' should",
+            "unexpected element 'InternalLink'; expected 'MappingObject'",
         ),
         (
             "dev/pyaml_hybrid_215.aml",
             "Testbed::ControlSystem::MES::Configuration",
             "'Attribute' must not have the attribute 'RefAttributeType'",
         ),
-        ("dev/mirror_30.aml", "PPRExampleInstanceHierarchy", "'InstanceHierarchy' stands where"),
+        (
+            "dev/mirror_30.aml",
+            "PPRExampleInstanceHierarchy",
+            "unexpected element 'InstanceHierarchy'; expected",
+        ),
     ],
 )
 def test_a_violation_names_elements_as_the_file_does(name, element, problem, corpus):

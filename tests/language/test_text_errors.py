@@ -107,8 +107,8 @@ def test_sm193_unclosed_comments_and_quotes_are_reported():
 
 def test_sm194_letters_that_need_quotes_are_reported_at_their_location():
     assert list_diagnostics("part ä : Ö;") == [
-        "1:6 SM194 'ä' belongs to no name, symbol or text",
-        "1:10 SM194 'Ö' belongs to no name, symbol or text",
+        "1:6 SM194 unexpected character 'ä'",
+        "1:10 SM194 unexpected character 'Ö'",
     ]
     assert parse_outline("part 'ä' : 'Ö'; /* ü */ // ß") == [
         "OwningMembership PartUsage ä FeatureTyping->Ö",

@@ -52,7 +52,7 @@ def list_violations(schemas, body):
         ),
         (
             '<Item Name="a"><Item Name="b"/><Size>1</Size></Item>',
-            [(3, "a::Size", "'Size' stands where 'Item' should")],
+            [(3, "a::Size", "unexpected element 'Size'; expected 'Item'")],
         ),
         (
             '<Item Name="a" Colour="red"/>',

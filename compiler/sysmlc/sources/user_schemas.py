@@ -238,9 +238,9 @@ _INVALID = (
 _TRANSLATIONS = (
     (
         rf"{_ELEMENT}: This element is not expected\. {_EXPECTED}",
-        "'{element}' stands where {expected} should",
+        "unexpected element '{element}'; expected {expected}",
     ),
-    (rf"{_ELEMENT}: This element is not expected\.?$", "'{element}' must not stand here"),
+    (rf"{_ELEMENT}: This element is not expected\.?$", "unexpected element '{element}'"),
     (rf"{_ELEMENT}: Missing child element\(s\)\. {_EXPECTED}", "'{element}' lacks {expected}"),
     (
         rf"{_ELEMENT}: The attribute '(?P<attribute>[^']*)' is required but missing\.?$",

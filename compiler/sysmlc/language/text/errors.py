@@ -36,7 +36,7 @@ _LEXICAL_FAULTS = {
     "number": ("{} is too large a number", "write it with an exponent below 308"),
     "negation": ("{} is no operator", "write 'not' for a negation"),
     "character": (
-        "{} belongs to no name, symbol or text",
+        "unexpected {}",
         "take it away, or put the name that it belongs to in single quotes: 'Größe'",
     ),
 }
@@ -244,10 +244,10 @@ def _quote_text(text: str) -> str:
 
 
 def _quote_fault(fault: LexicalFault) -> str:
-    text = fault.text or " "
+    text, kind = fault.text or " ", "character " if fault.what == "character" else ""
     if text == "\ufffd":
-        return "what is not UTF-8 here"
-    return f"'{_shorten(text)}'" if text.isprintable() else f"the character U+{ord(text[0]):04X}"
+        return "bytes that are not UTF-8"
+    return f"{kind}'{_shorten(text)}'" if text.isprintable() else f"{kind}U+{ord(text[0]):04X}"
 
 
 def _shorten(text: str) -> str:

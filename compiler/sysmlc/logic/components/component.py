@@ -309,7 +309,7 @@ class Component:
                 drawn = find_drawn_activity(self.graph, activity)
                 performer = self.tree.find_performer(object_, drawn)
                 if performer is None:
-                    reason = f"it is not known which part performs '{drawn.name}'"
+                    reason = f"the part that performs '{drawn.name}' is unknown"
                     self.performances.gaps[run] = reason
                 caller = Caller(performer or object_, names, prefix)
                 id = self.performances.add(activity, caller, run)

@@ -40,7 +40,7 @@ class LateValues:
         late_variables = machine.late_variables
         unseen = {write.slot for write in writes} - set(late_variables.values())
         for slot in unseen.intersection(machine.slots.values()):
-            raise ComponentError(f"it is not known what assigns '{join_path(*slot)}'")
+            raise ComponentError(f"the behaviour that assigns '{join_path(*slot)}' is unknown")
         for name, slot in late_variables.items():
             feature = self._tree.read_slot(slot).variable
             before = f.var(feature.name)

@@ -374,7 +374,7 @@ def find_unread_features(
             element = tree.graph.get(variable.origin)
             path = "" if element is None else tree.find_unread_name(machine.element, element)
             if path and variable.owner is Owner.ENVIRONMENT:
-                reasons[variable.name] = f"it is not known whose feature '{path}' is"
+                reasons[variable.name] = f"the owner of '{path}' is unknown"
             if element is None or element.kind is not Kind.PROPERTY:
                 continue
             writers = [*index.iter_writers(element), *index.iter_unclear_writers(element)]

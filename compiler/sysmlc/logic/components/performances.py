@@ -209,11 +209,11 @@ class Performances:
                 reason = f"'{variable.name}' has other values in '{copy.activity.name}'"
                 self.gaps[shared.name] = reason
             elif not is_own and self._is_of_object(element):
-                self.gaps[variable.name] = f"it is not known whose feature '{variable.name}' is"
+                self.gaps[variable.name] = f"the owner of '{variable.name}' is unknown"
         name = self.name_variable(variable.name, copy.caller.prefix)
         path = "" if element is None else self._tree.find_unread_name(copy.activity, element)
         if path and variable.name not in tokens.pulses:
-            self.gaps[name] = f"it is not known whose feature '{path}' is"
+            self.gaps[name] = f"the owner of '{path}' is unknown"
         self.inputs[name] = replace(variable, name=name, owner=Owner.ENVIRONMENT)
         if is_own and element is not None and is_value(element):
             copy.parameters[element.name] = self.inputs[name]
@@ -297,7 +297,7 @@ class Performances:
         if node.duration is not Duration.TIMED:
             reason = f"'{node.label}' does not wait for its end"
         elif object_ is None and tokens is not None:
-            reason = f"it is not known which part performs what {node.label} calls"
+            reason = f"the part that performs the call of {node.label} is unknown"
         elif activity is None or tokens is None or object_ is None:
             reason = _UNKNOWN_END.format(node.label)
         elif activity.id in around:
