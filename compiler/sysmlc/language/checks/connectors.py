@@ -6,7 +6,7 @@ from sysmlc.diagnostics import Severity, rule
 from sysmlc.language.checks.conformance import find_direction
 from sysmlc.language.checks.findings import Finding, iter_stated, name_of
 from sysmlc.language.checks.memberships import TOO_MANY_ENDS
-from sysmlc.language.metaclasses import is_a, is_end, kinds_of
+from sysmlc.language.metaclasses import USAGES, is_a, is_end, kinds_of
 from sysmlc.language.names import Model
 from sysmlc.language.names.implied import find_own_features, find_owning_type
 from sysmlc.language.tree import Node, Reference, Relation
@@ -38,6 +38,20 @@ FLOW_DIRECTION = rule(
     Severity.WARNING,
     "the flow {way} '{name}', whose direction is {is} there",
     help="reverse the flow, conjugate the port, or name another feature of it",
+)
+FLOW_TYPES = rule(
+    "SM244",
+    "flow-types",
+    Severity.WARNING,
+    "{one} and {other} of the flow have unrelated types: '{type}' and '{other_type}'",
+    help="let one type specialise the other, or name features and a payload that fit",
+)
+CONNECTED_UNLIKE = rule(
+    "SM245",
+    "connected-unlike",
+    Severity.WARNING,
+    "'{name}' of type '{type}' is connected as '{end}', whose type '{end_type}' is unrelated",
+    help="connect a feature of the type of the end, or choose another definition",
 )
 
 _ASSOCIATIONS = kinds_of("Association")
@@ -95,6 +109,19 @@ def check_flow_end(model: Model, node: Node) -> Iterator[Finding]:
                 yield Finding(NO_FLOW_END, node.start, {"name": text})
 
 
+def check_connected_types(model: Model, node: Node) -> Iterator[Finding]:
+    """Report an end that connects a feature of another type than the definition states."""
+    for end in find_own_features(node, "end"):
+        for feature in _list_referenced(end):
+            for defined in model.lookup.redefined_features(end):
+                unlike = _find_unrelated_types(model, feature, defined)
+                if unlike is not None:
+                    facts = {"name": name_of(model, feature), "type": name_of(model, unlike[0])}
+                    facts |= {"end": name_of(model, defined)}
+                    facts |= {"end_type": name_of(model, unlike[1])}
+                    yield Finding(CONNECTED_UNLIKE, end.start, facts)
+
+
 def _is_owned_by_type(relation: Relation) -> bool:
     target = relation.reference.target
     owner = target.owner if target is not None else None
@@ -142,6 +169,43 @@ def _is_judged_by_port(model: Model, path: list[Node]) -> bool:
     return len(directions - {""}) == 1 or sum(step.kind in _PORT_USAGES for step in path) > 1
 
 
+def check_flow_types(model: Model, node: Node) -> Iterator[Finding]:
+    """Report a flow whose payload and connected features cannot have a value in common."""
+    ends = [_read_flow_end(member) for member in node.members if member.kind == "FlowEnd"]
+    connected = [(path, feature) for path, feature in ends if feature is not None]
+    payloads = [member for member in node.members if member.kind == "PayloadFeature"]
+    payloads = payloads or [item for item in model.members(node) if model.name(item) == "payload"]
+    pairs = [
+        (("the payload", payload), (_quote_path(model, path, feature), feature))
+        for payload in payloads
+        for path, feature in connected
+        if not _is_refused_by_port(model, path, payload)
+    ]
+    if len(connected) == 2:
+        source, target = ((_quote_path(model, *end), end[1]) for end in connected)
+        pairs.append((source, target))
+    for (name, feature), (other_name, other_feature) in pairs:
+        unlike = _find_unrelated_types(model, feature, other_feature)
+        if unlike is not None:
+            facts = {"one": name, "other": other_name}
+            facts |= {"type": name_of(model, unlike[0]), "other_type": name_of(model, unlike[1])}
+            yield Finding(FLOW_TYPES, node.start, facts)
+            return
+
+
+def _quote_path(model: Model, path: list[Node], feature: Node) -> str:
+    return f"'{'.'.join(name_of(model, step) for step in (*path, feature))}'"
+
+
+def _is_refused_by_port(model: Model, path: list[Node], payload: Node) -> bool:
+    """Whether pass ``flows`` reports that the port at an end passes no such payload (SM311)."""
+    if not path or path[-1].kind not in _PORT_USAGES:
+        return False
+    members = model.members(path[-1])
+    items = [member for member in members if find_direction(model, path[-1], member)]
+    return all(_find_unrelated_types(model, payload, item) is not None for item in items)
+
+
 def _read_flow_end(end: Node) -> tuple[list[Node], Node | None]:
     """Return the features that an end of a flow names before the last dot, and the last one."""
     path = [
@@ -162,6 +226,8 @@ END_CHECKS = (
     (frozenset({"FlowEnd"}), check_flow_end),
     (_FLOWS, check_flow),
     (_FLOW_USAGES, check_flow_directions),
+    (_FLOW_USAGES, check_flow_types),
+    (_CONNECTORS & USAGES, check_connected_types),
 )
 
 
@@ -181,13 +247,9 @@ def check_binding(model: Model, node: Node) -> Iterator[Finding]:
     ]
     if len(features) != 2:
         return
-    left_types, right_types = (model.types(feature) for feature in features)
-    if not left_types or not right_types:
-        return
-    if not any(
-        _conform_either_way(model, left, right) for left in left_types for right in right_types
-    ):
-        types = " and ".join(f"'{name_of(model, group[0])}'" for group in (left_types, right_types))
+    unlike = _find_unrelated_types(model, *features)
+    if unlike is not None:
+        types = " and ".join(f"'{name_of(model, type_)}'" for type_ in unlike)
         left_name, right_name = (name_of(model, feature) for feature in features)
         facts = {"one": left_name, "other": right_name, "types": types}
         yield Finding(BOUND_UNLIKE, node.start, facts)
@@ -198,6 +260,16 @@ def _list_referenced(end: Node) -> list[Node]:
         relation.reference for relation in end.relations if relation.kind == "ReferenceSubsetting"
     ]
     return [reference.target for reference in references if reference.target is not None]
+
+
+def _find_unrelated_types(model: Model, left: Node, right: Node) -> tuple[Node, Node] | None:
+    """Return the types of two features if no type of one conforms to a type of the other."""
+    left_types, right_types = model.types(left), model.types(right)
+    if not left_types or not right_types:
+        return None
+    if any(_conform_either_way(model, one, other) for one in left_types for other in right_types):
+        return None
+    return left_types[0], right_types[0]
 
 
 def _conform_either_way(model: Model, left: Node, right: Node) -> bool:
