@@ -6,11 +6,12 @@ Physical items and information have different arrows and colours (thesis 3.4.1).
 from collections.abc import Iterable, Iterator
 
 from msgspec import Struct
+from msgspec.structs import replace
 
 from sysmlc.backends.plantuml import labels
 from sysmlc.backends.plantuml.relations import format_conveyed, iter_feature_allocations
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.query import DOMAINS, runs_both_ways
+from sysmlc.ir.query import DOMAINS, generals, runs_both_ways
 from sysmlc.support.plantuml_text import format_keyword_label, format_label, join_rows
 
 
@@ -81,6 +82,72 @@ def list_connections(graph: Graph, block: Element, flows: Iterable[FreeFlow]) ->
         for flow, source, target in flows
     ]
     return [*connectors, *free_connections, *_iter_allocations(graph, block)]
+
+
+def find_classifier(graph: Graph, block: Element) -> Element:
+    """Return the owner of the drawn parts: the classifier of an instance, else the block itself.
+
+    That of a usage of SysML v2 is the usage that it specialises, before its definitions.
+    """
+    targets = graph.targets(block, Edge.INSTANCE_OF) if block.kind is Kind.INSTANCE else []
+    usages = [target for target in targets if target.attrs.get("usage")]
+    return next(iter([*usages, *targets]), block)
+
+
+def list_bases(graph: Graph, block: Element) -> list[Element]:
+    """Return the elements whose parts and connectors a block inherits, nearest first.
+
+    The classifier of an instance is none, except for a usage of SysML v2 without own members.
+    """
+    classifier = find_classifier(graph, block)
+    if classifier is block:
+        return generals(graph, block)
+    return [classifier, *generals(graph, classifier)] if classifier.attrs.get("usage") else []
+
+
+def inherit_connections(
+    graph: Graph, block: Element, bases: list[Element], flows: dict[str, tuple[FreeFlow, ...]]
+) -> list[Connection]:
+    """Return the connections of *bases* as the block inherits them, with ``^`` before their names.
+
+    They lead to the features that redefine those of the base; *flows* are item flows by owner.
+    """
+    redefining = {
+        old.id: new.id
+        for element in (*reversed(bases), block)
+        for new in graph.owned(element)
+        for old in graph.targets(new, Edge.REDEFINES)
+    }
+    connections = [
+        connection
+        for base in bases
+        if not base.attrs.get("external")
+        for connection in list_connections(graph, base, flows.get(base.id, ()))
+    ]
+    return [
+        replace(
+            connection,
+            source=_redefine(connection.source, redefining),
+            target=_redefine(connection.target, redefining),
+            label=f"^{connection.label}",
+        )
+        for connection in connections
+        if connection.shows[0] not in redefining
+    ]
+
+
+def _redefine(path: Path, redefining: dict[str, str]) -> Path:
+    """Return a path that starts at the feature which redefines its first one."""
+    first = path.ids()[0]
+    last, visited = first, {first}
+    while last in redefining and redefining[last] not in visited:
+        last = redefining[last]
+        visited.add(last)
+    if path.parts:
+        return replace(path, parts=(last, *path.parts[1:]))
+    if path.ports:
+        return replace(path, ports=(last, *path.ports[1:]))
+    return replace(path, port=last)
 
 
 def _iter_connector_lines(graph: Graph, connector: Element) -> Iterator[Connection]:

@@ -1,5 +1,6 @@
 """Internal block diagrams: one for each block with connectors or item flows between its parts.
 
+Inherited parts and connections are drawn, too, with ``^`` before their names (UML 2.5.1, 9.2.4).
 There is also a diagram for each instance, and for each instance hierarchy of AutomationML, that has
 connections between its instances.
 """
@@ -12,7 +13,10 @@ from sysmlc.backends.plantuml.connections import (
     Connection,
     FreeFlow,
     Path,
+    find_classifier,
     find_free_flows,
+    inherit_connections,
+    list_bases,
     list_connections,
     sort_domains,
 )
@@ -37,11 +41,14 @@ def draw_internal_blocks(graph: Graph) -> Iterator[Diagram]:
     hierarchies = (p for p in graph.of_kind(Kind.PACKAGE) if p.subkind == "instance-hierarchy")
     flows = find_free_flows(graph)
     for block in (*graph.of_kind(*_CLASSES, Kind.INSTANCE), *hierarchies):
-        yield from _draw_block(graph, block, flows.get(block.id, ()))
+        yield from _draw_block(graph, block, flows)
 
 
-def _draw_block(graph: Graph, block: Element, flows: tuple[FreeFlow, ...]) -> Iterator[Diagram]:
-    block_connections = list_connections(graph, block, flows)
+def _draw_block(
+    graph: Graph, block: Element, flows: dict[str, tuple[FreeFlow, ...]]
+) -> Iterator[Diagram]:
+    block_connections = list_connections(graph, block, flows.get(block.id, ()))
+    block_connections += inherit_connections(graph, block, list_bases(graph, block), flows)
     if not block_connections or block.attrs.get("external"):
         return
     title = graph.qualified_name(block)
@@ -62,21 +69,15 @@ def _draw_block(graph: Graph, block: Element, flows: tuple[FreeFlow, ...]) -> It
 
 
 def _format_keywords(graph: Graph, block: Element) -> str:
-    return " ".join(labels.keywords(graph, _classifier_of(graph, block)))
+    return " ".join(labels.keywords(graph, find_classifier(graph, block)))
 
 
 def _format_title(graph: Graph, block: Element) -> str:
     """Return the name of the block, or ``name : Classifier`` of an instance."""
-    classifier = _classifier_of(graph, block)
+    classifier = find_classifier(graph, block)
     if classifier is block:
         return labels.name(block)
     return f"{labels.name(block)} : {labels.name(classifier)}"
-
-
-def _classifier_of(graph: Graph, block: Element) -> Element:
-    """Return the owner of the drawn parts: the classifier of an instance, else the block itself."""
-    classifier = graph.target(block, Edge.INSTANCE_OF) if block.kind is Kind.INSTANCE else None
-    return block if classifier is None else classifier
 
 
 def _partition(
@@ -147,18 +148,12 @@ def _list_top_parts(
 
 
 def _iter_properties(graph: Graph, block: Element) -> Iterator[Element]:
-    """Yield the properties of the block.
-
-    For an instance, these are the own and inherited properties of its classifier.
-    """
-    if block.kind is not Kind.INSTANCE:
-        yield from (item for item in graph.owned(block) if item.kind is Kind.PROPERTY)
-        return
-    classifier = _classifier_of(graph, block)
+    """Yield the own and inherited properties of the block, or of the classifier of an instance."""
+    classifier = find_classifier(graph, block)
     family = (classifier, *generals(graph, classifier))
-    inherited = [p for element in family for p in graph.owned(element) if p.kind is Kind.PROPERTY]
-    redefined = {old.id for element in inherited for old in graph.targets(element, Edge.REDEFINES)}
-    yield from (item for item in inherited if item.id not in redefined)
+    properties = [p for item in family for p in graph.owned(item) if p.kind is Kind.PROPERTY]
+    redefined = {old.id for new in properties for old in graph.targets(new, Edge.REDEFINES)}
+    yield from (item for item in properties if item.id not in redefined)
 
 
 @dataclass(slots=True)
@@ -195,7 +190,7 @@ class _InternalBlockDrawing:
             self.aliases.make("frame", self.block.name, "block"),
             join_rows(_format_slots(self.graph, slots)) or " ",
             "frame",
-            tuple(self._iter_ports((), _classifier_of(self.graph, self.block))),
+            tuple(self._iter_ports((), find_classifier(self.graph, self.block))),
             parts,
             (self.block.id, *(slot.id for slot in slots)),
         )
@@ -218,7 +213,7 @@ class _InternalBlockDrawing:
             join_rows(
                 [
                     shrink(escape_line(self._format_stereotypes(part))),
-                    *embolden(_format_part(self.graph, part)),
+                    *embolden(self._format_part(path, part)),
                     *rows,
                 ]
             ),
@@ -227,6 +222,13 @@ class _InternalBlockDrawing:
             inner,
             (part.id, *values),
         )
+
+    def _format_part(self, path: tuple[str, ...], part: Element) -> str:
+        if part.kind is Kind.INSTANCE:
+            return _format_title(self.graph, part)
+        bases = list_bases(self.graph, self.block)
+        is_inherited = len(path) == 1 and self.graph.owner(part) in bases
+        return "^" * is_inherited + labels.format_typed(self.graph, part)
 
     def _format_stereotypes(self, part: Element) -> str:
         words = labels.list_stereotypes(self.graph, part)
@@ -310,14 +312,6 @@ class _InternalBlockDrawing:
     def _find_alias(self, path: Path) -> str:
         key = path.ids()
         return self.aliases[_make_key(key) if key else "frame"]
-
-
-def _format_part(graph: Graph, part: Element) -> str:
-    return (
-        _format_title(graph, part)
-        if part.kind is Kind.INSTANCE
-        else labels.format_typed(graph, part)
-    )
 
 
 def _list_slots(graph: Graph, instance: Element) -> list[Element]:
