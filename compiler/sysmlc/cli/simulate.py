@@ -27,16 +27,21 @@ class _Scenario(Struct, frozen=True):
     short_help="Run a scenario with the reference interpreter.",
     epilog="""\b
 Examples:
+  sysmlc simulate gate.uml --variables
   sysmlc simulate gate.uml --scenario wrong-id.yaml
   sysmlc simulate gate.uml --scenario wrong-id.yaml --junit report.xml -o out/""",
 )
 @options.models(required=True)
 @click.option(
     "--scenario",
-    required=True,
     type=click.Path(path_type=Path),
     metavar="FILE",
     help="Inputs and the expected trace, in YAML.",
+)
+@click.option(
+    "--variables",
+    is_flag=True,
+    help="List the names that scenarios and formulas may use; play nothing.",
 )
 @click.option("--junit", type=click.Path(path_type=Path), metavar="FILE", help="JUnit XML report.")
 @options.folder("Folder for the trace as a PlantUML sequence diagram.")
@@ -47,7 +52,8 @@ def command(
     ctx: click.Context,
     /,
     models: tuple[Path, ...],
-    scenario: Path,
+    scenario: Path | None,
+    variables: bool,
     junit: Path | None,
     output: Path | None,
     **setting_values: Any,  # noqa: ANN401 - the fields of Settings
@@ -61,11 +67,17 @@ def command(
     from sysmlc.cli import reports, session
     from sysmlc.diagnostics import Sink
     from sysmlc.diagnostics.renderers import make_report
-    from sysmlc.simulation import run_scenarios
+    from sysmlc.simulation import list_variables, run_scenarios
 
+    if scenario is None and not variables:
+        raise click.UsageError("name a file with --scenario, or list the names with --variables")
     settings = session.Settings(**setting_values)
     config = session.load_config(models, settings)
     compilation = session.compile_unit(models, config, settings)
+    if scenario is None or variables:
+        reports.print_findings(reports.list_findings(compilation, only_errors=True), settings)
+        terminal.echo_text("".join(f"{line}\n" for line in list_variables(compilation.graph)))
+        ctx.exit(reports.exit_code_of(compilation, config, settings))
     source = _read(scenario)
     sink = Sink(config.rules)
     result = run_scenarios(compilation.graph, source, sink) if compilation.exit_code() < 2 else None

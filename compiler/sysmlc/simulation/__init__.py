@@ -3,21 +3,27 @@
 A scenario passes if some run of the diagram shows every expected value.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+
+from msgspec.structs import replace
 
 from sysmlc.diagnostics import Sink
-from sysmlc.ir import Graph
+from sysmlc.ir import Graph, query
 from sysmlc.logic.basis import describe_basis
+from sysmlc.logic.components.names import Atom
 from sysmlc.logic.contract import Contract, IntegerDomain, Owner, Variable
 from sysmlc.logic.domains import contains, describe
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.machines.interpreter import Valuation
 from sysmlc.simulation.components import MAX_RUNS
 from sysmlc.simulation.players import (
+    NamedPlayer,
     Player,
     find_component_player,
     find_players,
     find_resting_value,
+    list_atoms,
+    list_blocks,
 )
 from sysmlc.simulation.report import Difference, Report, Result, show_value
 from sysmlc.simulation.scenario import (
@@ -33,7 +39,7 @@ from sysmlc.simulation.scenario import (
 from sysmlc.sources import Source
 from sysmlc.support.suggestions import did_you_mean
 
-__all__ = ["Report", "run_scenarios"]
+__all__ = ["Report", "list_variables", "run_scenarios"]
 
 
 _Trace = tuple[Valuation, ...]
@@ -53,7 +59,10 @@ def run_scenarios(graph: Graph, scenario_source: Source, sink: Sink) -> Report:
 def _play_scenario(
     graph: Graph, scenario: Scenario, players_by_name: Mapping[str, Player], sink: Sink
 ) -> Result:
-    player = _find_player(graph, scenario, players_by_name, sink)
+    played = _find_player(graph, scenario, players_by_name, sink)
+    player = None if played is None else NamedPlayer(played, list_atoms(graph, played))
+    if player is not None:
+        scenario = _resolve_inputs(scenario, player.atoms)
     if player is None or not _has_valid_entries(scenario, player, sink):
         return Result(scenario.name, scenario.component, scenario.location.line, is_valid=False)
     resting_values = {
@@ -61,7 +70,48 @@ def _play_scenario(
         for variable in player.variables
         if variable.owner is Owner.ENVIRONMENT
     }
-    return _follow_runs(scenario, player, resting_values, sink)
+    result = _follow_runs(scenario, player, resting_values, sink)
+    trace = tuple(
+        {name: value for name, value in step.items() if name not in player.hidden_names}
+        for step in result.trace
+    )
+    return replace(result, trace=trace)
+
+
+def _resolve_inputs(scenario: Scenario, atoms: Iterable[Atom]) -> Scenario:
+    """Return the scenario with the variables of inputs for the names that formulas give them."""
+    variables = {atom.variable.name: atom.replaced for atom in atoms if atom.replaced}
+    steps = tuple(
+        replace(
+            step,
+            inputs=tuple(
+                replace(entry, name=variables.get(entry.name, entry.name)) for entry in step.inputs
+            ),
+        )
+        for step in scenario.steps
+    )
+    return replace(scenario, steps=steps)
+
+
+def list_variables(graph: Graph) -> Iterator[str]:
+    """Yield a line for each name that scenarios and formulas about a component may use."""
+    alone = find_players(graph)
+    names = [*(query.component_name(graph, block) for block in list_blocks(graph)), *alone]
+    for component in dict.fromkeys(names):
+        player = find_component_player(graph, component) or alone.get(component)
+        if player is None:
+            continue
+        atoms = list_atoms(graph, player)
+        replaced = {atom.replaced for atom in atoms}
+        variables = [
+            *(atom.variable for atom in atoms),
+            *(variable for variable in player.variables if variable.name not in replaced),
+        ]
+        yield component
+        for variable in variables:
+            if not variable.is_auxiliary:
+                sort = "input " if variable.owner is Owner.ENVIRONMENT else "output"
+                yield f"  {sort} {variable.name}: {describe(variable.domain)}"
 
 
 # -- checks ------------------------------------------------------------------------------------

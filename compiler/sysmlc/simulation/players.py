@@ -1,6 +1,7 @@
 """Players: activities and state machines that can be simulated, behind one interface."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from functools import cached_property
 from typing import Protocol
 
 from msgspec import Struct
@@ -14,6 +15,7 @@ from sysmlc.logic.activities import interpreter as token_game
 from sysmlc.logic.activities.interpreter import BranchPlan
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.activities.token_step import State
+from sysmlc.logic.components.names import Atom
 from sysmlc.logic.contract import (
     BooleanDomain,
     Domain,
@@ -22,12 +24,12 @@ from sysmlc.logic.contract import (
     Variable,
 )
 from sysmlc.logic.domains import contains, values
-from sysmlc.logic.formula import Literal
+from sysmlc.logic.formula import Literal, variable_names
 from sysmlc.logic.machines import interpreter as machine_interpreter
 from sysmlc.logic.machines.interpreter import Valuation
 from sysmlc.logic.machines.machine import Machine
 from sysmlc.logic.machines.reader import read_machine
-from sysmlc.simulation.components import open_component
+from sysmlc.simulation.components import ComponentPlayer, open_component
 
 _LASTING_KINDS = (Kind.PROPERTY, Kind.PORT, Kind.FLOW_PROPERTY)
 """Kinds of inputs whose value lasts until it is set again; other inputs are events."""
@@ -77,13 +79,19 @@ def find_players(graph: Graph) -> dict[str, Player]:
     return players_by_name
 
 
+def list_blocks(graph: Graph) -> list[Element]:
+    """List the blocks; a requirement, which has the name of its subject, is none."""
+    blocks = graph.of_kind(Kind.CLASS, Kind.COMPONENT)
+    return [block for block in blocks if not query.is_requirement(block)]
+
+
 def find_component_player(graph: Graph, name: str) -> Player | None:
     """Return the player of a block that does more than one behaviour alone describes, or None.
 
     Such a block performs activities, has several state machines, or has parts with behaviours.
     *name* is its qualified name, or its plain name if no other block has it.
     """
-    blocks = list(graph.of_kind(Kind.CLASS, Kind.COMPONENT))
+    blocks = list_blocks(graph)
     matches = [block for block in blocks if query.component_name(graph, block) == name]
     matches = matches or [block for block in blocks if block.name == name]
     player = open_component(graph, matches[0]) if len(matches) == 1 else None
@@ -92,6 +100,80 @@ def find_component_player(graph: Graph, name: str) -> Player | None:
     has_parts = any(machine.owner.path for machine in player.parts.machines)
     is_composed = bool(player.parts.performances.nodes) or len(player.parts.machines) > 1
     return player if is_composed or has_parts else None
+
+
+def list_atoms(graph: Graph, player: Player) -> list[Atom]:
+    """List what formulas about the component may say of its steps, as far as it is played."""
+    if isinstance(player, ComponentPlayer):
+        atoms = player.behaviour.atoms
+    else:
+        named = [
+            b for b in list_blocks(graph) if query.component_name(graph, b) == player.component
+        ]
+        opened = open_component(graph, named[0]) if named else None
+        atoms = () if opened is None else opened.behaviour.atoms
+    variables = {variable.name for variable in player.variables}
+    return [atom for atom in atoms if variables.issuperset(variable_names(atom.meaning))]
+
+
+class NamedPlayer(Struct, frozen=True, dict=True):
+    """Player whose steps also have the values of the names that formulas use."""
+
+    player: Player
+    atoms: Sequence[Atom]
+
+    @property
+    def component(self) -> str:
+        """The qualified name of the component."""
+        return self.player.component
+
+    @cached_property
+    def variables(self) -> tuple[Variable, ...]:
+        """The variables of the player, and those of the names that it does not have."""
+        own = {variable.name: variable for variable in self.player.variables}
+        named = {atom.variable.name: atom.variable for atom in self.atoms}
+        return tuple((named | own).values())
+
+    @property
+    def pulses(self) -> frozenset[str]:
+        """The inputs that last one step."""
+        return self.player.pulses
+
+    def initial(self, inputs: Mapping[str, Literal]) -> list[Valuation]:
+        """Return the possible first steps."""
+        return list(map(self._name, self.player.initial(self._select(inputs))))
+
+    def successors(
+        self, now: Mapping[str, Literal], inputs: Mapping[str, Literal]
+    ) -> list[Valuation]:
+        """Return the possible steps after *now*."""
+        successors = self.player.successors(self._select(now), self._select(inputs))
+        return list(map(self._name, successors))
+
+    @property
+    def hidden_names(self) -> frozenset[str]:
+        """The variables that diagrams omit: formulas use other names for them."""
+        names = {atom.replaced: atom.variable.name for atom in self.atoms}
+        replaced = {name for name, author_name in names.items() if name != author_name}
+        return frozenset(
+            replaced | {atom.variable.name for atom in self.atoms if atom.variable.is_auxiliary}
+        )
+
+    @cached_property
+    def _own_names(self) -> frozenset[str]:
+        return frozenset(variable.name for variable in self.player.variables)
+
+    def _select(self, valuation: Mapping[str, Literal]) -> Valuation:
+        """Return the values of the player's own variables."""
+        return {name: value for name, value in valuation.items() if name in self._own_names}
+
+    def _name(self, valuation: Valuation) -> Valuation:
+        named = {
+            atom.variable.name: evaluate.value_of(atom.meaning, valuation)
+            for atom in self.atoms
+            if valuation.keys() >= set(variable_names(atom.meaning))
+        }
+        return named | dict(valuation)
 
 
 def find_resting_value(graph: Graph, variable: Variable) -> Literal:
