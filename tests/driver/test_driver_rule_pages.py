@@ -38,6 +38,7 @@ NOT_COMPILED = {
     "SM208": "there are 8,000 aliases",
     "SM240": "there are thousands of definitions",
     "SM243": "there are two files",
+    "SM341": "there are two files",
     "SM455": "the limit is an option",
     "SM479": "the limit is an option",
     **dict.fromkeys(

@@ -102,7 +102,10 @@ class CompositionVerdict(Struct, frozen=True):
 
     def text(self) -> str:
         """Return the verdict on one line."""
-        within = "" if self.is_satisfied is None else self.basis.range_text
+        # Parts that share no variables fit whatever the ranges are.
+        is_about_values = self.has_shared_variables or not self.is_satisfied
+        is_qualified = self.is_satisfied is not None and is_about_values
+        within = self.basis.range_text if is_qualified else ""
         return f"{self.component}: {self._verdict()}{within}"
 
     def _verdict(self) -> str:
