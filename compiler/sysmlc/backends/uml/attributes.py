@@ -20,7 +20,7 @@ from sysmlc.backends.uml.values import (
     write_value,
 )
 from sysmlc.ir import AttrValue, Edge, Element, Kind, as_items, list_items
-from sysmlc.ir.query import flow_properties, type_of
+from sysmlc.ir.query import flow_properties, is_requirement, type_of
 
 _Writer = Callable[[Context, Element, str, AttrValue], None]
 
@@ -195,10 +195,29 @@ def _write_body(context: Context, element: Element, _key: str, value: AttrValue)
     bodies = read_bodies(attrs) or ((body,), (language,))
     if element.kind is not Kind.CONSTRAINT:
         write_bodies(node, *bodies)
-    elif element.subkind in ("duration", "time", "interval"):
+        return
+    mark = _find_assumption_mark(context, element)
+    if mark:
+        texts, languages = bodies
+        bodies = texts, tuple(f"{name or 'KerML'} {mark}" for name in languages)
+    if element.subkind in ("duration", "time", "interval"):
         _write_interval(context, element, node, body, language)
     else:
         write_bodies(context.add_part(element, node, "specification", "OpaqueExpression"), *bodies)
+
+
+def _find_assumption_mark(context: Context, constraint: Element) -> str:
+    """Return ``assume`` or ``require`` for a constraint of a requirement with a subject.
+
+    SysML v1 can mark an assumption only by the language of the constraint (docs/contracts.md).
+    """
+    requirement = context.graph.owner(constraint)
+    if requirement is None or not is_requirement(requirement):
+        return ""
+    if not context.graph.targets(requirement, Edge.SUBJECT):
+        return ""
+    is_assumed = constraint in context.graph.targets(requirement, Edge.ASSUMES)
+    return "assume" if is_assumed else "require"
 
 
 def _write_interval(

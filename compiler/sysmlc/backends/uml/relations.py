@@ -83,11 +83,30 @@ def _is_group_member(context: Context, comment: Element, target: Element) -> boo
     return False
 
 
-def _add_dependency(context: Context, element: Element, edge: Edge, target: Element) -> None:
-    """Add a dependency that expresses an edge to the nearest package, or to the document."""
+def _write_subjects(context: Context, requirement: Element, subjects: _Targets) -> None:
+    """Write the subjects of a requirement, which SysML v1 has not: they satisfy it."""
+    satisfying = context.graph.sources(requirement, Edge.SATISFIES)
+    for subject in subjects:
+        if subject in satisfying:
+            continue
+        if not context.is_available(subject):
+            context.note_lost_edge(requirement, Edge.SUBJECT.value, subject)
+        else:
+            dependency = _add_dependency(context, subject, Edge.SATISFIES, requirement)
+            name = requirement.attrs.get("subject_name")
+            if dependency is not None and name:
+                # Formulas may call the subject by the name of the dependency.
+                dependency.attributes["name"] = str(name)
+
+
+def _add_dependency(context: Context, element: Element, edge: Edge, target: Element) -> Node | None:
+    """Add a dependency that expresses an edge to the nearest package, or to the document.
+
+    Return it, or None if the edge is lost.
+    """
     if edge not in _DEPENDENCIES or not context.is_available(target):
         context.note_lost_edge(element, edge.value, target)
-        return
+        return None
     metaclass, stereotype = _DEPENDENCIES[edge]
     owners = context.graph.ancestors(element)
     packages = (owner for owner in owners if owner.kind is Kind.PACKAGE)
@@ -104,6 +123,7 @@ def _add_dependency(context: Context, element: Element, edge: Edge, target: Elem
         context.losses.round_trip.added.append(dependency.id)
         context.losses.round_trip.store_edge(edge, element, target)
     context.losses.record_approximation(element, f"'{edge}' from {element.kind}", metaclass)
+    return dependency
 
 
 # -- parts of the source -----------------------------------------------------------------------
@@ -329,6 +349,9 @@ _WRITERS: dict[Edge, _Writer] = {
     Edge.TRIGGER: _note_foreign_triggers,
 }
 _WRITERS_BY_KIND: dict[tuple[Kind, Edge], _Writer] = {
+    (Kind.CLASS, Edge.ASSUMES): _write_nothing,
+    (Kind.CLASS, Edge.SUBJECT): _write_subjects,
+    (Kind.REQUIREMENT, Edge.SUBJECT): _write_subjects,
     (Kind.USE_CASE, Edge.EXTENDS): _write_extends,
     (Kind.STEREOTYPE, Edge.EXTENDS): _write_extensions,
     (Kind.SLOT, Edge.REFERENCES): _write_slot_instances,

@@ -219,7 +219,8 @@ def _read_statement(
     subject_names = list_subject_names(graph, statement.requirement)
     scope = replace(scope, component_names=(*scope.component_names, *subject_names))
     # Tools append a version: "OCL2.0", "KerML 1.0".
-    language = statement.language.rstrip("0123456789. ")
+    language = statement.language.removesuffix(" assume").removesuffix(" require")
+    language = language.rstrip("0123456789. ")
     reading: Reading | None = None
     if statement.is_temporal:
         # Without the names of the component, an unknown name may be one of them.

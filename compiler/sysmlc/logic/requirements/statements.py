@@ -91,7 +91,8 @@ def _separates_assumptions(graph: Graph, requirement: Element) -> bool:
     """Whether the requirement states which of its constraints are assumptions."""
     has_subject = bool(graph.targets(requirement, Edge.SUBJECT))
     return has_subject or any(
-        element.kind is Kind.CONSTRAINT and _is_marked_assumption(element)
+        element.kind is Kind.CONSTRAINT
+        and (_is_marked_assumption(element) or "require" in _read_language(element))
         for element in graph.owned(requirement)
     )
 
@@ -101,7 +102,11 @@ def _is_marked_assumption(constraint: Element) -> bool:
 
     SysML v1 has no other way to mark an assumption.
     """
-    return "assume" in str(constraint.attrs.get("language", "")).lower()
+    return "assume" in _read_language(constraint)
+
+
+def _read_language(constraint: Element) -> str:
+    return str(constraint.attrs.get("language", "")).lower()
 
 
 def _iter_subjects(graph: Graph, requirement: Element) -> Iterator[Element]:
@@ -164,10 +169,14 @@ def list_component_names(graph: Graph, subject: Element) -> tuple[str, ...]:
 
 
 def list_subject_names(graph: Graph, requirement: Element) -> Iterator[str]:
-    """Yield the names of the subjects that a requirement declares, and of what satisfies it."""
+    """Yield the names of the subjects that a requirement declares, and of what satisfies it.
+
+    The name of a dependency «satisfy», too: in SysML v1, nothing else names a subject.
+    """
     for member in (requirement, *query.generals(graph, requirement)):
         satisfying = (element.name for element in graph.sources(member, Edge.SATISFIES))
-        yield from filter(None, (str(member.attrs.get("subject_name", "")), *satisfying))
+        names = (element.name for element in graph.sources(member, Edge.SUPPLIER))
+        yield from filter(None, (str(member.attrs.get("subject_name", "")), *satisfying, *names))
 
 
 def find_redefining_operation(graph: Graph, subject: Element) -> Element | None:
