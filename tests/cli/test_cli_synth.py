@@ -24,7 +24,7 @@ def test_a_contract_is_decided_with_figures(workspace):
     workspace.write("lamp.gr1.json", rules.UNREALIZABLE.read_page().right)
     result = workspace.sysmlc("synth", "lamp.gr1.json", "--realizable")
     assert result.exit_code == 0
-    figures = r"lamp: realizable \(2 variables, 2 bits, 1 conjuncts; .* nodes, .* s\)\n"
+    figures = r"lamp: realizable \(2 variables, 2 bits, 1 conjunct; .* nodes, .* s\)\n"
     assert re.fullmatch(figures, result.stdout)
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from sysmlc.cli import options, terminal
+from sysmlc.support.counts import count
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -128,7 +129,7 @@ def _print_changes(
 def _summarise(outcome: "Outcome", folder: Path, changed: int) -> str:
     withheld = len(outcome.withheld)
     held = f", {withheld} withheld because of errors" if withheld else ""
-    return f"{_relative(folder)}: {len(outcome.files) + 1} files, {changed} changed{held}"
+    return f"{_relative(folder)}: {count(len(outcome.files) + 1, 'file')}, {changed} changed{held}"
 
 
 def _report_leftovers(units: "Sequence[Unit]") -> int:

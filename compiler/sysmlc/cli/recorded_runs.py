@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from sysmlc.cli import options
+from sysmlc.support.counts import count
 from sysmlc.support.escapes import escape_undecodable
 
 if TYPE_CHECKING:
@@ -110,7 +111,7 @@ def _accept_run(
         return f"{contract.component}: nothing was checked: {reason}", False
     violation = find_first_violation(monitor, run.steps, run.missing)
     if violation is None:
-        steps = "1 step" if len(run.steps) == 1 else f"{len(run.steps)} steps"
+        steps = count(len(run.steps), "step")
         rest = f"; {skipped} of {len(monitor.checks)} checks were skipped" if skipped else ""
         return f"{contract.component}: {steps}, no check is broken{rest}", True
     place = Place(name, line=run.lines[violation.step], column=1)

@@ -28,6 +28,8 @@ _DEFAULT_LIMIT = 1_000
 """The largest number of findings that are printed for people by default."""
 _MAX_NOTES = 4
 """Notes of a finding that are printed for people, unless ``--verbose`` asks for all."""
+_MAX_CORE_NOTES = 12
+"""The same for a contract that is unrealizable."""
 _NO_DETAILS: Mapping[str, object] = {}
 _FORMS_ON_STDOUT = frozenset({"json", "sarif", "github"})
 
@@ -168,7 +170,9 @@ def _shorten_finding(finding: "Finding") -> "Finding":
     from sysmlc.diagnostics import KEY_MARK
 
     notes = finding.diagnostic.notes
-    if len(notes) > _MAX_NOTES:
+    # A core is of use only as a whole, together with the assumptions that would help.
+    is_core = finding.diagnostic.rule.code == "SM532"
+    if len(notes) > (_MAX_CORE_NOTES if is_core else _MAX_NOTES):
         key = [note for note in notes[_MAX_NOTES - 1 :] if KEY_MARK in note][:1]
         first = notes[: _MAX_NOTES - 1 - len(key)]
         rest = count(len(notes) - len(first) - len(key), "more note")

@@ -4,4 +4,4 @@
 def count(number: int, noun: str) -> str:
     """Return a number with its noun in the singular or plural: ``1 step``, ``2 steps``."""
     plural = f"{noun[:-1]}ies" if noun.endswith("y") and noun[-2:-1] not in "aeou" else f"{noun}s"
-    return f"{number} {noun if number == 1 else plural}"
+    return f"{number:,} {noun if number == 1 else plural}"

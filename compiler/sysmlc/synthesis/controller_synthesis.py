@@ -6,6 +6,7 @@ environment without a next input in one game loses the others, too.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from enum import StrEnum
 from itertools import product
 from math import prod
@@ -17,6 +18,7 @@ from sysmlc.diagnostics import Sink
 from sysmlc.logic.contract import Contract, Owner
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import reduce_contract
+from sysmlc.support.counts import count
 from sysmlc.support.disjoint_sets import group_related
 from sysmlc.synthesis import rules
 from sysmlc.synthesis.bdd.limits import LimitError, Limits, TooLargeError
@@ -40,6 +42,7 @@ from sysmlc.synthesis.games.arena import Arena, nodes_of
 from sysmlc.synthesis.games.command_elimination import eliminate_commands
 from sysmlc.synthesis.games.game import Constraint, Game
 from sysmlc.synthesis.games.solver import solve_arena
+from sysmlc.synthesis.lints.checks import describe_vacuity
 
 MAX_MACHINE_NODES = 500_000
 """Live nodes that the search for a machine may use; a machine that needs more is unreadable."""
@@ -64,6 +67,8 @@ class Synthesis(Struct, frozen=True):
     contract: Contract
     """The contract, with history bits if it needs them."""
     machine: Controller | None = None
+    vacuity: str = ""
+    """Why the controller need not do anything, if that is so."""
 
     @property
     def exit_code(self) -> int:
@@ -74,17 +79,18 @@ class Synthesis(Struct, frozen=True):
         """Return the verdict on one line, followed by the size of the controller."""
         if self.machine is None:
             return self.verdict.text()
-        return f"{self.verdict.text()}; {_describe_size(self.machine)}, checked"
+        vacuity = f"; vacuous: {self.vacuity}" if self.vacuity else ""
+        return f"{self.verdict.text()}; {_describe_size(self.machine)}, checked{vacuity}"
 
 
 def _describe_size(controller: Controller) -> str:
     if not isinstance(controller, Machine):
-        modes = "1 mode" if len(controller.modes) == 1 else f"{len(controller.modes)} modes"
-        return f"controller: {len(controller.nodes):,} nodes, {modes}"
-    states = "1 state" if controller.size == 1 else f"{controller.size:,} states"
-    register_count = len(controller.registers)
-    registers = f", {register_count} register{'s' * (register_count > 1)}" if register_count else ""
-    return f"machine: {states}, {controller.count:,} moves{registers}"
+        nodes, modes = count(len(controller.nodes), "node"), count(len(controller.modes), "mode")
+        return f"controller: {nodes}, {modes}"
+    sizes = [count(controller.size, "state"), count(controller.count, "move")]
+    if controller.registers:
+        sizes.append(count(len(controller.registers), "register"))
+    return f"machine: {', '.join(sizes)}"
 
 
 def synthesise_controller(
@@ -102,12 +108,20 @@ def synthesise_controller(
     except LimitError as problem:
         controller_or_reason = str(problem)
     if not isinstance(controller_or_reason, str):
-        return Synthesis(decision.verdict, reduced_contract, controller_or_reason)
+        vacuity = _find_vacuity(reduced_contract, decision.game.manager, options)
+        return Synthesis(decision.verdict, reduced_contract, controller_or_reason, vacuity)
     component = contract.component
     sink.report(
         rules.NO_MACHINE, place(contract.origin), component=component, why=controller_or_reason
     )
     return Synthesis(decision.verdict, reduced_contract)
+
+
+def _find_vacuity(contract: Contract, manager: Manager, options: Options) -> str:
+    """Return why a realizable contract demands nothing; empty also if that takes too long."""
+    with suppress(LimitError):
+        return describe_vacuity(contract, lambda: _new_manager(manager, options))
+    return ""
 
 
 def build_controller(

@@ -20,6 +20,7 @@ from sysmlc.logic.contract import Class, Conjunct, Contract, Domain, IntegerDoma
 from sysmlc.logic.formula import Apply, Const, Op, Var
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import reduce_contract
+from sysmlc.support.counts import count
 from sysmlc.synthesis import rules
 from sysmlc.synthesis.bdd.limits import LimitError, Limits, Progress, TooLargeError
 from sysmlc.synthesis.bdd.manager import Manager
@@ -69,8 +70,9 @@ class Figures(Struct, frozen=True):
     def text(self) -> str:
         """Return the figures on one line."""
         return (
-            f"{self.variables} variables, {self.bits} bits, {self.conjuncts} conjuncts; "
-            f"{self.rounds} rounds, {self.steps} steps, {self.nodes:,} nodes, {self.seconds:.2f} s"
+            f"{count(self.variables, 'variable')}, {count(self.bits, 'bit')}, "
+            f"{count(self.conjuncts, 'conjunct')}; {count(self.rounds, 'round')}, "
+            f"{count(self.steps, 'step')}, {count(self.nodes, 'node')}, {self.seconds:.2f} s"
         )
 
 

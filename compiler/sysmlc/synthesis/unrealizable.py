@@ -22,6 +22,7 @@ from sysmlc.logic.domains import size, values
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import is_gr1
+from sysmlc.support.counts import count
 from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.games.command_elimination import eliminate_commands
 from sysmlc.synthesis.games.game import Constraint, Game
@@ -158,10 +159,14 @@ def _describe_conflict(game: Game, contract: Contract) -> Iterator[str]:
         (part.conjunct for part in parts if part.conjunct), contract
     )
     core = find_original_conjuncts(find_unrealizable_core(game), contract)
-    yield (
-        f"these {len(core)} of {len(guarantees)} guarantees cannot be satisfied together; "
-        "without any one of them the rest can:"
-    )
+    number = count(len(guarantees), "guarantee")
+    if len(core) == 1:
+        yield f"this one of {number} cannot be satisfied:"
+    else:
+        yield (
+            f"these {len(core)} of {number} cannot be satisfied together; "
+            "without any one of them the rest can:"
+        )
     for conjunct in core:
         text = (
             f" ({conjunct.text})"

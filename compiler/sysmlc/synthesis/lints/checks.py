@@ -122,10 +122,26 @@ def _has_liveness(conjuncts: Iterable[Conjunct]) -> bool:
 
 def _with_idle_outputs(contract: Contract) -> Contract:
     """Return the contract with the additional guarantee that all outputs stay constant."""
-    outputs = [variable.name for variable in contract.variables if variable.owner is Owner.SYSTEM]
+    outputs = [
+        variable.name
+        for variable in contract.variables
+        if variable.owner is Owner.SYSTEM and not variable.is_auxiliary
+    ]
     frames = (f.eq(Var(name, primed=True), Var(name)) for name in outputs)
     frame_conjuncts = tuple(Conjunct(frame, Class.SAFETY, contract.origin) for frame in frames)
     return replace(contract, guarantees=(*contract.guarantees, *frame_conjuncts))
+
+
+def describe_vacuity(contract: Contract, create_manager: ManagerFactory) -> str:
+    """Return why a realizable contract demands nothing of the component, or an empty text."""
+    has_outputs = any(variable.owner is Owner.SYSTEM for variable in contract.variables)
+    if not has_outputs or not contract.guarantees:
+        return ""
+    if is_won(_with_impossible_goal(contract), create_manager):
+        return "the controller can make the environment violate its assumptions"
+    if is_won(_with_idle_outputs(contract), create_manager):
+        return "the controller needs to do nothing, since its outputs may stay as they are"
+    return ""
 
 
 # -- fairness ----------------------------------------------------------------------------------
@@ -180,18 +196,22 @@ def is_forced(contract: Contract, create_manager: ManagerFactory) -> bool:
     That is: from some reachable state it can do so while it satisfies its own safety guarantees
     (well-separation: Klein and Pnueli 2010, Maoz and Ringert 2016).
     """
-    # A component whose only goal is impossible wins only if the environment violates an assumption.
-    # In the literature it may violate its safety guarantees, too. Here it may not, since a
-    # component that wins its contract may not either.
+    game = make_game(_with_impossible_goal(contract), create_manager())
+    reachable = Runs(_system_of_game(game)).reachable
+    return reachable & solve(game).winning != game.manager.false
+
+
+def _with_impossible_goal(contract: Contract) -> Contract:
+    """Return a contract that is won only if the environment violates an assumption.
+
+    In the literature the component may violate its safety guarantees, too. Here it may not, since a
+    component that wins its contract may not either.
+    """
     impossible_goal = Conjunct(f.FALSE, Class.LIVENESS, contract.origin)
     safety_guarantees = tuple(
         guarantee for guarantee in contract.guarantees if guarantee.class_ is not Class.LIVENESS
     )
-    game = make_game(
-        replace(contract, guarantees=(*safety_guarantees, impossible_goal)), create_manager()
-    )
-    reachable = Runs(_system_of_game(game)).reachable
-    return reachable & solve(game).winning != game.manager.false
+    return replace(contract, guarantees=(*safety_guarantees, impossible_goal))
 
 
 def _describe_culprits(contract: Contract, create_manager: ManagerFactory) -> str:
