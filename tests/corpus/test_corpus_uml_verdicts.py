@@ -36,8 +36,9 @@ package P {
     }
 }
 """
+# The hall of examples/robots is not among them: its saved model has no contracts yet.
 MODELS = [
-    *sorted((ROOT / "examples").glob("*/*.sysml")),
+    ROOT / "examples" / "lego-recipe-v2" / "lego-recipe.sysml",
     *list_models("contracts", "reals", suffixes=(".sysml",)),
 ]
 
