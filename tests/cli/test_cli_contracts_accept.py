@@ -75,7 +75,7 @@ def test_a_run_in_json(workspace, form):
     ("name", "run", "fault"),
     [
         ("run.csv", "go,done\ntrue,maybe\n", "run.csv:2:1: 'maybe' is not a value of 'done'"),
-        ("run.csv", "go,done\ntrue\n", "run.csv:2:1: the line has 1 values"),
+        ("run.csv", "go,done\ntrue\n", "run.csv:2:1: the line has 1 value, the"),
         ("run.csv", "go,go\n1,1\n", "run.csv:1:1: the name 'go' occurs twice"),
         ("run.csv", "goo,don\n1,1\n", "did you mean 'go'?"),
         ("run.csv", "", "run.csv:1:1: it has no step"),

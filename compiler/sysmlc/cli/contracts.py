@@ -11,6 +11,7 @@ from sysmlc.cli import options
 from sysmlc.cli.contract_operations import COMMANDS
 from sysmlc.cli.limits import LIMITS
 from sysmlc.cli.recorded_runs import accept_command
+from sysmlc.support.counts import count
 
 if TYPE_CHECKING:
     from sysmlc.cli.contract_files import ContractFile
@@ -278,7 +279,7 @@ def describe_texts(
     if open_texts and not is_verbose:
         names = [requirement.name.rpartition("::")[2] for requirement in open_texts]
         shown = ", ".join(names[:_MAX_NAMES]) + (", ..." if len(names) > _MAX_NAMES else "")
-        yield f"{len(names)} requirement{'s'[: len(names) > 1]} not formalised: {shown}"
+        yield f"{count(len(names), 'requirement')} not formalised: {shown}"
 
 
 def list_verdicts(

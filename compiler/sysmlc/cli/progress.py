@@ -9,6 +9,7 @@ import click
 
 from sysmlc.cli import terminal
 from sysmlc.driver import Observer
+from sysmlc.support.counts import count
 
 if TYPE_CHECKING:
     from sysmlc.ir import Graph
@@ -67,7 +68,7 @@ class Progress(Observer):
 
         for model in graph.derived(Model):
             library = model.library
-            text = f"SysML v2 library: {library.label}, {len(library.paths())} files"
+            text = f"SysML v2 library: {library.label}, {count(len(library.paths()), 'file')}"
             click.echo(f"{'':9} {text}", err=True)
 
     def fault(self, where: str, trace: str) -> None:

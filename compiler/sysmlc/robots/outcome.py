@@ -29,6 +29,7 @@ from sysmlc.robots.robot_controller import (
 from sysmlc.robots.schedule import Schedule, TravelTimes, meets_deadlines
 from sysmlc.robots.study import Study
 from sysmlc.robots.validation import Validation, validate_allocation
+from sysmlc.support.counts import count
 from sysmlc.synthesis.controller_synthesis import Synthesis
 from sysmlc.synthesis.decision import Options, Place, decide
 
@@ -316,14 +317,9 @@ def _report_no_allocation(
     reason = "some target is out of reach of all robots, or follows a target that is never reached"
     if best_allocation is not None:
         reason = (
-            f"the best one that was found takes {print_steps(best_allocation.schedule.duration)}"
+            f"the best one that was found takes {count(best_allocation.schedule.duration, 'step')}"
         )
     sink.report(NO_ALLOCATION, place(study.origin), floor=study.component, reason=reason)
-
-
-def print_steps(number: int) -> str:
-    """Return a number of steps as text, with the noun in singular or plural."""
-    return f"{number} step{'' if number == 1 else 's'}"
 
 
 def _report_failure(outcome: Outcome, place: Place, sink: Sink) -> None:
@@ -332,7 +328,7 @@ def _report_failure(outcome: Outcome, place: Place, sink: Sink) -> None:
     reason = "robots meet, or one has no answer"
     if late_target is not None:
         name = study.targets[late_target].name
-        reason = f"'{name}' is not reached within {print_steps(last_tried.validation.steps)}"
+        reason = f"'{name}' is not reached within {count(last_tried.validation.steps, 'step')}"
         if last_tried.validation.is_slow:
             reason = f"a robot that is sent to '{name}' takes more than {study.within} steps"
     subject = place(study.targets[late_target].origin if late_target is not None else study.origin)

@@ -7,9 +7,10 @@ from msgspec.structs import replace
 from sysmlc.logic.formats import write
 from sysmlc.robots.mission_contract import mission_contract
 from sysmlc.robots.mission_run import describe_cell, describe_moments, sequence_diagram
-from sysmlc.robots.outcome import Outcome, print_steps
+from sysmlc.robots.outcome import Outcome
 from sysmlc.robots.schedule import START, Schedule
 from sysmlc.robots.study import Study
+from sysmlc.support.counts import count
 from sysmlc.support.escapes import escape_markdown
 from sysmlc.support.output import assign_file_names
 from sysmlc.synthesis.controller_files import controller_files
@@ -40,10 +41,8 @@ def study_files(outcome: Outcome) -> Iterator[tuple[str, str]]:
 def summarise_outcome(outcome: Outcome) -> str:
     """Return floor and outcome of a study on one line."""
     study = outcome.study
-    head = f"{study.component}: {_count_noun(study.grid.size, 'cell')}, "
-    head += (
-        f"{_count_noun(len(study.robots), 'robot')}, {_count_noun(len(study.targets), 'target')}"
-    )
+    head = f"{study.component}: {count(study.grid.size, 'cell')}, "
+    head += f"{count(len(study.robots), 'robot')}, {count(len(study.targets), 'target')}"
     if outcome.controller.machine is None:
         return f"{head}: no controller"
     if not study.targets:
@@ -51,14 +50,10 @@ def summarise_outcome(outcome: Outcome) -> str:
     tried = outcome.chosen
     if tried is None:
         return f"{head}: no allocation is possible in time"
-    starts = _count_noun(tried.validation.starts, "start")
+    starts = count(tried.validation.starts, "start")
     if not tried.validation.is_good:
-        return f"{head}: the mission fails ({_count_noun(len(outcome.tried), 'allocation')} tried)"
-    return f"{head}: done in {print_steps(tried.validation.steps)} at most, from {starts}"
-
-
-def _count_noun(number: int, noun: str) -> str:
-    return f"{number:,} {noun}{'' if number == 1 else 's'}"
+        return f"{head}: the mission fails ({count(len(outcome.tried), 'allocation')} tried)"
+    return f"{head}: done in {count(tried.validation.steps, 'step')} at most, from {starts}"
 
 
 def study_markdown(outcome: Outcome) -> str:
@@ -120,10 +115,10 @@ def _describe_controller(outcome: Outcome) -> Iterator[str]:
     if machine is None:
         yield "There is none."
     elif isinstance(machine, Machine):
-        size = _count_noun(machine.size, "state")
+        size = count(machine.size, "state")
         yield f"A machine of {size}, the same for all robots, checked against their contract."
     else:
-        nodes = _count_noun(len(machine.nodes), "decision node")
+        nodes = count(len(machine.nodes), "decision node")
         yield f"A table of {nodes}, the same for all robots, checked against their contract."
 
 
@@ -161,10 +156,10 @@ def _describe_allocations(outcome: Outcome) -> Iterator[str]:
     for tried in outcome.tried:
         validation = tried.validation
         result = (
-            f"done in {print_steps(validation.steps)} at most" if validation.is_good else "fails"
+            f"done in {count(validation.steps, 'step')} at most" if validation.is_good else "fails"
         )
         allocation_text = _describe_allocation(outcome.study, tried.schedule)
-        yield f"- {allocation_text}: {result}, from {_count_noun(validation.starts, 'start')}"
+        yield f"- {allocation_text}: {result}, from {count(validation.starts, 'start')}"
 
 
 def _describe_allocation(study: Study, schedule: Schedule) -> str:
@@ -172,7 +167,7 @@ def _describe_allocation(study: Study, schedule: Schedule) -> str:
         f"{robot.name} {', '.join(study.targets[target].name for target in targets) or 'nothing'}"
         for robot, targets in zip(study.robots, schedule.allocation, strict=True)
     ]
-    return f"{'; '.join(names)} ({schedule.duration} steps, {schedule.total} travelled)"
+    return f"{'; '.join(names)} ({count(schedule.duration, 'step')}, {schedule.total} travelled)"
 
 
 def _describe_claims(outcome: Outcome) -> Iterator[str]:

@@ -20,6 +20,7 @@ from sysmlc.robots.contract_terms import (
 )
 from sysmlc.robots.robot_contract import count_steps, declare_counter
 from sysmlc.robots.study import STAY, WAYS, Robot, Study
+from sysmlc.support.counts import count
 
 _ENVIRONMENT, _SYSTEM = Owner.ENVIRONMENT, Owner.SYSTEM
 
@@ -225,7 +226,7 @@ def _limit_timers(study: Study) -> Iterator[Conjunct]:
     if study.within is None:
         return
     for robot in study.robots:
-        text = f"'{robot.name}' reaches a target within {study.within} steps."
+        text = f"'{robot.name}' reaches a target within {count(study.within, 'step')}."
         limit = f.compare(Op.LE, f.var(terms.timer(robot)), f.const(study.within or 0))
         yield terms.safety_conjunct(limit, robot.origin, text)
 

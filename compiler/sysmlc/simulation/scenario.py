@@ -11,6 +11,7 @@ from sysmlc.diagnostics import Place, Severity, Sink, Subject, rule
 from sysmlc.logic.formula import Literal
 from sysmlc.sources import Source
 from sysmlc.support import resources
+from sysmlc.support.counts import count
 
 if TYPE_CHECKING:
     from jsonschema.exceptions import ValidationError
@@ -65,7 +66,7 @@ LONG_TRACE = rule(
     "SM556",
     "trace-longer-than-steps",
     Severity.ERROR,
-    "the expected trace has {lines} entries, but there are only {steps} steps",
+    "the expected trace has {lines}, but there are only {steps}",
     help="add steps (a step may be empty: {{}}), or use repeat",
 )
 TOO_MANY_RUNS = rule(
@@ -238,7 +239,9 @@ def _read_scenario(
     location = _locate_item(part, "component") or Location()
     if len(trace) > len(steps):
         subject = _subject_at(source, _locate_item(part, "trace") or location)
-        sink.report(LONG_TRACE, subject, lines=len(trace), steps=len(steps))
+        sink.report(
+            LONG_TRACE, subject, lines=count(len(trace), "entry"), steps=count(len(steps), "step")
+        )
         return None
     for index, item in enumerate(trace):
         step = steps[index]

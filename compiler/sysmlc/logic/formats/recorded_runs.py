@@ -18,6 +18,7 @@ from sysmlc.logic.formats import rules
 from sysmlc.logic.formats.draft import LocatedList, LocatedObject, parse_json
 from sysmlc.logic.formula import Literal
 from sysmlc.sources import Source
+from sysmlc.support.counts import count
 from sysmlc.support.suggestions import did_you_mean
 
 _MAX_DIGITS = 20
@@ -142,7 +143,8 @@ def _read_csv(text: str) -> list[_Row]:
 def _build_csv_rows(names: list[str], lines: Iterable[tuple[int, list[str]]]) -> Iterator[_Row]:
     for line, cells in lines:
         if len(cells) != len(names):
-            reason = f"the line has {len(cells)} values, the first line {len(names)} names"
+            values, expected = count(len(cells), "value"), count(len(names), "name")
+            reason = f"the line has {values}, the first line {expected}"
             raise _RunFileError(reason, line)
         yield _Row(line, dict(zip(names, cells, strict=True)))
 

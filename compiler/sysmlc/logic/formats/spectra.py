@@ -28,6 +28,7 @@ from sysmlc.logic.syntax import FormulaError, Token, tokenize
 from sysmlc.sources import Roots, SourceError
 from sysmlc.sources.files import read_whole
 from sysmlc.sources.source import DOCUMENT_LIMITS
+from sysmlc.support.counts import count
 
 _OWNERS = {
     **dict.fromkeys(("env", "envvar", "input", "in"), Owner.ENVIRONMENT),
@@ -224,7 +225,7 @@ class _ModuleReader(StatementReader):
                 self._skip_element()
         indexes = list(product(*map(range, dimensions)))
         if len(marks) != len(indexes):
-            reason = f"'{name.text}' needs {len(indexes)} values, not {len(marks)}"
+            reason = f"'{name.text}' needs {count(len(indexes), 'value')}, not {len(marks)}"
             raise FormulaError(reason, name.offset)
         meanings = map(self._create_define_meaning, marks)
         self._arrays[name.text] = Array(dimensions, dict(zip(indexes, meanings, strict=True)))
