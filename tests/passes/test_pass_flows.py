@@ -90,3 +90,46 @@ def test_a_tag_of_a_general_classifier_may_give_the_domain():
     )
     graph, _ = run_until(text, "flows")
     assert [graph[id].attrs["domain"] for id in ("f", "c")] == ["physical"] * 2
+
+
+COUPLING = """\
+Class valve "Valve"
+Class gate "Gate"
+  -> specializes valve
+Class motor "Motor"
+Association coupling "Coupling"
+  -> end coupling.v coupling.m
+  Property coupling.v "valve"
+    -> typed-by valve
+  Property coupling.m "motor"
+    -> typed-by motor
+Class line "Line"
+  Property v "v"
+    -> typed-by valve
+  Property g "g"
+    -> typed-by gate
+  Property m "m"
+    -> typed-by motor
+  Property untyped "untyped"
+  Connector c "c"
+    -> typed-by coupling
+    -> end c.0 c.1
+    ConnectorEnd c.0
+      -> role {}
+    ConnectorEnd c.1
+      -> role {}
+"""
+
+
+@pytest.mark.parametrize("ends", [("v", "m"), ("m", "v"), ("g", "m"), ("untyped", "v")])
+def test_a_connector_joins_what_its_association_joins(ends):
+    assert list_codes(run_until(COUPLING.format(*ends), "flows")[1]) == []
+
+
+@pytest.mark.parametrize("ends", [("v", "v"), ("g", "v"), ("m", "m")])
+def test_a_connector_of_unrelated_types_is_reported(ends):
+    _, sink = run_until(COUPLING.format(*ends), "flows")
+    assert [str(finding.message) for finding in sink] == [
+        f"connector 'Line::c' joins 'Line::{ends[0]}' with 'Line::{ends[1]}', but its association "
+        "'Coupling' joins 'Valve' with 'Motor'"
+    ]

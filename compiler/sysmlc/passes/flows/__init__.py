@@ -80,6 +80,14 @@ MIXED_DOMAINS = rule(
     "connector '{connector}' carries physical items ({physical}) and information ({information})",
     help="draw one connector for the material or energy and one for the information",
 )
+CONNECTOR_ASSOCIATION = rule(
+    "SM246",
+    "connector-unlike-association",
+    Severity.WARNING,
+    "connector '{connector}' joins '{one}' with '{other}', but its association '{association}' "
+    "joins '{type}' with '{other_type}'",
+    help="choose another association as the type of the connector, or connect other parts",
+)
 
 
 class Flows(Struct, frozen=True):
@@ -103,6 +111,7 @@ class Flows(Struct, frozen=True):
         for connector in graph.of_kind(Kind.CONNECTOR):
             _settle_domain(graph, sink, connector)
             _check_connector(graph, sink, connector)
+            _check_association(graph, sink, connector)
             check_paths(graph, sink, connector)
 
 
@@ -371,3 +380,47 @@ def _are_compatible(graph: Graph, first: Element, second: Element) -> bool:
 def _do_properties_conform(graph: Graph, left: Element, right: Element) -> bool:
     types = type_of(graph, left), type_of(graph, right)
     return types[0] is None or types[1] is None or _conform(graph, types[0], types[1])
+
+
+# -- associations of connectors ----------------------------------------------------------------
+
+
+def _check_association(graph: Graph, sink: Sink, connector: Element) -> None:
+    """Report a connector between elements that the ends of its association cannot be.
+
+    Tools write the ends of both in either order.
+    """
+    association, attached = type_of(graph, connector), ends(graph, connector)
+    roles = [role_of(graph, end) for end in attached]
+    if association is None or association.attrs.get("external") or len(attached) != 2:
+        return
+    types = [type_of(graph, end) for end in ends(graph, association)]
+    if len(types) != 2 or None in (*types, *roles):
+        return
+    first, second = ([_may_be(graph, end, type_) for type_ in types] for end in attached)
+    if (first[0] and second[1]) or (first[1] and second[0]):
+        return
+    names = [_name_end(graph, connector, end) for end in attached]
+    type_names = [type_.name for type_ in types if type_ is not None]
+    sink.report(
+        CONNECTOR_ASSOCIATION,
+        graph.subject(connector),
+        connector=_title(graph, connector),
+        one=names[0],
+        other=names[1],
+        association=association.name,
+        type=type_names[0],
+        other_type=type_names[1],
+    )
+
+
+def _may_be(graph: Graph, end: Element, type_: Element | None) -> bool:
+    """Whether the role of an end, or the part with the port, may have a type."""
+    steps = [*graph.targets(end, Edge.PATH), *graph.targets(end, Edge.ROLE)]
+    for step_type in (type_of(graph, step) for step in steps):
+        if type_ is None or step_type is None or _conform(graph, step_type, type_):
+            return True
+        family = [step_type, type_, *generals(graph, step_type), *generals(graph, type_)]
+        if any(general.attrs.get("external") for general in family):
+            return True
+    return False
