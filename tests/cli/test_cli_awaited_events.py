@@ -95,3 +95,40 @@ def test_the_documented_assumption_about_a_trigger_proves_the_requirement(worksp
         assert check(workspace).startswith("Shop::Lamp: realizable, satisfies its requirements\n")
     workspace.write("lamp.sysml", re.sub(r"\n *assume .*", "", text))
     assert "  Lights: broken: F on\n" in check(workspace)
+
+
+@pytest.mark.parametrize(
+    ("assumed", "verdict"),
+    [
+        ("G event!=Go", "broken: F on"),
+        ("G (event!=Halt)", "broken: F on"),
+        ("F event=Halt", "holds if its actions end, Go comes and Halt comes sooner or later: F on"),
+    ],
+)
+def test_no_proof_needs_an_event_that_the_author_excludes(workspace, assumed, verdict):
+    steps = "then action warm; then action a accept Go; then action b accept Halt;"
+    write_lamp(workspace, steps, f'assume constraint {{ language "ltl" /* {assumed} */ }}')
+    assert check(workspace).splitlines()[1] == f"  Lights: {verdict}"
+
+
+@pytest.mark.parametrize(("sent", "is_satisfied"), [("", True), ("do send Full() via p", False)])
+def test_a_block_decides_the_events_that_only_its_parts_send(workspace, sent, is_satisfied):
+    workspace.write(
+        "line.sysml",
+        f"""package Line {{
+    item def Go; item def Full;
+    port def Pipe {{ out item full : Full; }}
+    part def Sender {{ port p : Pipe;
+        exhibit state S {{ entry; then A; state A; state B;
+            transition first A accept Go {sent} then B; }} }}
+    part def Receiver {{ port q : ~Pipe;
+        exhibit state S {{ entry; then A; state A; state B;
+            transition first A accept Full via q then B; }} }}
+    part def Cell {{ part s : Sender; part r : Receiver; connect s.p to r.q; }}
+    requirement def Silent {{ subject cell : Cell;
+        require constraint {{ language "ltl" /* G r.event=none */ }} }}
+}}""",
+    )
+    lines = workspace.sysmlc("contracts", "check", "line.sysml").stdout.splitlines()
+    verdict = "satisfies" if is_satisfied else "violates"
+    assert f"Line::Cell: realizable, {verdict} its requirements" in lines

@@ -71,18 +71,22 @@ class CertainRuns(Struct, frozen=True):
     ) -> tuple[Conjunct, ...] | None:
         """Return facts of certain runs that violate a conjunct; None if they cannot be stated.
 
-        Behind a step that violates a conjunct about single steps, any continuation will do.
+        Behind a step that violates a conjunct about single steps, any continuation will do: also
+        from this step on, if the conjunct does not name the next one.
         """
         if not self.doubts:
             return ()
         is_about_steps = conjunct.class_ in (Class.INIT, Class.SAFETY)
         certain: list[Conjunct] = []
         is_violated: Formula = f.FALSE
+        ends_here: Formula = f.FALSE
         if is_about_steps:
             is_violated = f.var(_VIOLATED.name)
             violation = f.either(is_violated, f.negate(conjunct.formula))
             certain.append(_state(f.negate(is_violated), Class.INIT))
             certain.append(_state(f.fold_iff(f.prime(is_violated), violation), Class.SAFETY))
+            names_next = any(v.primed for v in f.variables(conjunct.formula))
+            ends_here = is_violated if names_next else violation
         clamps = (f.either(is_violated, f.negate(clamp)) for _, clamp in self.clamps)
         certain += (_state(clamp, Class.SAFETY) for clamp in clamps)
         if self._names(conjunct):
@@ -100,8 +104,9 @@ class CertainRuns(Struct, frozen=True):
             for name in names:
                 cases = (substitute(formula, {name: value}) for value in (f.TRUE, f.FALSE))
                 formula = f.both(*cases)
-            guard = is_violated if fact.class_ is Class.SAFETY else f.FALSE
-            certain.append(_state(f.either(guard, formula), fact.class_))
+            guard = ends_here if primed else is_violated
+            is_step = fact.class_ is Class.SAFETY
+            certain.append(_state(f.either(guard, formula) if is_step else formula, fact.class_))
         return tuple(certain)
 
     def drop_values(self, trace: Trace) -> Trace:

@@ -223,10 +223,23 @@ class BehaviourCheck:
             return RequirementVerdict(conjunct, Answer.NOT_DECIDED, reason)
         if self._entails((), conjunct):
             return self._confirm(conjunct, ())
-        endings = () if is_safety(as_ltl(conjunct)) else self._endings
+        endings = () if is_safety(as_ltl(conjunct)) else self._select_possible(conjunct)
         if endings and self._entails(endings, conjunct):
             return self._confirm(conjunct, endings)
         return self._refute(conjunct, endings)
+
+    def _select_possible(self, conjunct: Conjunct) -> tuple[Conjunct, ...]:
+        """Return the derived assumptions that those of the requirement leave possible.
+
+        An author who assumes that an event never comes does not ask what happens if it comes.
+        """
+        if not self._assumed or self._search.has_runs(self._list_facts(self._endings, conjunct)):
+            return self._endings
+        possible: tuple[Conjunct, ...] = ()
+        for ending in self._endings:
+            if self._search.has_runs(self._list_facts((*possible, ending), conjunct)):
+                possible = (*possible, ending)
+        return possible
 
     def _confirm(self, conjunct: Conjunct, endings: tuple[Conjunct, ...]) -> RequirementVerdict:
         """Return the verdict about a conjunct that all runs with some derived assumptions satisfy.

@@ -224,3 +224,31 @@ def test_an_output_that_the_block_itself_assigns_is_not_free():
     cell = f"part def Cell {{ {PARTS} bind feeder.ready = picker.ready; perform {action} }}"
     _, messages = check(cell, feeder)
     assert messages == []
+
+
+@pytest.mark.parametrize(
+    ("value", "is_given"),
+    [("", False), (":= true", False), ("= true", True), ("= false", False)],
+    ids=["free", "initial", "bound", "bound to the wrong value"],
+)
+def test_a_single_part_with_a_contract_relies_on_a_part_without_one(value, is_given):
+    feeder = f"part def Feeder {{ out attribute ready : Boolean {value}; }}"
+    picker = PICKER.replace("assume constraint { picker.full }", "")
+    parts = "part feeder : Feeder; part picker : Picker;"
+    cell = f"part def Cell {{ {parts} bind feeder.ready = picker.ready; }}"
+    verdict, messages = check(cell, feeder, picker)
+    assert verdict == ("its part fits" if is_given else "its part does not fit")
+    assert len(messages) == (not is_given)
+
+
+def test_an_assigned_feature_does_not_keep_its_bound_value():
+    feeder = """item def Go;
+        part def Feeder { out attribute ready : Boolean = true;
+            exhibit state M {
+                entry; then A; state A;
+                transition first A accept Go do assign ready := false then A; } }"""
+    picker = PICKER.replace("assume constraint { picker.full }", "")
+    cell = "part feeder : Feeder; part picker : Picker; bind feeder.ready = picker.ready;"
+    verdict, messages = check(f"part def Cell {{ {cell} }}", feeder, picker)
+    assert verdict == "its 2 parts do not fit together"
+    assert len(messages) == 1

@@ -5,7 +5,7 @@ in the step after the reaction, and is the event of the receiver in that same st
 connected receives from its connections only; of several signals for one receiver one occurs.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Set
 from typing import TYPE_CHECKING
 
 from msgspec import Struct
@@ -127,7 +127,16 @@ def derive_events(component: "Component") -> Wiring:
             )
             (occurring,) = f.variables(receipt.occurs)
             deliveries.append(Delivery(occurring.name, receipt.message, (), False))
+    sent = {(item.event, item.message) for item in deliveries if not item.is_open}
+    variables = [_find_decider(event, sent) for event in variables]
     return Wiring(variables, [*conjuncts, *wiring], gaps, acceptances, deliveries)
+
+
+def _find_decider(event: Variable, sent: Set[tuple[str, str]]) -> Variable:
+    """Return an event, which the component decides if its parts send all its messages."""
+    assert isinstance(event.domain, EnumerationDomain), "events are enumerated"
+    messages = {(event.name, literal) for literal in event.domain.literals if literal != NO_EVENT}
+    return replace(event, owner=Owner.SYSTEM) if messages <= sent else event
 
 
 def _is_port_closed(component: "Component", block: Block, receipt: Receipt, port: str) -> bool:

@@ -78,9 +78,10 @@ def compose_blocks(graph: Graph, contracts: Iterable[Contract], sink: Sink) -> I
     for element in _list_blocks(graph, by_origin):
         block = read_block(graph, element, by_origin)
         whole = _add_own_contracts(block) if block.members else None
+        if block.members:
+            add_free_outputs(block, writers)
         if len(block.members) + (whole is not None) < 2:
             continue
-        add_free_outputs(block, writers)
         open_steps += _find_open_steps(block)
         composite = _make_composite(block, whole, sink)
         if composite is not None:

@@ -137,25 +137,27 @@ def _iter_guarantees(
 ) -> Iterator[Conjunct]:
     """Yield what the model says about an output that its contract does not mention.
 
-    A constant has its value, another feature its initial value. If the contract is that of a
+    A constant has its value, and so has a feature with a bound value (``= true``) that nothing in
+    the model assigns; another feature has its initial value. If the contract is that of a
     behaviour, a feature that nothing in the model assigns keeps its value.
     """
+    is_assigned = any(writers.iter_writers(feature.element)) or any(
+        writers.iter_unclear_writers(feature.element)
+    )
+    is_bound = feature.element.attrs.get("default_kind") == "bound" and not is_assigned
 
     def derive(formula: f.Formula, class_: Class, text: str) -> Conjunct:
         return Conjunct(formula, class_, variable.origin, text, source=Source.DERIVED)
 
     if feature.default is not None and contains(variable.domain, feature.default):
         value, text = f.const(feature.default), print_literal(feature.default)
-        if feature.is_constant:
+        if feature.is_constant or is_bound:
             yield derive(equals(variable, value), Class.SAFETY, f"'{variable.name}' is {text}.")
         else:
             text = f"'{variable.name}' starts with {text}."
             yield derive(equals(variable, value), Class.INIT, text)
     is_behaviour = block.graph[contract.origin].kind in query.BEHAVIORS
-    if is_behaviour and not (
-        any(writers.iter_writers(feature.element))
-        or any(writers.iter_unclear_writers(feature.element))
-    ):
+    if is_behaviour and not is_assigned:
         now = f.var(variable.name)
         text = f"'{variable.name}' keeps its value, because nothing assigns it."
         yield derive(equals(variable, now, is_next=True), Class.SAFETY, text)
