@@ -133,3 +133,31 @@ def test_a_connector_of_unrelated_types_is_reported(ends):
         f"connector 'Line::c' joins 'Line::{ends[0]}' with 'Line::{ends[1]}', but its association "
         "'Coupling' joins 'Valve' with 'Motor'"
     ]
+
+
+PROPERTIES = """\
+Class water "Water"
+Class hot "Hot"
+  -> specializes water
+Class pallet "Pallet"
+Class tank "Tank"
+  Property out "out" direction="out" role="flow property"
+    -> typed-by water
+Class press "Press"
+  Property in "in" direction="in" role="flow property"
+    -> typed-by hot
+ItemFlow f "f"
+  -> flow-source out
+  -> flow-target in
+  -> conveys {}
+"""
+
+
+def test_an_item_flow_conveys_what_the_flow_properties_at_its_ends_pass():
+    for item in ("water", "hot"):
+        assert list_codes(run_until(PROPERTIES.format(item), "flows")[1]) == []
+    _, sink = run_until(PROPERTIES.format("pallet"), "flows")
+    assert [finding.message for finding in sink] == [
+        "item flow 'f' conveys 'Pallet', but its end 'Tank::out' has the type 'Water'",
+        "item flow 'f' conveys 'Pallet', but its end 'Press::in' has the type 'Hot'",
+    ]

@@ -18,6 +18,7 @@ from sysmlc.ir.query import (
     flow_target,
     generals,
     is_boundary,
+    is_flow_property,
     opposite,
     role_of,
     type_of,
@@ -88,6 +89,13 @@ CONNECTOR_ASSOCIATION = rule(
     "joins '{type}' with '{other_type}'",
     help="choose another association as the type of the connector, or connect other parts",
 )
+FLOW_PROPERTY_TYPE = rule(
+    "SM247",
+    "flow-property-type",
+    Severity.WARNING,
+    "item flow '{flow}' conveys '{item}', but its end '{feature}' has the type '{type}'",
+    help="convey what the flow property passes, or choose another end",
+)
 
 
 class Flows(Struct, frozen=True):
@@ -149,6 +157,7 @@ def _check_flow(graph: Graph, sink: Sink, flow: Element) -> None:
     for port, along, way in _list_port_ends(graph, flow):
         _check_direction(graph, sink, flow, port, along, way)
         _check_items(graph, sink, flow, port)
+    _check_flow_properties(graph, sink, flow)
     _check_realizing(graph, sink, flow)
 
 
@@ -226,6 +235,24 @@ def _check_items(graph: Graph, sink: Sink, flow: Element, port: Element) -> None
             )
 
 
+def _check_flow_properties(graph: Graph, sink: Sink, flow: Element) -> None:
+    """Report an end that is a flow property of another type than what the flow conveys."""
+    for feature in (flow_source(graph, flow), flow_target(graph, flow)):
+        type_ = type_of(graph, feature) if feature and is_flow_property(feature) else None
+        if feature is None or type_ is None:
+            continue
+        for item in graph.targets(flow, Edge.CONVEYS):
+            if not _are_related(graph, item, type_):
+                sink.report(
+                    FLOW_PROPERTY_TYPE,
+                    graph.subject(flow),
+                    flow=_title(graph, flow),
+                    item=item.name,
+                    feature=graph.qualified_name(feature),
+                    type=type_.name,
+                )
+
+
 def _list_item_types(graph: Graph, port: Element) -> list[Element]:
     """Return the types of the flow properties of a port; empty if one of them is unknown."""
     type_ = type_of(graph, port)
@@ -237,6 +264,13 @@ def _list_item_types(graph: Graph, port: Element) -> list[Element]:
 
 def _conform(graph: Graph, item: Element, type_: Element) -> bool:
     return conforms(graph, item, type_) or conforms(graph, type_, item)
+
+
+def _are_related(graph: Graph, left: Element, right: Element) -> bool:
+    """Whether one type specialises the other, or may do so in a file that is not there."""
+    family = [left, right, *generals(graph, left), *generals(graph, right)]
+    is_known = not any(general.attrs.get("external") for general in family)
+    return not is_known or _conform(graph, left, right)
 
 
 def _check_realizing(graph: Graph, sink: Sink, flow: Element) -> None:
@@ -418,9 +452,6 @@ def _may_be(graph: Graph, end: Element, type_: Element | None) -> bool:
     """Whether the role of an end, or the part with the port, may have a type."""
     steps = [*graph.targets(end, Edge.PATH), *graph.targets(end, Edge.ROLE)]
     for step_type in (type_of(graph, step) for step in steps):
-        if type_ is None or step_type is None or _conform(graph, step_type, type_):
-            return True
-        family = [step_type, type_, *generals(graph, step_type), *generals(graph, type_)]
-        if any(general.attrs.get("external") for general in family):
+        if type_ is None or step_type is None or _are_related(graph, step_type, type_):
             return True
     return False
