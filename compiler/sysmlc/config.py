@@ -86,10 +86,12 @@ def find_project_root(start: Path) -> Path:
     folder that contains the model. ``.git`` is a file in worktrees and submodules.
     """
     folder = _folder_of(start)
-    for parent in (folder, *folder.parents):
-        if (parent / FILE_NAME).is_file() or (parent / ".git").exists():
-            return parent
-    return folder
+    return next(filter(is_project_root, (folder, *folder.parents)), folder)
+
+
+def is_project_root(folder: Path) -> bool:
+    """Whether a folder holds ``sysmlc.toml`` or ``.git``, and so is the root of a project."""
+    return (folder / FILE_NAME).is_file() or (folder / ".git").exists()
 
 
 def find_boundary(output: Path, inputs: Iterable[Path] = ()) -> Path:
@@ -102,7 +104,7 @@ def find_boundary(output: Path, inputs: Iterable[Path] = ()) -> Path:
     """
     path = Path(os.path.abspath(output))  # noqa: PTH100 - links stay as written
     for folder in path.parents:
-        if (folder / FILE_NAME).is_file() or (folder / ".git").exists():
+        if is_project_root(folder):
             return folder
     roots = [root for root in map(find_project_root, inputs) if root in path.parents]
     return max(roots, key=lambda root: len(root.parts), default=output)

@@ -24,7 +24,7 @@ package Lamps {
 
 @pytest.fixture
 def project(workspace, all_passes):
-    """A folder with four files, one of which has nothing to do with the others."""
+    """A project of four files, one of which has nothing to do with the others."""
     workspace.write("words.sysml", WORDS)
     workspace.write("parts/pumps.sysml", PUMPS)
     workspace.write("plant.sysml", PLANT)
@@ -62,6 +62,13 @@ def test_files_outside_of_the_project_are_not_read(project):
     (project.folder / "parts/sysmlc.toml").unlink()
     result = check(project, "parts/pumps.sysml")
     assert [line for line in result if "Words" in line] == []
+
+
+def test_outside_of_projects_only_the_folder_of_the_file_is_searched(project):
+    (project.folder / ".git").rmdir()
+    assert any("unknown name 'Pumps'" in line for line in check(project, "plant.sysml"))
+    project.write("pumps.sysml", PUMPS)
+    assert not any("Pumps" in line for line in check(project, "plant.sysml"))
 
 
 def test_a_model_of_the_configuration_is_the_unit(project):

@@ -10,12 +10,14 @@ from collections.abc import Iterable, Iterator, Sequence
 from collections.abc import Set as AbstractSet
 from pathlib import Path
 
+from sysmlc.config import is_project_root
 from sysmlc.diagnostics import Sink
-from sysmlc.driver.inputs import Recognised, find_model_files, recognise
+from sysmlc.driver.inputs import SUFFIXES, Recognised, find_model_files, recognise
 from sysmlc.frontends.base import FileNames, Frontend, UnitFrontend
 from sysmlc.sources import Roots, Source, SourceError
 from sysmlc.sources.files import is_special, read_whole
 from sysmlc.sources.source import DEFAULT_LIMITS
+from sysmlc.support import resources
 
 
 def find_siblings(
@@ -34,11 +36,12 @@ def find_siblings(
         return []
     declared = set[str]().union(*(names.declared for names in worklist))
     candidates = dict(_load_candidates(known, roots))
+    seemingly_declared = {path: _find_declared(source) for path, source in candidates.items()}
     siblings: list[Path] = []
     while worklist:
         names = worklist.pop()
         wanted = names.used - names.local - declared
-        for path in [path for path in candidates if _may_declare(candidates[path], wanted)]:
+        for path in [p for p in candidates if not seemingly_declared[p].isdisjoint(wanted)]:
             items = recognise([candidates[path]], frontends, None, Sink())
             sibling_names = next(filter(None, map(_read_names, items)), None)
             if sibling_names is not None and not sibling_names.declared.isdisjoint(wanted):
@@ -58,11 +61,18 @@ def _read_names(item: Recognised) -> FileNames | None:
 
 
 def _load_candidates(known: AbstractSet[Path], roots: Roots) -> Iterator[tuple[Path, Source]]:
-    """Yield the files that may be siblings, with their content; skip those that cannot be read."""
+    """Yield the files that may be siblings, with their content; skip those that cannot be read.
+
+    Libraries that are shipped with sysmlc belong to no project. A folder outside of projects, such
+    as that of downloads, may contain anything, so that its subfolders are not searched.
+    """
+    shipped = Roots((Path(str(resources.path("metamodels", ""))),))
     for folder in roots.folders:
-        for path in sorted(find_model_files(folder)):
+        files = find_model_files(folder) if is_project_root(folder) else folder.iterdir()
+        for path in sorted(file for file in files if file.suffix.lower() in SUFFIXES):
             real = Path(os.path.realpath(path))
-            if real in known or not roots.allows(path) or is_special(path):
+            is_foreign = not roots.allows(path) or shipped.allows(path)
+            if real in known or is_foreign or is_special(path):
                 continue
             try:
                 yield path, Source(path.name, read_whole(path, path.name, DEFAULT_LIMITS))
@@ -70,11 +80,15 @@ def _load_candidates(known: AbstractSet[Path], roots: Roots) -> Iterator[tuple[P
                 continue
 
 
-def _may_declare(source: Source, names: AbstractSet[str]) -> bool:
-    """Whether a text contains what looks like a declaration of one of *names*.
+_NAME = r"(?:'((?:[^'\\]|\\.)*)'|(\w+))"
+_DECLARATION = re.compile(rf"(?<=[\w>'\s]){_NAME}\s*(?:[{{;\[]|:(?!:))|<\s*{_NAME}\s*>")
+"""A name before what may follow the name of a declaration, or a short name."""
 
-    The test is quick, so that most files of a project are not parsed.
+
+def _find_declared(source: Source) -> set[str]:
+    """Return the names before signs that may follow the name of a declaration, and short names.
+
+    The search is quick, so that most files of a project are not parsed.
     """
-    name = f"'?(?:{'|'.join(map(re.escape, sorted(names)))})'?"
-    declaration = rf"[\w>]\s+{name}\s*(?:[{{;\[]|:(?!:))|<{name}>"
-    return bool(names) and re.search(declaration.encode(), source.data) is not None
+    text = source.data.decode("utf-8", "replace")
+    return {name for names in _DECLARATION.findall(text) for name in names if name}
