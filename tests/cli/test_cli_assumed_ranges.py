@@ -400,3 +400,22 @@ exhibit state M {
         "R1: broken: G (event=Go -> on)",
         "R2: not decided: it depends on 'load < 1.5': G (event=Go -> on')",
     ]
+
+
+def test_all_behaviours_of_a_component_extend_an_assumed_range_in_the_same_way(check):
+    """The machine knew values beyond 15 that the component did not know: nothing was decided."""
+    block = """
+attribute n : Integer := 0;
+exhibit state M {
+    entry; then A; state A;
+    transition first A accept Go if n < 20 do assign n := n + 1 then A;
+}
+exhibit state W {
+    entry; then Low; state Low; state High;
+    transition first Low if n > 17 then High;
+}"""
+    assert check(block, "G W.state=Low", "G (n <= 20)", "G (W.state=High -> n > 17)") == [
+        "R0: broken: G W.state=Low",
+        "R1: holds within n in 0..20 (assumed): G (n<=20)",
+        "R2: holds within n in 0..20 (assumed): G (W.state=High -> n>17)",
+    ]

@@ -272,17 +272,26 @@ class _FeatureTable(Mapping[str, Feature]):
 
     def _infer_values(self, name: str, feature: Feature) -> Feature:
         """Return the feature with undeclared values inferred from those that the behaviour uses."""
-        if self._behaviour.kind not in _BEHAVIOURS:
-            return feature
         if feature.is_assumed:
             return self._widen_range(name, feature)
+        if self._behaviour.kind not in _BEHAVIOURS:
+            return feature
         if is_string(self._graph, feature) and self._mentioned_values.texts:
             return restrict_string(feature, self._text_domain)
         return feature
 
     def _widen_range(self, name: str, feature: Feature) -> Feature:
-        """Extend an assumed range to the numbers that the feature is compared with."""
-        numbers = self._mentioned_values.numbers.get(name, ())
+        """Extend an assumed range to the numbers that the feature is compared with.
+
+        All behaviours of the classifier count, so that the range is the same in each of them.
+        """
+        generals = query.generals(self._graph, self._classifier)
+        mentioned = (
+            _find_mentioned_values(self._graph, element, self._enumerations)
+            for element in (self._classifier, *generals)
+        )
+        values = (*mentioned, self._mentioned_values)
+        numbers = [number for item in values for number in item.numbers.get(name, ())]
         if not numbers:
             return feature
         low, high = self._assumed_range
