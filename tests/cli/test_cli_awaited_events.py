@@ -132,3 +132,22 @@ def test_a_block_decides_the_events_that_only_its_parts_send(workspace, sent, is
     lines = workspace.sysmlc("contracts", "check", "line.sysml").stdout.splitlines()
     verdict = "satisfies" if is_satisfied else "violates"
     assert f"Line::Cell: realizable, {verdict} its requirements" in lines
+
+
+def test_formulas_outside_gr1_are_decided_for_blocks_of_parts_as_for_others(workspace):
+    workspace.write(
+        "block.sysml",
+        """package Shop {
+    private import ScalarValues::*;
+    item def Go;
+    part def Lamp { attribute on : Boolean := false;
+        exhibit state S { entry; then A; state A;
+            transition first A accept Go do assign on := true then A; } }
+    part def Room { part lamp : Lamp; }
+    requirement def Settles { subject room : Room;
+        require constraint { language "ltl" /* F G room.lamp.on | F G !room.lamp.on */ } }
+}""",
+    )
+    result = workspace.sysmlc("contracts", "check", "block.sysml")
+    assert "Shop::Room: checked one by one, satisfies its requirements" in result.stdout
+    assert result.exit_code == 0

@@ -135,7 +135,7 @@ def check_contracts(
             result = _check_requirements(verdict, whole, contract, place, sink, options)
             if result.findings is not None:
                 checks.append((whole, contract, result.findings))
-            yield result
+            yield replace(result, is_checked_by_behaviour=True)
             continue
         verdict = decide(contract, place, sink, options)
         # Lints play games and explore runs, so an undecided contract would meet the same obstacle.
