@@ -71,6 +71,12 @@ def test_outside_of_projects_only_the_folder_of_the_file_is_searched(project):
     assert not any("Pumps" in line for line in check(project, "plant.sysml"))
 
 
+def test_a_copy_of_the_standard_library_is_no_sibling(project):
+    project.write("library/ScalarValues.sysml", "library package ScalarValues;")
+    project.write("flag.sysml", "part def Flag { attribute isUp : ScalarValues::Boolean; }")
+    assert check(project, "flag.sysml") == []
+
+
 def test_a_model_of_the_configuration_is_the_unit(project):
     project.write("sysmlc.toml", '[[model]]\nname = "plant"\nfiles = ["plant.sysml"]\n')
     assert any("unknown name 'Pumps'" in line for line in check(project, "plant.sysml"))

@@ -13,11 +13,10 @@ from pathlib import Path
 from sysmlc.config import is_project_root
 from sysmlc.diagnostics import Sink
 from sysmlc.driver.inputs import SUFFIXES, Recognised, find_model_files, recognise
-from sysmlc.frontends.base import FileNames, Frontend, UnitFrontend
+from sysmlc.frontends.base import FileNames, Frontend, LibraryFrontend, UnitFrontend
 from sysmlc.sources import Roots, Source, SourceError
 from sysmlc.sources.files import is_special, read_whole
 from sysmlc.sources.source import DEFAULT_LIMITS
-from sysmlc.support import resources
 
 
 def find_siblings(
@@ -35,6 +34,10 @@ def find_siblings(
     if not worklist:
         return []
     declared = set[str]().union(*(names.declared for names in worklist))
+    # A project may contain a copy of the standard library, which is not meant by a single file.
+    for frontend in frontends:
+        if isinstance(frontend, LibraryFrontend):
+            declared |= frontend.list_library_names()
     candidates = dict(_load_candidates(known, roots))
     seemingly_declared = {path: _find_declared(source) for path, source in candidates.items()}
     siblings: list[Path] = []
@@ -63,16 +66,14 @@ def _read_names(item: Recognised) -> FileNames | None:
 def _load_candidates(known: AbstractSet[Path], roots: Roots) -> Iterator[tuple[Path, Source]]:
     """Yield the files that may be siblings, with their content; skip those that cannot be read.
 
-    Libraries that are shipped with sysmlc belong to no project. A folder outside of projects, such
-    as that of downloads, may contain anything, so that its subfolders are not searched.
+    A folder outside of projects, such as that of downloads, may contain anything, so that its
+    subfolders are not searched.
     """
-    shipped = Roots((Path(str(resources.path("metamodels", ""))),))
     for folder in roots.folders:
         files = find_model_files(folder) if is_project_root(folder) else folder.iterdir()
         for path in sorted(file for file in files if file.suffix.lower() in SUFFIXES):
             real = Path(os.path.realpath(path))
-            is_foreign = not roots.allows(path) or shipped.allows(path)
-            if real in known or is_foreign or is_special(path):
+            if real in known or not roots.allows(path) or is_special(path):
                 continue
             try:
                 yield path, Source(path.name, read_whole(path, path.name, DEFAULT_LIMITS))

@@ -75,6 +75,9 @@ class LibraryFrontend(Protocol):
     def with_library(self, path: str) -> Frontend:
         """Return this front end, but with the library at *path*, a folder or an archive."""
 
+    def list_library_names(self) -> AbstractSet[str]:
+        """Return the names by which models refer to the library."""
+
 
 @runtime_checkable
 class AttachmentFrontend(Protocol):

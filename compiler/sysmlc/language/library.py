@@ -75,6 +75,10 @@ class Library:
         """Return the names of all files, sorted."""
         return sorted(self._sources)
 
+    def stems(self) -> list[str]:
+        """Return the names of all files without folders and suffixes, sorted."""
+        return sorted(self._stems)
+
     def loaded_documents(self) -> list[Document]:
         """Return the documents that the model refers to so far, by path.
 

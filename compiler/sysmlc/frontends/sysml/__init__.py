@@ -12,7 +12,7 @@ from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.base import FileNames
 from sysmlc.frontends.sysml.detection import score_source
 from sysmlc.ir import Graph
-from sysmlc.sources import Source
+from sysmlc.sources import Source, SourceError
 from sysmlc.support.interpreter import pause_garbage_collection
 
 
@@ -29,6 +29,15 @@ class SysmlFrontend(Struct, frozen=True):
     def with_library(self, path: str) -> "SysmlFrontend":
         """Return the same front end with the standard library of a folder or an archive."""
         return SysmlFrontend(self.name, path)
+
+    def list_library_names(self) -> frozenset[str]:
+        """Return the names of the files of the library, which are those of its packages."""
+        from sysmlc.language.library import find_library
+
+        try:
+            return frozenset(find_library(self.library or None).stems())
+        except SourceError:  # ``read`` reports it.
+            return frozenset()
 
     def detect(self, source: Source) -> float:
         """Return how certain it is, from 0 to 1, that the source is SysML v2 or KerML."""
