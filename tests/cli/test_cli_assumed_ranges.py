@@ -376,6 +376,7 @@ def test_parts_that_an_unread_condition_separates_are_not_decided(workspace, all
     line, result = check_composition(workspace, "if temp < 18.0", "if temp >= 18.0")
     assert line == "P::Plant: the composition of its parts is not checked"
     assert "it depends on 'temp < 18.0' and 'temp >= 18.0'" in result.stdout + result.stderr
+    assert result.exit_code == 2
     assert "SM595" not in result.stdout + result.stderr
 
 

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from sysmlc.logic.contract import Composite
     from sysmlc.logic.requirements.statements import StatedRequirement
     from sysmlc.recipe.recipe_times import LimitVerdict
+    from sysmlc.synthesis.composition_check import CompositionVerdict
     from sysmlc.synthesis.contract_checks import CheckedContract
     from sysmlc.synthesis.decision import Options
     from sysmlc.synthesis.requirement_verdicts import RequirementVerdict
@@ -157,21 +158,24 @@ def _check(
     )
     if refusals:
         return 2
-    return _find_exit_code(contract_file, alone, is_checked=bool(alone or together))
+    return _find_exit_code(contract_file, alone, together)
 
 
 def _find_exit_code(
-    contract_file: "ContractFile", results: "list[CheckedContract]", *, is_checked: bool
+    contract_file: "ContractFile",
+    alone: "list[CheckedContract]",
+    together: "list[CompositionVerdict]",
 ) -> int:
     """Return 0 if all is as it should be, 1 after errors, 2 if something is not decided."""
     from sysmlc.diagnostics import Severity
 
     is_undecided = any(
         result.verdict.is_realizable is None and not result.is_checked_by_behaviour
-        for result in results
-    )
+        for result in alone
+    ) or any(result.is_satisfied is None for result in together)
     diagnostics = (*contract_file.sink, *(finding.diagnostic for finding in contract_file.findings))
     has_errors = any(diagnostic.severity is Severity.ERROR for diagnostic in diagnostics)
+    is_checked = bool(alone or together)
     return int(has_errors) if contract_file.is_whole and is_checked and not is_undecided else 2
 
 
