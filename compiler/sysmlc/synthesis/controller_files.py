@@ -317,14 +317,22 @@ class _Unrolling:
             yield self._encode_node(index, values, state, index in initial_nodes, list(successors))
 
     def _successors(self, values: Values, state: int, rules: Sequence[Evaluation]) -> Iterator[int]:
-        """Yield the next nodes after a step, one for each next input that *rules* allow."""
+        """Yield the next nodes after a step, one for each next input that *rules* allow.
+
+        A verified machine lacks a move only for inputs after which no run satisfies the assumptions
+        (``games.dead_ends``). They have no node.
+        """
         for inputs in self._inputs:
             self._steps_left -= 1
             if self._steps_left < 0:
                 raise LimitError("steps of the strategy", f"{self._max_steps:,}")
             current, following = (values, inputs) if values else (inputs, None)
             if all(rule(current, following) for rule in rules):
-                yield self._index_node(values, state, inputs)
+                try:
+                    node = self._index_node(values, state, inputs)
+                except LookupError:
+                    continue
+                yield node
 
     def _index_node(self, values: Values, state: int, inputs: Values) -> int:
         """Return the index of the node that *inputs* lead to; a new node is added."""
