@@ -46,8 +46,8 @@ Examples:
   sysmlc contracts check gate.contract.json
   sysmlc contracts check plant.uml --question-limit 60 --time-limit 1800
 
-Exit codes: 0 all contracts hold, 1 a contract is unrealizable or violated,
-2 the work could not be done.""",
+Exit codes: 0 nothing is violated (the last line counts undecided requirements),
+1 a contract is unrealizable or violated, 2 the work could not be done.""",
 )
 @click.argument(
     "files", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILE..."
