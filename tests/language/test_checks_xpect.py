@@ -34,6 +34,20 @@ MISSED = {
 """Expected errors that sysmlc does not report; docs/sysml-v2-rules.md gives the reasons."""
 
 
+TRUE_WARNINGS = {
+    "omg-release/examples": [
+        ("SM245", "'clutchPort' of type 'DrivePwrPort'"),
+        ("SM245", "'req1_1' of type 'Req1_1'"),
+        ("SM244", "'pusher.pusherBehavior.output' and 'cart.cartBehavior.input'"),
+        ("SM244", "'battery.batteryBehavior.output' and 'motor.motorBehavior.input'"),
+        ("SM244", "'motor.motorBehavior.output' and 'tire.tireBehavior.input'"),
+        ("SM244", "'tire.tireBehavior.output' and 'motor.motorBehavior.input'"),
+        ("SM244", "'tire.tireBehavior.output' and 'vehicleBehavior.input'"),
+    ]
+}
+"""Warnings about published models: the ends of their connections and flows have unrelated types."""
+
+
 @pytest.mark.parametrize(
     "folder",
     ["omg-release/training", "omg-release/examples", "omg-release/sysml.library", "ice-lab"],
@@ -42,7 +56,10 @@ def test_no_real_model_breaks_a_constraint(folder):
     library = Library([]) if folder.endswith("library") else load_standard_library()
     sink = Sink()
     check(resolve(parse_folder(FOLDER / folder), library, Sink()), sink)
-    assert [diagnostic.message for diagnostic in sink] == []
+    expected = TRUE_WARNINGS.get(folder, [])
+    for diagnostic, (code, start) in zip(sink, expected, strict=True):
+        assert diagnostic.rule.code == code
+        assert diagnostic.message.startswith(start)
 
 
 _ERROR_OF_THE_PILOT = "SM197"

@@ -26,6 +26,7 @@ TRUE_WARNINGS = {
     "SM452": "the clause behind a clause whose test is the literal true is never tested",
     "SM454": "an accept action without incoming flows accepts again while its token still waits",
     "SM459": "no contract is derived from a flow that takes all tokens at once",
+    "SM491": "a value that overrides an inherited one may lie outside its scale",
     "SM467": "no contract is derived from a join with a specification",
 }
 """Warnings of legal models, with the fact that each states."""

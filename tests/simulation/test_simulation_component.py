@@ -244,14 +244,18 @@ steps:
     assert play(SORTER, scenario).passed
 
 
-def test_an_event_that_only_parts_send_does_not_come_from_outside(play):
-    scenario = """component: P::Line
+def test_an_event_that_only_parts_send_is_no_input(tmp_path):
+    path = tmp_path / "model.sysml"
+    path.write_text(SORTER, "utf-8")
+    scenario = b"""component: P::Line
 steps:
   - inputs: {c_event: Piece}
-    expect: {c_event: none}
-  - expect: {c_state: Empty}
 """
-    assert play(SORTER, scenario).passed
+    sink = Sink()
+    run_scenarios(compile_model(path).graph, Source("s.yaml", scenario), sink)
+    (diagnostic,) = sink
+    assert diagnostic.rule.code == "SM555"
+    assert diagnostic.message.startswith("'c_event' is decided by 'P::Line'")
 
 
 @pytest.mark.parametrize(("event", "state"), [("Piece", "Full"), ("Scrap", "Dirty")])

@@ -15,7 +15,7 @@ _NEW_OBJECTS = 200_000
 def main() -> None:
     """Run the command ``sysmlc`` in a child process, which ends when it reaches a limit."""
     # While modules are imported, Ctrl-C ends the process like any other program, without a
-    # traceback. ``group.main`` handles it afterwards. A process that ignores it goes on to do so.
+    # traceback. The commands handle it afterwards. A process that ignores it goes on to do so.
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
     from sysmlc.cli.supervisor import can_supervise, supervise

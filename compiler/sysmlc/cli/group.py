@@ -57,7 +57,12 @@ class _Commands(click.Group):
         return super().parse_args(ctx, args)
 
     def invoke(self, ctx: click.Context) -> object:
-        """Run the command; exit with code 130 after Ctrl-C."""
+        """Run the command; exit with code 130 after Ctrl-C.
+
+        Before, Ctrl-C ends the process (``cli.main``): click would report it with exit code 1.
+        """
+        if signal.getsignal(signal.SIGINT) is signal.SIG_DFL:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
         try:
             return super().invoke(ctx)
         except KeyboardInterrupt:
@@ -89,8 +94,6 @@ def sysmlc() -> None:
 def main() -> None:
     """Run the command line; an internal fault is reported in one sentence, with exit code 2."""
     terminal.open_streams()
-    if signal.getsignal(signal.SIGINT) is signal.SIG_DFL:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
     warnings.showwarning = _print_warning
     try:
         run_guarded(sysmlc, prog_name="sysmlc")

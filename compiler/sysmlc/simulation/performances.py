@@ -122,8 +122,10 @@ def receive_messages(wiring: Wiring, valuation: Valuation) -> Iterator[Valuation
     for event in dict.fromkeys(delivery.event for delivery in wiring.deliveries):
         deliveries = [delivery for delivery in wiring.deliveries if delivery.event == event]
         sent = [d.message for d in deliveries if any(valuation[name] for name in d.outputs)]
-        is_impossible = any(d.message == valuation[event] and not d.is_open for d in deliveries)
-        options[event] = [*sent] or [NO_EVENT if is_impossible else valuation[event]]
+        # An event that only parts of the component send is none of its inputs.
+        from_outside = valuation.get(event, NO_EVENT)
+        is_impossible = any(d.message == from_outside and not d.is_open for d in deliveries)
+        options[event] = [*sent] or [NO_EVENT if is_impossible else from_outside]
     for events in choose_values(options):
         step = {**valuation, **events}
         yield step | {

@@ -63,7 +63,10 @@ def test_differences_from_the_project_description_are_reported(tmp_path, message
 
 def test_archives_that_are_given_together_are_found(tmp_path):
     user = pack(tmp_path / "plant.kpar", usage=["https://example.org/1.0/Robots.kpar"])
-    assert compile_files(user, pack(tmp_path / "robots.kpar"))[1] == []
+    # Both archives have the same file in this test, so that they declare one package (SM243).
+    assert compile_files(user, pack(tmp_path / "robots.kpar"))[1] == [
+        ("SM243", "plant.kpar!R.sysml")
+    ]
 
 
 def test_archives_of_the_library_are_examined(tmp_path):

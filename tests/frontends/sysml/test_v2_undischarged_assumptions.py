@@ -49,7 +49,7 @@ def test_the_report_names_who_decides_the_output():
     )
     assert diagnostic.notes == (
         "'feeder' decides 'feeder.ready' and guarantees nothing about it",
-        "step 1: feeder.ready=false",
+        "step 1: feeder.ready=false  <-- violated here",
         "then again from step 1",
     )
 
