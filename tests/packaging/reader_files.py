@@ -79,11 +79,14 @@ def supply_files(page: str, folder: Path, sysmlc: Callable[..., object]) -> None
 
 
 def _supply_recorded_run(folder: Path) -> None:
-    """Write a run of the gate in which one event is recorded and nothing happens."""
+    """Write a run of the gate in which nothing happens."""
     contract = json.loads((folder / "gate.contract.json").read_text("utf-8"))
-    name, variable = next(iter(contract["variables"].items()))
-    first_value = "false" if variable["type"] == "bool" else str(variable["type"][0])
-    (folder / "monday.csv").write_text(f"{name}\n{first_value}\n")
+    first_values = {
+        name: "false" if variable["type"] == "bool" else str(variable["type"][0])
+        for name, variable in contract["variables"].items()
+    }
+    rows = (first_values, first_values.values())
+    (folder / "monday.csv").write_text("".join(f"{','.join(row)}\n" for row in rows))
 
 
 def _supply_code_blocks(folder: Path) -> None:
