@@ -53,11 +53,10 @@ def measure_growth(model: Path, count: int, *backends: str) -> tuple[int, float]
     return int(objects), float(megabytes)
 
 
-@pytest.mark.parametrize("count", [15, pytest.param(200, marks=pytest.mark.long)])
-def test_compilations_in_a_loop_leave_nothing(count, tmp_path):
+def test_compilations_in_a_loop_leave_nothing(tmp_path):
     model = tmp_path / "cells.sysml"
     model.write_text(MODEL)
-    objects, megabytes = measure_growth(model, count, "contracts", "plantuml")
+    objects, megabytes = measure_growth(model, 15, "contracts", "plantuml")
     assert objects < 1_000
     assert megabytes < 10
 
@@ -65,7 +64,9 @@ def test_compilations_in_a_loop_leave_nothing(count, tmp_path):
 @pytest.mark.corpus
 @pytest.mark.long
 @pytest.mark.parametrize(
-    ("count", "backends"), [(200, []), (20, ["contracts", "recipe", "plantuml"])]
+    # Growth was 0.4 MB from the 5th to the 30th and to the 200th compilation.
+    ("count", "backends"),
+    [(30, []), (8, ["contracts", "recipe", "plantuml"])],
 )
 def test_compilations_of_the_ice_laboratory_leave_nothing(count, backends, corpus):
     objects, megabytes = measure_growth(corpus / "sysml2/ice-lab", count, *backends)
