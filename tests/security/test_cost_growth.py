@@ -10,8 +10,14 @@ import pytest
 
 from sysmlc.backends import contracts
 from sysmlc.backends.plantuml import block_definition
-from sysmlc.driver import Request, compile_model, list_backend_names, load_backends
+from sysmlc.diagnostics import Sink
+from sysmlc.driver import Request, compile_model, list_backend_names, load_backends, siblings
+from sysmlc.ir import parse_text
+from sysmlc.logic.formal_texts import is_formal
 from sysmlc.logic.machines import conflicts as conflicts
+from sysmlc.passes.transition_names import read_transition_names
+from sysmlc.sources import Source
+from sysmlc.support.units import find_unit, split_quantity
 
 MAX_GROWTH = 4.5
 """Limit of the factor by which the cost grows when the size is doubled; 4 is quadratic."""
@@ -146,3 +152,15 @@ def test_a_contract_of_many_parallel_actions_is_not_written(tmp_path, monkeypatc
     compilation = compile_text(tmp_path, "fork.sysml", text)
     assert "SM711" in find_codes(compilation)
     assert "contracts/A.contract.json" not in {file.path for file in compilation.artefacts}
+
+
+def test_texts_of_strangers_are_split_in_linear_time():
+    """Each of these texts took minutes with expressions that try every way to divide it."""
+    size = 200_000
+    assert split_quantity("1 m" + " " * size + "[") is None
+    assert find_unit("m" + " " * size + "x") is None
+    assert not is_formal("english", "the lamp holds within 1 " + "1" * size + " -")
+    word = Source("a.sysml", b"a" * size)
+    assert not siblings._find_declared(word)
+    text = 'Transition t "' + " " * size + '"\n'
+    read_transition_names(parse_text(text), Sink())

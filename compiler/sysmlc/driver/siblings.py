@@ -12,11 +12,14 @@ from pathlib import Path
 
 from sysmlc.config import is_project_root
 from sysmlc.diagnostics import Sink
-from sysmlc.driver.inputs import SUFFIXES, Recognised, find_model_files, recognise
+from sysmlc.driver.inputs import Recognised, find_model_files, recognise
 from sysmlc.frontends.base import FileNames, Frontend, LibraryFrontend, UnitFrontend
 from sysmlc.sources import Roots, Source, SourceError
 from sysmlc.sources.files import is_special, read_whole
 from sysmlc.sources.source import DEFAULT_LIMITS
+
+_SUFFIXES = (".sysml", ".kerml")
+"""Suffixes of texts: other models, which may be large, name the files that they refer to."""
 
 
 def find_siblings(
@@ -71,7 +74,7 @@ def _load_candidates(known: AbstractSet[Path], roots: Roots) -> Iterator[tuple[P
     """
     for folder in roots.folders:
         files = find_model_files(folder) if is_project_root(folder) else folder.iterdir()
-        for path in sorted(file for file in files if file.suffix.lower() in SUFFIXES):
+        for path in sorted(file for file in files if file.suffix.lower() in _SUFFIXES):
             real = Path(os.path.realpath(path))
             if real in known or not roots.allows(path) or is_special(path):
                 continue
@@ -81,8 +84,9 @@ def _load_candidates(known: AbstractSet[Path], roots: Roots) -> Iterator[tuple[P
                 continue
 
 
-_NAME = r"(?:'((?:[^'\\]|\\.)*)'|(\w+))"
-_DECLARATION = re.compile(rf"(?<=[\w>'\s]){_NAME}\s*(?:[{{;\[]|:(?!:))|<\s*{_NAME}\s*>")
+# Possessive quantifiers: a word of a megabyte would otherwise take quadratic time.
+_NAME = r"(?:'((?:[^'\\]|\\.)*+)'|(?<!\w)(\w++))"
+_DECLARATION = re.compile(rf"{_NAME}\s*+(?:[{{;\[]|:(?!:))|<\s*+{_NAME}\s*+>")
 """A name before what may follow the name of a declaration, or a short name."""
 
 

@@ -35,8 +35,8 @@ _SENTENCE = re.compile(
 )
 """The start of a sentence that no informal text contains: tools label any prose as English."""
 _ENDING = re.compile(
-    r"\bholds\s+(at\s+most\s+(once|twice|\d+\s+times)|again\s+and\s+again"
-    r"|within\s+\d+\s*\w+)\s*\.?\s*\Z",
+    r"\bholds\s++(at\s++most\s++(once|twice|\d++\s++times)|again\s++and\s++again"
+    r"|within\s++\d++\s*+\w++)\s*+\.?\s*+\Z",
     re.IGNORECASE,
 )
 """The end of such a sentence."""

@@ -3,8 +3,6 @@
 Some modellers and tools have the whole text of a transition only in its name (UML 2.5.1, 14.2.4.9).
 """
 
-import re
-
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir.element import derived_id
@@ -16,22 +14,32 @@ TRANSITION_FROM_NAME = rule(
     "the name of transition '{transition}' is read as {parts}",
     help="write the trigger, the guard and the effect of the transition instead of its name",
 )
-_NOTATION = re.compile(r"\s*(?P<trigger>[^\[\]]*?)\s*\[(?P<guard>[^\[\]]+)\]\s*(/(?P<effect>.*))?")
+
+
+def _split_name(name: str) -> tuple[str, str, str] | None:
+    """Return trigger, guard and effect of a name; None for a name without a guard in brackets."""
+    trigger, _, behind = name.partition("[")
+    guard, closing, rest = behind.partition("]")
+    rest = rest.strip()
+    is_notation = closing and guard and "[" not in guard and "]" not in trigger
+    if not is_notation or (rest and not rest.startswith("/")):
+        return None
+    return trigger.strip(), guard.strip(), rest.removeprefix("/").strip()
 
 
 def read_transition_names(graph: Graph, sink: Sink) -> None:
     """Give transitions the trigger, guard and effect that only their names state."""
     for transition in graph.of_kind(Kind.TRANSITION):
-        match = _NOTATION.fullmatch(transition.name)
+        texts = _split_name(transition.name)
         has_guard = "guard" in transition.attrs or graph.targets(transition, Edge.GUARD)
-        if match is None or has_guard:
+        if texts is None or has_guard:
             continue
-        graph.set(transition, guard=match["guard"].strip())
-        parts = [f"the guard '{match['guard'].strip()}'"]
-        if match["trigger"] and not graph.targets(transition, Edge.TRIGGER):
-            _add_trigger(graph, transition, match["trigger"])
-            parts.insert(0, f"the trigger '{match['trigger']}'")
-        effect = (match["effect"] or "").strip()
+        trigger, guard, effect = texts
+        graph.set(transition, guard=guard)
+        parts = [f"the guard '{guard}'"]
+        if trigger and not graph.targets(transition, Edge.TRIGGER):
+            _add_trigger(graph, transition, trigger)
+            parts.insert(0, f"the trigger '{trigger}'")
         if effect and not graph.targets(transition, Edge.EFFECT):
             _add_effect(graph, transition, effect)
             parts.append(f"the effect '{effect}'")

@@ -146,21 +146,27 @@ _UNITS_BY_TEXT = {
 
 
 _PLURALS = {f"{unit.name}s": unit for unit in UNITS}
-_QUANTITY = re.compile(
-    r"\s*([+-]?\d{1,30}(?:\.\d{1,30})?(?:[eE][+-]?\d{1,2})?)\s*\[?\s*((?:[^\W\d]|[°%µμ])[^\[\]]*?)\s*\]?\s*"
-)
+_NUMBER = re.compile(r"[+-]?\d{1,30}(?:\.\d{1,30})?(?:[eE][+-]?\d{1,2})?")
+_UNIT_START = re.compile(r"[^\W\d]|[°%µμ]")
 
 
 def find_unit(text: str) -> Unit | None:
     """Return the unit that a text means: a symbol, another spelling of one, a name or a code."""
-    text = re.sub(r"\s*([/·])\s*", r"\1", text.replace("⋅", "·").replace("*", "·"))
+    text = text.replace("⋅", "·").replace("*", "·")
+    for sign in "/·":
+        text = sign.join(part.strip() for part in text.split(sign))
     return _UNITS_BY_TEXT.get(_SPELLINGS.get(text, text)) or _PLURALS.get(text)
 
 
 def split_quantity(text: str) -> tuple[Fraction, str] | None:
     """Return the number and the unit of a text such as ``9 s`` or ``9 [s]``; None without both."""
-    match = _QUANTITY.fullmatch(text)
-    return None if match is None else (Fraction(match[1]), match[2])
+    text = text.strip()
+    number = _NUMBER.match(text)
+    if number is None:
+        return None
+    unit = text[number.end() :].strip().removeprefix("[").removesuffix("]").strip()
+    is_unit = _UNIT_START.match(unit) and "[" not in unit and "]" not in unit
+    return (Fraction(number[0]), unit) if is_unit else None
 
 
 def convert(number: Fraction, unit: str, target: str) -> Fraction | None:
