@@ -34,6 +34,17 @@ def test_the_documented_loader_has_one_line_for_each_of_its_contracts(workspace)
     }
 
 
+def test_the_same_lines_are_written_about_the_model_in_sysml_v1(workspace):
+    loader = "part def Loader :> Picking { action pick : Pick; bind pick.command = command; }"
+    lines = check(workspace, loader).splitlines()
+    assert "Cells::Loader.pick: realizable" in lines
+    workspace.sysmlc("build", "cells.sysml", "--emit", "uml", "-o", "saved")
+    assert workspace.sysmlc("contracts", "check", "saved/uml").stdout.splitlines() == lines
+    file = "saved/uml/libraries/DIN8580.uml"
+    alone = workspace.sysmlc("contracts", "check", file).stdout
+    assert "DIN8580::Clamping: realizable" in alone.splitlines()
+
+
 ELSEWHERE = "part def Lamp { out attribute on : Boolean; }"
 REQUIREMENT = "requirement def On { subject l : Lamp; require constraint { l.on } }"
 

@@ -28,6 +28,7 @@ def print_library(name: str) -> bytes:
         graph = parse_text(_emit(Path(folder), f"{name}.sysml", "ir", "graph.ir").decode())
         for element in list(graph):
             _adapt_to_v1(graph, element, name)
+        _mark_as_library(graph, name)
         (Path(folder) / f"{name}.ir").write_text(print_text(graph), encoding="utf-8")
         return _emit(Path(folder), f"{name}.ir", "uml", f"uml/{name}.uml")
 
@@ -35,6 +36,15 @@ def print_library(name: str) -> bytes:
 def _emit(folder: Path, model: str, backend: str, file: str) -> bytes:
     outcome = compile_model(Request((folder / model,), backends=tuple(select_backends([backend]))))
     return next(output.text for output in outcome.list_published() if output.path == file).encode()
+
+
+def _mark_as_library(graph: Graph, name: str) -> None:
+    """Apply «ModelLibrary» to the package of the library."""
+    (package,) = (element for element in graph.of_kind(Kind.PACKAGE) if element.name == name)
+    application = Element(f"{package.id}.library", Kind.APPLICATION, "ModelLibrary")
+    graph.add(application)
+    graph.set(application, namespace="http://www.eclipse.org/uml2/5.0.0/UML/Profile/Standard")
+    graph.connect(Edge.SUBJECT, application, package)
 
 
 def _adapt_to_v1(graph: Graph, element: Element, name: str) -> None:

@@ -74,3 +74,42 @@ def test_stereotypes_are_those_of_the_roles(graphs):
         roles = {"Block": "block", "Requirement": "requirement", "FlowProperty": "flow property"}
         assert {roles[name] for name in names} <= {element.role}, element
     assert {element.role for element in old} <= {element.role for element in new}
+
+
+HALL = """package Hall {
+    private import Floors::*;
+    part def Hall :> Floor {
+        constant attribute :>> columns = 2;
+        constant attribute :>> rows = 1;
+        part robot : Robot { :>> row = 0; :>> column = 0; }
+        part mission : Mission { part dock : Target { :>> row = 0; :>> column = 1; } }
+    }
+}
+"""
+LOADER = """package Cells {
+    private import DIN8580::*;
+    part def Loader :> Picking { action pick : Pick; bind pick.command = command; }
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("library", "text"), [("Floors", HALL), ("DIN8580", LOADER)], ids=["floors", "actions"]
+)
+def test_a_model_is_saved_with_the_shipped_libraries_that_it_uses(library, text, tmp_path):
+    original = compile_text(tmp_path, "model.sysml", text.encode(), "uml", "contracts")
+    saved = {path: text for path, text in outputs(original).items() if path.startswith("uml/")}
+    assert sorted(saved) == [f"uml/libraries/{library}.uml", "uml/model.uml"]
+    for path, content in saved.items():
+        file = tmp_path / path
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(content, encoding="utf-8")
+    copy = compile_example(tmp_path / "uml", "contracts")
+    formulas = list_formulas(original)
+    assert formulas
+    assert formulas.items() <= list_formulas(copy).items()
+
+
+def list_formulas(outcome):
+    """Return the formulas of each contract by its file."""
+    return {path: text for path, text in outputs(outcome).items() if path.endswith(".spin.ltl")}

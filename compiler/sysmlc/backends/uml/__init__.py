@@ -7,7 +7,7 @@ from sysmlc.backends.uml.attributes import write_attributes
 from sysmlc.backends.uml.containment import find_containing_feature
 from sysmlc.backends.uml.context import Context, make_part_id
 from sysmlc.backends.uml.events import find_or_add_signature, write_events
-from sysmlc.backends.uml.hrefs import is_external
+from sysmlc.backends.uml.hrefs import is_external, list_shipped_libraries
 from sysmlc.backends.uml.metaclasses import (
     RECLASSIFIED_KINDS,
     UNSUPPORTED_KINDS,
@@ -27,6 +27,7 @@ from sysmlc.backends.uml.rules import (
 from sysmlc.backends.uml.stereotypes import StereotypeWriter, write_profiles
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.support import resources
 from sysmlc.support.output import Output, assign_file_names
 
 _NAMESPACES = {
@@ -63,10 +64,13 @@ class UmlBackend(Struct, frozen=True):
     is_default: bool = False
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
-        """Add ``uml/<unit>.uml``; report what UML cannot express."""
+        """Add ``uml/<unit>.uml`` and the shipped libraries; report what UML cannot express."""
         unit = name_compile_unit(graph, options)
         path = f"uml/{assign_file_names([unit])[unit]}.uml"
         output.add(path, write_document(graph, sink), (), self.name, name=unit)
+        for library in list_shipped_libraries(graph):
+            text = resources.read_text("metamodels", f"{library}.uml")
+            output.add(f"uml/libraries/{library}.uml", text, (), self.name)
 
 
 BACKEND = UmlBackend()

@@ -1,10 +1,13 @@
 """References to elements outside the saved model, in the form that Papyrus writes."""
 
+from functools import cache
 from urllib.parse import quote
+from xml.etree import ElementTree
 
 from sysmlc.backends.uml.metaclasses import find_metaclass
 from sysmlc.backends.uml.node import Node
 from sysmlc.ir import Element, Graph, Kind
+from sysmlc.support import resources
 
 _UML = "http://www.omg.org/spec/UML/20161101/"
 _SYSML = "http://www.omg.org/spec/SysML/20181001/SysML.xmi#"
@@ -17,6 +20,8 @@ _FILES = {
 _PROFILE = "pathmap://SysML16_PROFILES/SysML.profile.uml#SysML"
 _LIBRARY = "pathmap://SysML16_LIBRARIES/SysML-Standard-Library.uml#SysML"
 _OWN_LIBRARIES = "pathmap://SYSMLC_LIBRARIES/"
+_SHIPPED_LIBRARIES = frozenset({"DIN8580", "Floors", "LineMachines"})
+"""Libraries of SysML v2 that ``metamodels`` also has for SysML v1."""
 _STEPS = {
     Kind.STEREOTYPE: "stereotype",
     Kind.DATA_TYPE: "dataType",
@@ -31,13 +36,45 @@ def is_external(element: Element) -> bool:
     return bool(element.attrs.get("external"))
 
 
+def list_shipped_libraries(graph: Graph) -> list[str]:
+    """Return the names of the shipped libraries that the model uses and hrefs lead into."""
+    return sorted(
+        root.name for root in graph.roots() if is_external(root) and root.name in _SHIPPED_LIBRARIES
+    )
+
+
+@cache
+def _read_library_ids(library: str) -> dict[tuple[str, ...], str]:
+    """Return the ids in a shipped library for SysML v1 by the names on the path to the element."""
+    ids: dict[tuple[str, ...], str] = {}
+    root = ElementTree.fromstring(resources.read_text("metamodels", f"{library}.uml"))
+    stack: list[tuple[ElementTree.Element, tuple[str, ...]]] = [(root, ())]
+    while stack:
+        node, path = stack.pop()
+        if "name" in node.attrib:
+            path = (*path, node.attrib["name"])
+            ids[path] = node.get("{http://www.omg.org/spec/XMI/20131001}id", "")
+        stack.extend((child, path) for child in node)
+    return ids
+
+
+def _make_library_href(graph: Graph, element: Element) -> str:
+    """Return the href of an element of our own libraries: its id in the file, or its path."""
+    path = list(reversed([element, *graph.ancestors(element)]))
+    library = path[0].name
+    names = tuple(step.name for step in path)
+    id = _read_library_ids(library).get(names, "") if library in _SHIPPED_LIBRARIES else ""
+    if id:
+        return f"libraries/{library}.uml#{id}"
+    file, *steps = [quote(_find_unique_name(step), safe="") for step in path]
+    return f"{_OWN_LIBRARIES}{file}#{'/'.join(steps) or file}"
+
+
 def make_href(graph: Graph, element: Element) -> str:
-    """Return the href of an external stub; an element of our own libraries has its path."""
+    """Return the href of an external stub."""
     href = str(element.attrs.get("href", ""))
     if not href:
-        path = reversed([element, *graph.ancestors(element)])
-        file, *steps = [quote(_find_unique_name(step), safe="") for step in path]
-        return f"{_OWN_LIBRARIES}{file}#{'/'.join(steps) or file}"
+        return _make_library_href(graph, element)
     for prefix, replacement in _FILES.items():
         if href.startswith(prefix):
             return replacement + href.removeprefix(prefix)
