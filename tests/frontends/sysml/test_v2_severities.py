@@ -360,6 +360,39 @@ def test_a_condition_over_a_feature_of_a_package_names_the_package():
     assert all(d.help.startswith("use a property of the owner") for d in findings)
 
 
+CONSTANTS = """package Limits {
+    attribute top : ScalarValues::Natural = 9;
+    attribute soft : ScalarValues::Natural := 9;
+}
+package P {
+    enum def Mode { enum slow; enum fast; }
+    attribute fast : Mode = Mode::slow;
+    attribute step : ScalarValues::Natural = 2;
+    part def Cell {
+        attribute level : ScalarValues::Natural := 0;
+        attribute mode : Mode := Mode::slow;
+        exhibit state s { entry; then x; state x;
+            transition first x if level < Limits::top and mode == fast
+                do assign level := step then x; }
+        action work { first start; then decide; if level < step then a; else a; action a; }
+    }
+    part def Other {
+        attribute level : ScalarValues::Natural := 0;
+        exhibit state s { entry; then x; state x;
+            transition first x if level < Limits::soft then x; }
+    }
+}"""
+
+
+def test_attributes_of_packages_with_bound_values_are_constants_in_behaviours():
+    reading = read(CONSTANTS, passes=ALL)
+    findings = [d for d in reading.sink if d.rule.code in ("SM411", "SM412", "SM416", "SM458")]
+    assert ["'Limits::soft'" in d.message for d in findings] == [True]
+    (contract,) = (c for c in reading.graph.derived(Contract) if c.component == "P::Cell")
+    texts = {print_formula(c.formula) for c in contract.guarantees}
+    assert "level<9 & mode=slow -> state'=x & level'=2" in texts
+
+
 def test_components_of_one_name_in_two_files_are_reported_once_with_both():
     text = "package P { action def A { first start; then action x; then done; } }"
     reading = read(text, text, passes=ALL)

@@ -356,10 +356,10 @@ class _Description:
             )
             other = next(others, None)
             if other is not None:
-                label = find_label(self.graph, other)
-                gaps[name] = (
-                    f"'{name}' is assigned by '{label}', which the check does not combine with it"
-                )
+                reason = "which the check does not combine with it"
+                if feature.variable.is_range_assumed:
+                    reason = f"whose values need a declared range of '{name}'"
+                gaps[name] = f"'{name}' is assigned by '{find_label(self.graph, other)}', {reason}"
                 continue
             if feature.is_computed:
                 gaps[name] = f"'{name}' has a computed value, which the check does not follow"

@@ -61,6 +61,8 @@ class Context(Struct, frozen=True):
     name: str
     features: Mapping[str, Feature]
     enumerations: Enumerations
+    namespace: str = ""
+    """Qualified name of the classifier, inside which names of packages are looked up."""
 
     @property
     def variables(self) -> Mapping[str, str]:
@@ -93,7 +95,7 @@ def context_of(
         return Context("", {}, enumerations)
     elements = _find_elements(graph, classifier, behaviour)
     features = _FeatureTable(graph, classifier, behaviour, elements, assumed_range, enumerations)
-    return Context(classifier.name, features, enumerations)
+    return Context(classifier.name, features, enumerations, graph.qualified_name(classifier))
 
 
 def variables_of(
@@ -114,13 +116,25 @@ def make_symbol(feature: Feature) -> Symbol:
 
 
 def find_literal(context: Context, name: str) -> Symbol | None:
-    """Return the symbol of an enumeration literal with a qualified name (``Mode::auto``)."""
+    """Return the symbol of an enumeration literal with a qualified name, or of a constant.
+
+    ``Mode::auto`` is a literal. ``Limits::MAX`` is a constant of a package that is visible from the
+    classifier, as ``MAX`` in the packages around it.
+    """
     entry = context.literals.get(name)
     if entry is None or ("::" not in name and "." not in name):
-        return None
+        return _find_constant(context, name)
     enumeration, identifier = entry
     domain = context.enumerations.domains[enumeration]
     return Symbol(const(identifier), domain, context.number(name))
+
+
+def _find_constant(context: Context, name: str) -> Symbol | None:
+    """Return the symbol of the package's attribute that a name means in the nearest namespace."""
+    constants, path = context.enumerations.constants, context.namespace.split("::")
+    names = ("::".join((*path[:length], name)) for length in range(len(path), -1, -1))
+    constant = next((constants[key] for key in names if key in constants), None)
+    return None if constant is None else Symbol(const(constant[0]), constant[1])
 
 
 def describe_missing_range(id: str) -> str:

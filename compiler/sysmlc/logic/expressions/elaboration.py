@@ -173,8 +173,9 @@ def _elaborate_name(
     symbol = scope(name)
     last = last_name(name)
     if isinstance(expected, EnumerationDomain) and last in expected.literals and not expected.texts:
-        # A property hides a literal of the same name.
-        is_property = symbol is not None and not isinstance(symbol.formula, Const)
+        # A property, or a constant of the same type, hides a literal of the same name.
+        is_constant = symbol is not None and isinstance(symbol.formula, Const)
+        is_property = symbol is not None and not (is_constant and symbol.domain != expected)
         if not is_property:
             return _make_value(Const(last), expected)
     if symbol is None:

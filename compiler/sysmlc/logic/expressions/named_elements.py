@@ -8,7 +8,8 @@ from collections.abc import Iterable, Iterator
 from functools import cached_property
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.logic.contract import EnumerationDomain
+from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, IntegerDomain
+from sysmlc.logic.formula import Literal
 from sysmlc.logic.identifiers import make_unique
 
 VALUE_KINDS = (Kind.PROPERTY, Kind.PORT, Kind.FLOW_PROPERTY, Kind.PARAMETER)
@@ -274,7 +275,7 @@ def literals_of(graph: Graph, enumeration: Element) -> dict[str, str]:
 
 
 class Enumerations:
-    """The literals of all enumerations of a model, collected when the first one is looked up.
+    """Enumeration literals and constants of a model, collected when the first one is looked up.
 
     Use ``enumerations_of``, which collects them once for all components.
     """
@@ -292,6 +293,30 @@ class Enumerations:
                 for spelling in (name, *_qualified_names(enumeration.name, name)):
                     literals.setdefault(spelling, (enumeration.name, identifier))
         return literals
+
+    @cached_property
+    def constants(self) -> dict[str, tuple[Literal, Domain] | None]:
+        """Value and domain of each attribute of a package with a bound value, by qualified name.
+
+        None stands for an attribute whose value may change, or has no finite type.
+        """
+        attributes = self._graph.of_kind(Kind.INSTANCE)
+        return {self._graph.qualified_name(a): self._read_constant(a) for a in attributes}
+
+    def _read_constant(self, attribute: Element) -> tuple[Literal, Domain] | None:
+        value = attribute.attrs.get("value")
+        if "value_kind" in attribute.attrs or "value_unit" in attribute.attrs:
+            return None
+        if isinstance(value, bool):
+            return value, BooleanDomain()
+        if isinstance(value, int):
+            return value, IntegerDomain(value, value)
+        literal = self._graph.get(str(attribute.attrs.get("value_instance")))
+        enumeration = None if literal is None else self._graph.owner(literal)
+        if enumeration is None or enumeration.kind is not Kind.ENUMERATION:
+            return None
+        identifiers = literals_of(self._graph, enumeration)
+        return identifiers[str(value)], EnumerationDomain(tuple(identifiers.values()))
 
     @cached_property
     def domains(self) -> dict[str, EnumerationDomain]:

@@ -18,7 +18,7 @@ from sysmlc.logic.contract import (
     Owner,
     Variable,
 )
-from sysmlc.logic.expressions.context import context_of, make_symbol, report_range
+from sysmlc.logic.expressions.context import context_of, find_literal, make_symbol, report_range
 from sysmlc.logic.expressions.elaboration import (
     ELSEWHERE_ADVICE,
     EMPTY_ADVICE,
@@ -34,7 +34,7 @@ from sysmlc.logic.expressions.expression import Expression, ExpressionError
 from sysmlc.logic.expressions.features import Feature, check_assignable
 from sysmlc.logic.expressions.named_elements import describe_feature_elsewhere
 from sysmlc.logic.expressions.parsing import parse_expression
-from sysmlc.logic.formula import Formula, const, var, variables
+from sysmlc.logic.formula import Formula, var, variables
 from sysmlc.logic.identifiers import Names, identifier, make_unique
 from sysmlc.passes.activities import rules
 
@@ -173,16 +173,7 @@ class Scope:
         feature = self._feature(name)
         if feature is not None:
             return make_symbol(feature)
-        return self._find_literal(name)
-
-    def _find_literal(self, name: str) -> Symbol | None:
-        literals = self._outer.literals
-        entry = literals.get(name)
-        if entry is None:
-            return None
-        enumeration, literal = entry
-        domain = self._outer.enumerations.domains[enumeration]
-        return Symbol(const(literal), domain, self._outer.number(name))
+        return find_literal(self._inner, name)
 
     def _make_input(self, name: str) -> Variable | None:
         for feature in (
