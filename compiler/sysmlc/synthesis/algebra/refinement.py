@@ -281,11 +281,11 @@ def find_refinement_failures(
             yield Failure(compared.conjunct, compared.is_assumption, compared.trace)
 
 
-def find_environment_run(contract: Contract, manager: Manager) -> Trace | None:
-    """Return a run that satisfies the assumptions, or None if the contract is not compatible."""
+def has_environment(contract: Contract, manager: Manager) -> bool:
+    """Return whether some run satisfies the assumptions: whether the contract is compatible."""
     observed = observe_histories((contract,))
     (reduced,) = observed.contracts
     with manager.guard():
         universe = Universe(observed.contracts, manager)
         system = universe.system((*reduced.assumptions, *observed.definitions))
-        return Entailment(universe, system).find_example()
+        return Entailment(universe, system).is_possible

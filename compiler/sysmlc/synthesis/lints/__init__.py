@@ -10,7 +10,7 @@ from sysmlc.logic.basis import find_basis
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
 from sysmlc.synthesis import rules
-from sysmlc.synthesis.algebra.refinement import find_environment_run
+from sysmlc.synthesis.algebra.refinement import has_environment
 from sysmlc.synthesis.bdd.manager import ManagerFactory
 from sysmlc.synthesis.lints.checks import LintFinding, check_games, check_ownership, check_runs
 
@@ -60,7 +60,7 @@ def _find_all(contract: Contract, create_manager: ManagerFactory) -> Iterator[Li
     if any(finding.rule is rules.NEXT_IN_LIVENESS for finding in findings):
         return
     # Without any environment, every further lint would only show a consequence of that.
-    if find_environment_run(contract, create_manager()) is None:
+    if not has_environment(contract, create_manager()):
         yield LintFinding(rules.NO_ENVIRONMENT)
         return
     yield from check_runs(contract, create_manager())
