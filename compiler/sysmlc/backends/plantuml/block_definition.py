@@ -1,6 +1,6 @@
 """Block definition diagrams: one for each package that owns classifiers."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from msgspec.structs import replace
 
@@ -130,9 +130,10 @@ def _draw_package(
     lines, rows = _fold_foreign_clients(lines, own_ids)
     parts = partitioning.partition(ids, find_neighbours(ids, lines))
     title = graph.qualified_name(about) if about is not None else "model"
+    lines_of_part = _group_by_part(lines, parts)
     for index, part in enumerate(parts):
         shown = [graph[id] for id in part]
-        inside = [r for r in lines if _belongs_to_part(r, set(part), own_ids)]
+        inside = lines_of_part[index]
         inside += _list_property_lines(graph, shown, inside)
         diagram = Diagram(
             kind="bdd",
@@ -163,13 +164,21 @@ def _list_containments(graph: Graph, classifiers: list[Element]) -> list[Relatio
     ]
 
 
-def _belongs_to_part(relation: Relation, part: set[str], own: set[str]) -> bool:
-    """Whether this part of a package that was split shows the relation.
+def _group_by_part(
+    lines: Iterable[Relation], parts: Sequence[Sequence[str]]
+) -> list[list[Relation]]:
+    """Return the relations that each part of a package that was split shows.
 
-    The part with the source shows it; if the source belongs to another package, the part with the
-    target.
+    The part with the source shows a relation; if the source belongs to another package, the part
+    with the target.
     """
-    return relation.source in part or (relation.source not in own and relation.target in part)
+    index_of = {id: index for index, part in enumerate(parts) for id in part}
+    groups: list[list[Relation]] = [[] for _ in parts]
+    for relation in lines:
+        index = index_of.get(relation.source, index_of.get(relation.target))
+        if index is not None:
+            groups[index].append(relation)
+    return groups
 
 
 def _list_property_lines(

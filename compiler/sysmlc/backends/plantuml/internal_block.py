@@ -5,7 +5,7 @@ There is also a diagram for each instance, and for each instance hierarchy of Au
 connections between its instances.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from sysmlc.backends.plantuml import labels, partitioning
@@ -40,8 +40,30 @@ def draw_internal_blocks(graph: Graph) -> Iterator[Diagram]:
     """Yield all internal block diagrams, in the order of the model."""
     hierarchies = (p for p in graph.of_kind(Kind.PACKAGE) if p.subkind == "instance-hierarchy")
     flows = find_free_flows(graph)
+    with_connections = _find_blocks_with_connections(graph, flows)
     for block in (*graph.of_kind(*_CLASSES, Kind.INSTANCE), *hierarchies):
-        yield from _draw_block(graph, block, flows)
+        if block.id in with_connections:
+            yield from _draw_block(graph, block, flows)
+
+
+def _find_blocks_with_connections(graph: Graph, flows: Iterable[str]) -> set[str]:
+    """Return the ids of the elements that may own or inherit lines of a diagram.
+
+    *flows* are the owners of item flows without a connector. The generals of every block need not
+    be listed, which takes quadratic time in a long chain of specialisations.
+    """
+    allocations = (item for item in graph.of_kind(Kind.DEPENDENCY) if item.role == "allocate")
+    clients = (client for item in allocations for client in graph.targets(item, Edge.CLIENT))
+    owned_lines = (*graph.of_kind(Kind.CONNECTOR), *clients)
+    worklist = [*flows, *(item.owner for item in owned_lines if item.owner is not None)]
+    reached = set(worklist)
+    while worklist:
+        owner = graph[worklist.pop()]
+        for edge in (Edge.SPECIALIZES, Edge.INSTANCE_OF):
+            heirs = {heir.id for heir in graph.sources(owner, edge)} - reached
+            reached |= heirs
+            worklist += heirs
+    return reached
 
 
 def _draw_block(

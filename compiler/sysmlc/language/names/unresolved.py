@@ -40,6 +40,8 @@ _EXPECTED_WORDS = {
 _IMPORT_RELATIONS = frozenset({"importedNamespace", "importedMembership"})
 _MAX_ADVICE_FROM_IMPORTS = 50
 """Diagnostics of a unit after which names of imported packages are no longer suggested."""
+_MAX_SIMILAR_NAMES = 200
+"""Diagnostics of a unit after which no similar names are searched, each among all names."""
 _NOT_GIVEN = "give the file that has it as an input too, or the folder of all files"
 _UNKNOWN = "declare it, import the package that has it, or give its file as an input too"
 _NOT_INHERITED = "only an inherited feature can be redefined: declare it in a general type"
@@ -62,11 +64,15 @@ def _make_advice(
     names: tuple[str, ...],
     context: contexts.LookupContext,
     container: Node | None,
-    *,
-    searches_imports: bool = True,
+    reported: int,
 ) -> str:
-    """Return the help for a name that is not found; ``container`` is the element before a dot."""
+    """Return the help for a name that is not found; ``container`` is the element before a dot.
+
+    ``reported`` is the number of diagnostics before this one: the search of the first is longest.
+    """
     relation, lookup = use[1], model.lookup
+    # Libraries have thousands of names to compare with.
+    searches_imports = reported < _MAX_ADVICE_FROM_IMPORTS
     obstacle = _explain_obstacle(lookup, relation, names, context, container, searches_imports)
     if obstacle:
         return obstacle
@@ -77,13 +83,14 @@ def _make_advice(
     unknown, container = _find_unknown_part(lookup, names, context, container)
     if relation.kind in _IMPORT_RELATIONS and container is None:
         scope_names = {scope.name for scope in contexts.list_scopes(context)}
-        similar = find_similar(unknown, [n for n in model.packages() if n not in scope_names])
+        packages = [name for name in model.packages() if name not in scope_names]
+        similar = find_similar(unknown, packages) if reported < _MAX_SIMILAR_NAMES else ""
         return f"did you mean '{similar}'?" if similar else _NOT_GIVEN
-    known_names = _list_known_names(
-        model, use, unknown, context, container, searches_imports=searches_imports
-    )
-    if container is None and unknown != names[-1]:
-        known_names += model.packages()
+    known_names: list[str] = []
+    if reported < _MAX_SIMILAR_NAMES:
+        is_qualifier = container is None and unknown != names[-1]
+        known_names = _list_known_names(model, use, unknown, context, container, searches_imports)
+        known_names += model.packages() if is_qualifier else []
     similar = _name_in_library(model, use, names, context) or find_similar(unknown, known_names)
     if similar:
         quoted = similar if "'" in similar else f"'{similar}'"
@@ -293,7 +300,6 @@ def _list_known_names(
     unknown: str,
     context: contexts.LookupContext,
     container: Node | None,
-    *,
     searches_imports: bool,
 ) -> list[str]:
     """Return the names of elements of the kind that is needed.
@@ -381,8 +387,7 @@ def report_unresolved(
             reference.chain[index],
             context,
             container,
-            # Libraries have thousands of names to compare with.
-            searches_imports=len(sink) < _MAX_ADVICE_FROM_IMPORTS,
+            len(sink),
         ),
     )
 
