@@ -19,6 +19,12 @@ def generalisation_chain(size: int) -> str:
     return "\n".join(["package P {", "part def A0;", *lines, "}"])
 
 
+def specialisation_chain(size: int) -> str:
+    """Each definition specialises the one before it; nothing is inherited."""
+    lines = [f"part def A{i} :> A{i - 1};" for i in range(1, size)]
+    return "\n".join(["package P {", "part def A0;", *lines, "}"])
+
+
 def generalisation_circle(size: int) -> str:
     """Definitions that specialise one another in a circle."""
     lines = [f"part def A{i} :> A{(i + 1) % size} {{ attribute x{i}; }}" for i in range(size)]
@@ -102,6 +108,14 @@ def guarded_transitions(size: int) -> str:
             attribute y : ScalarValues::Integer; assert constraint {{ 0 <= y and y <= 60 }}
             exhibit state m {{ entry; then a; state a; {transitions} }}
         }}
+    }}"""
+
+
+def plain_transitions(size: int) -> str:
+    """Transitions between two states without trigger and guard."""
+    transitions = "\n".join("transition first a then b;" for _ in range(size))
+    return f"""package P {{
+        part def A {{ exhibit state m {{ entry; then a; state a; state b; {transitions} }} }}
     }}"""
 
 
@@ -291,6 +305,7 @@ def aml_nesting(size: int) -> str:
 FAMILIES: dict[Family, tuple[str, int]] = {
     nested_packages: ("nested.sysml", 50),
     generalisation_chain: ("chain.sysml", 50),
+    specialisation_chain: ("specialisations.sysml", 200),
     generalisation_circle: ("circle.sysml", 50),
     generalisation_diamonds: ("diamonds.sysml", 25),
     import_circle: ("imports.sysml", 50),
@@ -298,6 +313,7 @@ FAMILIES: dict[Family, tuple[str, int]] = {
     huge_enumeration: ("enumeration.sysml", 200),
     parallel_regions: ("regions.sysml", 8),
     guarded_transitions: ("guards.sysml", 25),
+    plain_transitions: ("transitions.sysml", 50),
     choice_chain: ("choices.sysml", 8),
     nested_expression: ("nested_expression.sysml", 50),
     long_expression: ("long_expression.sysml", 50),
@@ -315,3 +331,6 @@ FAMILIES: dict[Family, tuple[str, int]] = {
     aml_nesting: ("nesting.aml", 50),
 }
 """The families, with a file name and the smallest size that is measured."""
+
+LINEAR_FAMILIES = {specialisation_chain}
+"""The families whose cost grows at most with their size."""

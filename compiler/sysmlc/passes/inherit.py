@@ -116,8 +116,11 @@ class _Hierarchy:
 
     def is_general_of(self, general: Element, classifier: Element) -> bool:
         """Whether *general* is a transitive general of the classifier, outside any cycle."""
-        same = self._component.get(general.id) == self._component.get(classifier.id)
-        return not same and general in generals(self._graph, classifier)
+        if self._component.get(general.id) == self._component.get(classifier.id):
+            return False
+        # Most features redefine those of a direct general; long chains take quadratic time.
+        direct_generals = self._graph.targets(classifier, Edge.SPECIALIZES)
+        return general in direct_generals or general in generals(self._graph, classifier)
 
     def _collect_features(self, classifier: Element) -> dict[Element, None]:
         features = dict.fromkeys(_own_features(self._graph, classifier))

@@ -224,12 +224,22 @@ def are_complementary(left: str, right: str) -> bool:
 
     The operands may have any type, also one whose values are not finite.
     """
-    try:
-        left_terms, right_terms = (set(_iter_terms(parse_expression(t))) for t in (left, right))
-    except ExpressionError:
-        return False
-    negated_left, negated_right = map(_negate, left_terms), map(_negate, right_terms)
+    left_terms, negated_left = _list_terms(left)
+    right_terms, negated_right = _list_terms(right)
     return not (right_terms.isdisjoint(negated_left) and left_terms.isdisjoint(negated_right))
+
+
+@lru_cache(_CACHE_SIZE)
+def _list_terms(guard: str) -> tuple[frozenset[Expression], frozenset[Expression]]:
+    """Return the operands of a conjunction and their negations; none of an unreadable text.
+
+    A guard is compared with those of all other transitions that leave its state.
+    """
+    try:
+        terms = frozenset(_iter_terms(parse_expression(guard)))
+    except ExpressionError:
+        return frozenset(), frozenset()
+    return terms, frozenset(map(_negate, terms))
 
 
 def _iter_terms(expression: Expression) -> Iterator[Expression]:

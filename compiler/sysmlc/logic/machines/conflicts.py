@@ -115,6 +115,8 @@ def list_competing(
     can_meet = _have_equal_trigger if by_one_occurrence else _can_coincide
     competing: dict[str, Transition] = {}
     for left, right in combinations(outgoing, 2):
+        if left.id in competing and right.id in competing:
+            continue
         are_excluded = is_state and not can_meet(left, right)
         if are_excluded or are_complementary(texts[left.id], texts[right.id]):
             continue
