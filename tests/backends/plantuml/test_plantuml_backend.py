@@ -176,6 +176,17 @@ Package p "Plant"
     assert "Owner" in texts["Plant.bdd.puml"]
 
 
+def test_a_use_case_in_another_has_a_figure_beside_it_because_a_figure_is_no_frame():
+    model = parse_text("""
+Package p "Plant"
+  UseCase u "Run"
+    UseCase v "Refill"
+""")
+    lines = draw(model)["Plant.uc.puml"].splitlines()
+    assert [line for line in lines if "Run" in line] == ['usecase "Run" as run_1']
+    assert 'usecase "Refill" as refill_1' in lines
+
+
 def test_a_submachine_has_its_name_its_entry_points_and_protocol_conditions():
     diagram = draw(
         parse_text("""

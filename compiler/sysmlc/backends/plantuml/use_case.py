@@ -143,10 +143,12 @@ def build_view(
 
 
 def _find_subject(graph: Graph, case: Element) -> Element | None:
-    """Return the subject of the use case, else the classifier that owns it."""
-    owner = graph.owner(case)
-    nested = owner if owner is not None and owner.kind not in _PACKAGES else None
-    return graph.target(case, Edge.SUBJECT) or nested
+    """Return the subject of the use case, else the classifier that owns it.
+
+    A use case or an actor has a figure of its own, which cannot be a frame at the same time.
+    """
+    subject = graph.target(case, Edge.SUBJECT) or graph.owner(case)
+    return subject if subject is not None and subject.kind not in (*_PACKAGES, *FIGURES) else None
 
 
 def _make_subject_frame(subject: Element, cases: list[Figure], aliases: Aliases) -> SubjectView:
