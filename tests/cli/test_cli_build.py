@@ -33,6 +33,13 @@ def test_a_second_run_changes_nothing(workspace):
     assert (workspace.folder / "out/graph.json").stat().st_mtime == 1
 
 
+def test_removed_files_of_an_earlier_run_are_counted_apart(workspace):
+    workspace.sysmlc("plant.ir", "--emit", "graph,plantuml")
+    summary = workspace.sysmlc("plant.ir", "--emit", "graph").stdout
+    assert summary == "out: 4 files, 2 changed, 1 removed\n"
+    assert workspace.list_files() == OUTPUTS
+
+
 def test_an_error_is_exit_code_1(workspace):
     workspace.write("faulty.ir", FAULTY)
     result = workspace.sysmlc("faulty.ir", "--emit", "graph")

@@ -123,13 +123,18 @@ def _print_changes(
         for path in publication.changed:
             terminal.echo(f"changed {folder / path}", err=True)
     if reports.allows_sentences(settings):
-        terminal.echo(_summarise(outcome, folder, len(publication.changed)))
+        terminal.echo(_summarise(outcome, folder, publication.changed))
 
 
-def _summarise(outcome: "Outcome", folder: Path, changed: int) -> str:
-    withheld = len(outcome.withheld)
-    held = f", {withheld} withheld because of errors" if withheld else ""
-    return f"{_relative(folder)}: {count(len(outcome.files) + 1, 'file')}, {changed} changed{held}"
+def _summarise(outcome: "Outcome", folder: Path, changed: "Sequence[str]") -> str:
+    from sysmlc.driver.ownership import MANIFEST
+
+    paths = {MANIFEST, *(file.path for file in outcome.files)}
+    removed = len(set(changed) - paths)
+    counts = [count(len(paths), "file"), f"{len(changed) - removed} changed"]
+    counts += [f"{removed} removed"] if removed else []
+    counts += [f"{len(outcome.withheld)} withheld because of errors"] if outcome.withheld else []
+    return f"{_relative(folder)}: {', '.join(counts)}"
 
 
 def _report_leftovers(units: "Sequence[Unit]") -> int:
