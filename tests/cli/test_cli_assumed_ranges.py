@@ -52,7 +52,7 @@ exhibit state M {
     entry; then B;
     state B;
     state A;
-    transition first B if level < 0 then A;
+    transition first B if level > 4 * 5 then A;
 }"""
 
 
@@ -134,7 +134,7 @@ def test_a_range_in_a_part_has_the_name_of_the_author(check):
     part tank {
         in attribute level : Integer;
         exhibit state M {
-            entry; then B; state B; state A; transition first B if level < 0 then A;
+            entry; then B; state B; state A; transition first B if level > 4 * 5 then A;
         }
     }"""
     (line,) = check(block, "G tank.state=B")
@@ -420,3 +420,40 @@ exhibit state W {
         "R1: holds within n in 0..20 (assumed): G (n<=20)",
         "R2: holds within n in 0..20 (assumed): G (W.state=High -> n>17)",
     ]
+
+
+@pytest.mark.parametrize(
+    ("guard", "range_"),
+    [
+        ("level < 0", "-1..15"),
+        ("level >= 0", "-1..15"),
+        ("0 > level", "-1..15"),
+        ("level <= 15", "0..16"),
+        ("level > 20", "0..21"),
+        ("20 < level", "0..21"),
+        ("level == 20", "0..20"),
+        ("level > -3 and level < 18", "-3..18"),
+    ],
+)
+def test_an_assumed_range_has_numbers_on_both_sides_of_each_threshold(check, guard, range_):
+    """``level > 20`` was never true, because 0..20 was assumed."""
+    block = LEVEL.replace("level > 4 * 5", guard)
+    broken, proved = check(block, "G state=B", "G (state=A -> G state=A)")
+    assert broken == "R0: broken: G (state=B)"
+    assert proved == f"R1: holds within level in {range_} (assumed): G (state=A -> G state=A)"
+
+
+@pytest.mark.parametrize(
+    ("declared", "range_"),
+    [
+        ("level >= 0", "0..15"),
+        ("level >= 20", "20..40"),
+        ("level <= 7", "0..7"),
+        ("level <= -3", "-21..-3"),
+    ],
+)
+def test_a_declared_bound_is_a_fact(check, declared, range_):
+    block = LEVEL.replace(";", f"; assert constraint {{ {declared} }}", 1)
+    block = block.replace("level > 4 * 5", "level == 2 * level + 500")
+    (line,) = check(block, "G state=B")
+    assert line == f"R0: holds within level in {range_} (assumed): G (state=B)"

@@ -76,19 +76,21 @@ def test_ranges_come_from_constraints(body, low, high):
     assert features["bay"].domain == IntegerDomain(low, high)
 
 
-def test_a_constraint_with_one_bound_gives_no_range():
+def test_only_the_open_bound_of_a_constraint_is_assumed():
     features = read_features(members='  Constraint k body="bay >= 3"\n')
-    assert features["bay"].domain == IntegerDomain(0, 15)
+    assert features["bay"].domain == IntegerDomain(3, 15)
+    assert features["bay"].is_assumed
 
 
 def test_zero_is_a_lower_bound_of_unsigned_types():
     model = CLASS.replace("{members}", '  Constraint k body="bay <= 3"\n').replace("{default}", "")
     natural, integer = model.replace("Integer", "Natural"), model
-    domains = [
-        context_of(graph, graph["c"]).features["bay"].domain
+    features = [
+        context_of(graph, graph["c"]).features["bay"]
         for graph in map(parse_text, (natural, integer))
     ]
-    assert domains == [IntegerDomain(0, 3), IntegerDomain(0, 15)]
+    assert [feature.domain for feature in features] == [IntegerDomain(0, 3), IntegerDomain(0, 3)]
+    assert [feature.is_assumed for feature in features] == [False, True]
 
 
 def test_ranges_come_from_tagged_values_of_the_type():

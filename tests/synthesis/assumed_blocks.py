@@ -69,20 +69,19 @@ def write_block(block):
 
 
 class ExploredBlock:
-    """The states that a block reaches while ``count`` stays in a range, and its steps."""
+    """The states that a block reaches while both Integers stay in ranges, and its steps."""
 
-    def __init__(self, block, low, high):
+    def __init__(self, block, level, count):
         self.block = block
         self.steps = set()
         self.reached = {("A", 0)}
         worklist = [("A", 0)]
-        levels = [level for level in LEVELS if low <= level <= high]
         while worklist:
-            state, count = worklist.pop()
-            for inputs in product(EVENTS, levels, TEMPERATURES):
-                for after in self.list_successors(state, count, *inputs):
-                    self.steps.add(((state, count), after))
-                    if low <= after[1] <= high and after not in self.reached:
+            state, value = worklist.pop()
+            for inputs in product(EVENTS, level, TEMPERATURES):
+                for after in self.list_successors(state, value, *inputs):
+                    self.steps.add(((state, value), after))
+                    if after[1] in count and after not in self.reached:
                         self.reached.add(after)
                         worklist.append(after)
 

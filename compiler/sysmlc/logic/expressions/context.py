@@ -34,7 +34,7 @@ from sysmlc.logic.expressions.named_elements import (
     find_port_values,
 )
 from sysmlc.logic.expressions.parsing import unquote
-from sysmlc.logic.expressions.ranges import Access
+from sysmlc.logic.expressions.ranges import MIRROR, Access
 from sysmlc.logic.formula import const, var
 from sysmlc.logic.identifiers import make_unique
 
@@ -203,7 +203,7 @@ def _find_values_in_parts(
         owner = next(around, None)
     if owner is None or not any(part.role == "part" for part in query.features(graph, owner)):
         return {}
-    paths = (name for text in _iter_texts(graph, behaviour) for name in _PATH.findall(text))
+    paths = (name for _, text in _iter_texts(graph, behaviour) for name in _PATH.findall(text))
     return find_part_values(graph, owner, dict.fromkeys(paths))
 
 
@@ -270,15 +270,13 @@ class _FeatureTable(Mapping[str, Feature]):
     def _find_declared(self, name: str) -> Feature:
         """Return the feature with the domain that the model declares."""
         if name not in self._declared:
-            self._declared[name] = self._make_declared(name, self._elements[name])
+            self._declared[name] = self._make_feature(name, self._assumed_range)
         return self._declared[name]
 
-    def _make_declared(self, name: str, element: Element) -> Feature:
-        graph, variable = self._graph, self.variables[name]
+    def _make_feature(self, name: str, assumed_range: tuple[int, int]) -> Feature:
+        graph, element, variable = self._graph, self._elements[name], self.variables[name]
         access = Access(self._classifier, name) if "." in name else None
-        feature = make_feature(
-            graph, element, variable, self._assumed_range, self._constants, access
-        )
+        feature = make_feature(graph, element, variable, assumed_range, self._constants, access)
         if "direction" not in element.attrs:
             return feature
         direction = find_direction(graph, self._classifier, name, element)
@@ -295,7 +293,7 @@ class _FeatureTable(Mapping[str, Feature]):
         return feature
 
     def _widen_range(self, name: str, feature: Feature) -> Feature:
-        """Extend an assumed range to the numbers that the feature is compared with.
+        """Extend an assumed range to numbers on both sides of the thresholds of the feature.
 
         All behaviours of the classifier count, so that the range is the same in each of them.
         """
@@ -309,11 +307,7 @@ class _FeatureTable(Mapping[str, Feature]):
         if not numbers:
             return feature
         low, high = self._assumed_range
-        range_ = min((low, *numbers)), max((high, *numbers))
-        widened = make_feature(
-            self._graph, feature.element, feature.variable, range_, self._constants
-        )
-        return replace(widened, direction=feature.direction)
+        return self._make_feature(name, (min((low, *numbers)), max((high, *numbers))))
 
     @cached_property
     def _constants(self) -> dict[str, int]:
@@ -352,10 +346,12 @@ _TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')
 _WORD = r"[^\W\d][\w.]*"
 _NAME = rf"{_WORD}|'(?:[^'\\]|\\.)*'"
 _VALUE = rf"-?\d+(?![\w.])|{_WORD}::\w+"
-_NAME_FIRST = re.compile(rf"({_NAME})\s*(?:==|!=|<=|>=|<|>|:=)\s*({_VALUE})")
+_NAME_FIRST = re.compile(rf"({_NAME})\s*(==|!=|<=|>=|<|>|:=)\s*({_VALUE})")
 _PATH = re.compile(r"[^\W\d]\w*(?:\.[^\W\d]\w*)+")
 """Plain names that are joined by dots."""
-_VALUE_FIRST = re.compile(rf"(?<![\w.:])({_VALUE})\s*(?:==|!=|<=|>=|<|>)\s*({_NAME})")
+_VALUE_FIRST = re.compile(rf"(?<![\w.:])({_VALUE})\s*(==|!=|<=|>=|<|>)\s*({_NAME})")
+_NEXT = {"<": -1, ">=": -1, ">": 1, "<=": 1}
+"""Where the other side of a threshold begins: ``n < 5`` and ``n >= 5`` differ at 4 and 5."""
 _CACHE_SIZE = 4096
 """Texts whose values are cached: the same guards occur in many behaviours."""
 _GREATEST = 255
@@ -363,7 +359,7 @@ _GREATEST = 255
 
 
 class _MentionedValues(Struct, frozen=True):
-    """The texts in a behaviour, in their order, and the numbers next to each name."""
+    """The texts in a behaviour, in their order, and the numbers that matter for each name."""
 
     texts: tuple[str, ...]
     numbers: Mapping[str, tuple[int, ...]]
@@ -372,36 +368,43 @@ class _MentionedValues(Struct, frozen=True):
 def _find_mentioned_values(
     graph: Graph, behaviour: Element, enumerations: Enumerations
 ) -> _MentionedValues:
-    """Return the values with which the texts of a behaviour compare names, or which they assign."""
+    """Return the values with which the texts of a behaviour compare names, or which they assign.
+
+    A threshold counts with the number next to it, so that a comparison may be true and false. A
+    constraint is no threshold: it is always true.
+    """
     texts: dict[str, None] = {}
     numbers: dict[str, dict[int, None]] = {}
-    for text in _iter_texts(graph, behaviour):
-        strings, pairs = _find_values(text)
+    for element, text in _iter_texts(graph, behaviour):
+        strings, comparisons = _find_values(text)
         texts |= dict.fromkeys(strings)
-        for name, value in pairs:
+        for name, op, value in comparisons:
             number = enumerations.numbers.get(value) if "::" in value else int(value)
             if number is not None and abs(number) <= _GREATEST:
-                numbers.setdefault(name, {})[number] = None
+                step = 0 if element.kind is Kind.CONSTRAINT else _NEXT.get(op, 0)
+                numbers.setdefault(name, {}).update({number: None, number + step: None})
     return _MentionedValues(tuple(texts), {name: tuple(values) for name, values in numbers.items()})
 
 
-def _iter_texts(graph: Graph, behaviour: Element) -> Iterator[str]:
+def _iter_texts(graph: Graph, behaviour: Element) -> Iterator[tuple[Element, str]]:
     for element in graph.subtree(behaviour):
         if element.kind is not Kind.COMMENT:
             for key in _TEXT_ATTRIBUTES:
                 text = element.attrs.get(key)
                 if isinstance(text, str):
-                    yield text
+                    yield element, text
 
 
 @lru_cache(_CACHE_SIZE)
-def _find_values(text: str) -> tuple[tuple[str, ...], tuple[tuple[str, str], ...]]:
-    """Return the strings in a text, and pairs of a name and the value that it is compared with.
+def _find_values(text: str) -> tuple[tuple[str, ...], tuple[tuple[str, str, str], ...]]:
+    """Return the strings in a text, and names with the operators and values behind them.
 
     Regular expressions also find the values in texts that the grammar rejects.
     """
-    value_first = [(name, value) for value, name in _VALUE_FIRST.findall(text)]
-    pairs = [*_NAME_FIRST.findall(text), *value_first]
+    value_first = (
+        (name, MIRROR.get(op, op), value) for value, op, name in _VALUE_FIRST.findall(text)
+    )
     return tuple(map(unquote, _TEXT.findall(text))), tuple(
-        (unquote(name) if name.startswith("'") else name, value) for name, value in pairs
+        (unquote(name) if name.startswith("'") else name, op, value)
+        for name, op, value in (*_NAME_FIRST.findall(text), *value_first)
     )

@@ -28,10 +28,10 @@ from sysmlc.logic.expressions.expression import Literal as LiteralExpression
 from sysmlc.logic.expressions.named_elements import literals_of
 from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.expressions.ranges import (
-    UNSIGNED,
     Access,
+    Bounds,
     evaluate_integer,
-    find_range,
+    find_bounds,
     list_type_names,
     parse_integer,
 )
@@ -82,19 +82,21 @@ def make_feature(
     An Integer without a range gets *assumed_range*. *constants* are the Integers that never change,
     by name; the bounds of ranges may name them. *access* is given if the name is dotted.
     """
-    bounds = query.bounds(element.attrs.get("multiplicity"))
-    if bounds is not None and bounds[1] != 1:
+    multiplicity = query.bounds(element.attrs.get("multiplicity"))
+    if multiplicity is not None and multiplicity[1] != 1:
         # One variable cannot stand for several values.
         return Feature(element, variable, None, has_several_values=True)
     type_ = query.type_of(graph, element)
     family = [] if type_ is None else [type_, *query.generals(graph, type_)]
     type_names = list_type_names(family)
     is_integer = bool(type_names & _INTEGER) or _has_untyped_default(element, type_, int)
-    domain = _find_domain(graph, element, family, type_names, is_integer, constants, access)
-    is_assumed = domain is None and is_integer
+    domain = _find_literals(graph, element, family, type_names)
     value = _evaluate_default(element, constants)
-    if is_assumed:
-        domain = _assume_domain(value, type_names, assumed_range)
+    is_assumed = False
+    if domain is None and is_integer:
+        bounds = find_bounds(graph, element, family, constants, access)
+        is_assumed = None in bounds
+        domain = _make_range(bounds, value, assumed_range)
     default = _find_default(graph, value, type_, domain)
     is_constant = element.attrs.get("readonly") is True and default is not None
     is_range = ".." in str(value)
@@ -105,39 +107,40 @@ def make_feature(
     return Feature(element, variable, domain, default, is_constant, is_assumed, invalid_default)
 
 
-def _find_domain(
-    graph: Graph,
-    element: Element,
-    family: list[Element],
-    type_names: set[str],
-    is_integer: bool,
-    constants: Mapping[str, int],
-    access: Access | None,
+def _find_literals(
+    graph: Graph, element: Element, family: list[Element], type_names: set[str]
 ) -> Domain | None:
+    """Return the domain of an enumeration or a Boolean; None for other elements."""
     type_ = family[0] if family else None
     if type_ is not None and type_.kind is Kind.ENUMERATION:
         literals = tuple(literals_of(graph, type_).values())
         return EnumerationDomain(literals) if literals else None
     if type_names & _BOOLEAN or _has_untyped_default(element, type_, bool):
         return BooleanDomain()
-    return find_range(graph, element, family, constants, access) if is_integer else None
+    return None
 
 
 def _has_untyped_default(element: Element, type_: Element | None, kind: type) -> bool:
     return type_ is None and type(element.attrs.get("default")) is kind
 
 
-def _assume_domain(
-    default: AttrValue, type_names: set[str], assumed_range: tuple[int, int]
-) -> Domain:
-    """Return the assumed range of a number.
+def _make_range(
+    bounds: Bounds, default: AttrValue, assumed_range: tuple[int, int]
+) -> IntegerDomain:
+    """Return the range between two bounds, of which open ones are assumed.
 
-    It has no negative numbers for unsigned types, and contains the default value.
+    An assumed bound leaves room for the default value.
     """
     low, high = assumed_range
-    low = max(low, 0) if type_names & UNSIGNED else low
     if isinstance(default, int) and not isinstance(default, bool):
         low, high = min(low, default), max(high, default)
+    lower, upper = bounds
+    if lower is not None and upper is not None:
+        return IntegerDomain(lower, upper)
+    if lower is not None:
+        return IntegerDomain(lower, high if high > lower else lower + high - low)
+    if upper is not None:
+        return IntegerDomain(low if low < upper else upper - (high - low), upper)
     return IntegerDomain(low, high)
 
 

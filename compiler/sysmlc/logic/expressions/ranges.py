@@ -6,7 +6,6 @@ from operator import add, mul, sub
 from typing import NamedTuple
 
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, query
-from sysmlc.logic.contract import Domain, IntegerDomain
 from sysmlc.logic.expressions.expression import (
     Binary,
     Expression,
@@ -27,7 +26,8 @@ _BOUND_TAGS = (("min", "max"), ("lower", "upper"), ("minimum", "maximum"))
 _MOMENTARY = frozenset(["precondition", "postcondition", "body"])
 """Kinds of constraints that do not hold at all times."""
 _ARITHMETIC: dict[str, Callable[..., int]] = {"+": add, "-": sub, "*": mul}
-_MIRROR = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
+MIRROR = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
+"""The comparison with exchanged operands."""
 
 
 class Access(NamedTuple):
@@ -37,33 +37,37 @@ class Access(NamedTuple):
     name: str
 
 
-def find_range(
+Bounds = tuple[int | None, int | None]
+"""The least and the greatest value, each None if it is open."""
+
+
+def find_bounds(
     graph: Graph,
     element: Element,
     types: list[Element],
     constants: Mapping[str, int],
     access: Access | None,
-) -> Domain | None:
-    """Return the range given by tagged values, a bounded default, or constraints, in this order.
+) -> Bounds:
+    """Return the bounds given by tagged values, a bounded default, or constraints, in this order.
 
     *types* are the type of the element and the generals of the type. The bounds of constraints may
     name *constants*. *access* is given if expressions reach the element by a dotted name.
     """
     for tagged_element in (element, *types):
-        domain = _find_tagged_range(graph, tagged_element)
-        if domain is not None:
-            return domain
+        tagged_range = _find_tagged_range(graph, tagged_element)
+        if tagged_range is not None:
+            return tagged_range
     bounds = _RANGE.match(str(element.attrs.get("default", "")))
     if bounds and ".." in bounds[0]:
-        return _make_range(int(bounds[1]), int(bounds[2]))
-    return _find_constrained_range(graph, element, types, constants, access)
+        return _make_range(int(bounds[1]), int(bounds[2])) or (None, None)
+    return _find_constrained_bounds(graph, element, types, constants, access)
 
 
-def _make_range(low: int, high: int) -> Domain | None:
-    return IntegerDomain(low, high) if low <= high else None
+def _make_range(low: int, high: int) -> tuple[int, int] | None:
+    return (low, high) if low <= high else None
 
 
-def _find_tagged_range(graph: Graph, element: Element) -> Domain | None:
+def _find_tagged_range(graph: Graph, element: Element) -> tuple[int, int] | None:
     if not query.applications(graph, element):
         return None
     bounds = _RANGE.match(str(query.tag(graph, element, "range") or ""))
@@ -77,14 +81,14 @@ def _find_tagged_range(graph: Graph, element: Element) -> Domain | None:
     return None
 
 
-def _find_constrained_range(
+def _find_constrained_bounds(
     graph: Graph,
     element: Element,
     types: list[Element],
     constants: Mapping[str, int],
     access: Access | None,
-) -> Domain | None:
-    """Return the intersection of the bounds that constraints set; None if one side is open.
+) -> Bounds:
+    """Return the intersection of the bounds that constraints set; none if it is empty.
 
     Zero is a lower bound of every unsigned type.
     """
@@ -98,7 +102,8 @@ def _find_constrained_range(
                 low = lower_bound if low is None else max(low, lower_bound)
             if upper_bound is not None:
                 high = upper_bound if high is None else min(high, upper_bound)
-    return None if low is None or high is None else _make_range(low, high)
+    is_empty = low is not None and high is not None and low > high
+    return (None, None) if is_empty else (low, high)
 
 
 def _iter_constraints(
@@ -159,7 +164,7 @@ def _iter_bounds(
         case Binary("and", left, right):
             yield from _iter_bounds(left, names, constants)
             yield from _iter_bounds(right, names, constants)
-        case Binary(op, Binary(first, low, middle), high) if op in _MIRROR and first in _MIRROR:
+        case Binary(op, Binary(first, low, middle), high) if op in MIRROR and first in MIRROR:
             yield from _match_bound(first, low, middle, names, constants)
             yield from _match_bound(op, middle, high, names, constants)
         case Binary(op, left, right):
@@ -177,7 +182,7 @@ def _match_bound(
     if dotted_name(left) in names and (value := evaluate_integer(right, constants)) is not None:
         yield op, value
     elif dotted_name(right) in names and (value := evaluate_integer(left, constants)) is not None:
-        yield _MIRROR.get(op, op), value
+        yield MIRROR.get(op, op), value
 
 
 def evaluate_integer(expression: Expression, constants: Mapping[str, int]) -> int | None:
