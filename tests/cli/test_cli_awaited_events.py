@@ -151,3 +151,27 @@ def test_formulas_outside_gr1_are_decided_for_blocks_of_parts_as_for_others(work
     result = workspace.sysmlc("contracts", "check", "block.sysml")
     assert "Shop::Room: checked one by one, satisfies its requirements" in result.stdout
     assert result.exit_code == 0
+
+
+@pytest.mark.parametrize(
+    "steps", ["then accept when n > 12;", "then decide; if n > 12 then b; action b;"]
+)
+def test_a_condition_outside_the_declared_range_never_becomes_true(workspace, steps):
+    """The number made the condition unreadable: "holds if 'n > 12' holds sooner or later"."""
+    write_lamp(workspace, steps)
+    declared = "in attribute n : Integer; assert constraint { n >= 0 and n <= 9 } perform"
+    workspace.write("lamp.sysml", workspace.read("lamp.sysml").replace("perform", declared))
+    assert check(workspace).splitlines()[:2] == [
+        "Shop::Lamp: realizable, violates its requirements",
+        "  Lights: broken: F on",
+    ]
+    assert "12 is outside 0..9" in workspace.sysmlc("check", "lamp.sysml").stderr
+
+
+def test_a_condition_beyond_an_assumed_range_decides_nothing(workspace):
+    """No proof relies on a condition that is false in all runs that the check sees."""
+    write_lamp(workspace, "then accept when n > k + 20;")
+    inputs = "in attribute n : Integer; in attribute k : Integer; perform"
+    workspace.write("lamp.sysml", workspace.read("lamp.sysml").replace("perform", inputs))
+    reason = "it depends on n in 0..15 and k in 0..15 (assumed)"
+    assert f"  Lights: not decided: {reason}: F on\n" in check(workspace)

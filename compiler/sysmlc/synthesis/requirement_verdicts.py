@@ -226,14 +226,21 @@ class BehaviourCheck:
         endings = () if is_safety(as_ltl(conjunct)) else self._select_possible(conjunct)
         if endings and self._entails(endings, conjunct):
             return self._confirm(conjunct, endings)
-        return self._refute(conjunct, endings)
+        verdict = self._refute(conjunct, endings)
+        excluded = _names_of(ending for ending in self._endings if ending not in endings)
+        basis = Basis(describe_basis(self._contracts, excluded, self._shown_names).ranges)
+        if verdict.answer is Answer.BROKEN and basis.ranges and not is_safety(as_ltl(conjunct)):
+            # The environment may do beyond an assumed range what it cannot do within it.
+            return RequirementVerdict(conjunct, Answer.NOT_DECIDED, basis.reason, basis=basis)
+        return verdict
 
     def _select_possible(self, conjunct: Conjunct) -> tuple[Conjunct, ...]:
-        """Return the derived assumptions that those of the requirement leave possible.
+        """Return the derived assumptions that are possible, those of the requirement given.
 
-        An author who assumes that an event never comes does not ask what happens if it comes.
+        An author who assumes that an event never comes does not ask what happens if it comes. Nor
+        does a guard open that is true for no values of its inputs.
         """
-        if not self._assumed or self._search.has_runs(self._list_facts(self._endings, conjunct)):
+        if self._search.has_runs(self._list_facts(self._endings, conjunct)):
             return self._endings
         possible: tuple[Conjunct, ...] = ()
         for ending in self._endings:

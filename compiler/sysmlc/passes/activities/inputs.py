@@ -30,14 +30,21 @@ from sysmlc.logic.expressions.elaboration import (
     elaborate_condition,
     elaborate_value,
 )
-from sysmlc.logic.expressions.expression import Expression, ExpressionError
+from sysmlc.logic.expressions.expression import (
+    Expression,
+    ExpressionError,
+    name_of,
+    walk_expression,
+)
 from sysmlc.logic.expressions.features import Feature, check_assignable
 from sysmlc.logic.expressions.named_elements import describe_feature_elsewhere
 from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.formula import Formula, var, variables
 from sysmlc.logic.identifiers import Names, identifier, make_unique
+from sysmlc.logic.machines.actions import OUT_OF_DOMAIN
 from sysmlc.passes.activities import rules
 
+_ALL_NUMBERS = IntegerDomain(-(2**31), 2**31 - 1)
 _CLASSIFIERS = (Kind.CLASS, Kind.COMPONENT, Kind.DATA_TYPE, Kind.INTERFACE, Kind.ACTOR)
 
 
@@ -45,13 +52,17 @@ class UnreadableError(ValueError):
     """The text is not a condition over known properties; the message gives the reason.
 
     ``unknown`` is the first unknown name, or "" if the text has another fault. ``advice`` says how
-    to correct the text; without it the advice of the rule applies.
+    to correct the text; without it the advice of the rule applies. ``is_outside``: it compares a
+    property with a number outside its declared range.
     """
 
-    def __init__(self, message: str, unknown: str = "", advice: str = "") -> None:
+    def __init__(
+        self, message: str, unknown: str = "", advice: str = "", *, is_outside: bool = False
+    ) -> None:
         super().__init__(message)
         self.unknown = unknown
         self.advice = advice
+        self.is_outside = is_outside
 
 
 class Scope:
@@ -135,11 +146,15 @@ class Scope:
         """Declare that a name stands for the formula of a Boolean input."""
         self._declared[name] = formula
 
-    def read(self, text: str) -> tuple[Formula, list[Variable]]:
-        """Return a condition and its variables. Raises UnreadableError."""
+    def read(self, text: str, *, has_any_numbers: bool = False) -> tuple[Formula, list[Variable]]:
+        """Return a condition and its variables. Raises UnreadableError.
+
+        With *has_any_numbers* it may compare properties with numbers outside their ranges.
+        """
+        find_symbol = self._find_unbounded if has_any_numbers else self._find_symbol
         try:
             expression = parse_expression(text)
-            formula = elaborate_condition(expression, self._find_symbol)
+            formula = elaborate_condition(expression, find_symbol)
         except ExpressionError as error:
             raise UnreadableError(str(error)) from None
         except ElaborationError as error:
@@ -151,7 +166,8 @@ class Scope:
                 advice = ELSEWHERE_ADVICE if owner else ""
                 raise UnreadableError(message, error.name, advice) from None
             advice = FINITE_ADVICE if error.fault is Fault.UNSUPPORTED else ""
-            raise UnreadableError(str(error), advice=advice) from None
+            is_outside = error.fault is Fault.OUTSIDE and not self._reads_assumed(expression)
+            raise UnreadableError(str(error), advice=advice, is_outside=is_outside) from None
         return formula, [
             v for v in map(self._make_input, _variable_names(formula)) if v is not None
         ]
@@ -174,6 +190,17 @@ class Scope:
         if feature is not None:
             return make_symbol(feature)
         return find_literal(self._inner, name)
+
+    def _find_unbounded(self, name: str) -> Symbol | None:
+        symbol = self._find_symbol(name)
+        is_number = symbol is not None and isinstance(symbol.domain, IntegerDomain)
+        return replace(symbol, domain=_ALL_NUMBERS) if symbol and is_number else symbol
+
+    def _reads_assumed(self, expression: Expression) -> bool:
+        """Whether an expression reads a property with an assumed range."""
+        names = (name_of(part) for part in walk_expression(expression))
+        features = (self._feature(name) for name in names if name)
+        return any(feature is not None and feature.is_assumed for feature in features)
 
     def _make_input(self, name: str) -> Variable | None:
         for feature in (
@@ -228,11 +255,17 @@ class Inputs:
         if not text:
             error = UnreadableError("it has no text that can be read", advice=EMPTY_ADVICE)
             return self._declare_unreadable("", origin, what, error)
+        is_outside = False
         # The loop ends because each round declares one more name of the text.
         while True:
             try:
-                formula, variables = self._scope.read(text)
+                formula, variables = self._scope.read(text, has_any_numbers=is_outside)
             except UnreadableError as error:
+                if error.is_outside and not is_outside:
+                    is_outside = True
+                    subject, reason = self.graph.subject(origin), str(error)
+                    self._sink.report(OUT_OF_DOMAIN, subject, what=what, text=text, reason=reason)
+                    continue
                 if not error.unknown or not self._scope.is_condition(text, error.unknown):
                     return self._declare_unreadable(text, origin, what, error)
                 replacement = self._declare_unreadable(error.unknown, origin, what, error)
