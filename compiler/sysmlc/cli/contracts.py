@@ -45,9 +45,11 @@ Examples:
   sysmlc contracts check cells.sysml -o out   # draws the runs that break a contract
   sysmlc contracts check gate.contract.json
   sysmlc contracts check plant.uml --question-limit 60 --time-limit 1800
+  sysmlc contracts check plant.uml --strict   # refuses undecided formulas
 
-Exit codes: 0 nothing is violated (the last line counts undecided requirements),
-1 a contract is unrealizable or violated, 2 the work could not be done.""",
+Exit codes: 0 nothing is violated (formulas may be undecided), 1 a contract is
+unrealizable or violated, with --strict also after warnings and if the formula
+of a requirement is not decided, 2 the work could not be done.""",
 )
 @click.argument(
     "files", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILE..."
@@ -84,6 +86,7 @@ def check_command(
 
     settings = session.Settings(**setting_values)
     config = session.load_config(files, settings)
+    settings = replace(settings, strict=settings.strict or config.strict)
     progress = Progress(settings.verbose)
     contract_file = read_contracts(files, language, config, settings)
     limits = Limits(memory=LIMITS.memory, seconds=seconds)
@@ -158,25 +161,43 @@ def _check(
     )
     if refusals:
         return 2
-    return _find_exit_code(contract_file, alone, together)
+    if not contract_file.is_whole or not (alone or together):
+        return 2
+    formal = [requirement for requirement in requirements if requirement.is_formal]
+    verdicts = list_verdicts(formal, alone, contract_file.time_verdicts)
+    if settings.strict and any(entry["verdict"] == "not-decided" for entry in verdicts):
+        return 1
+    return _find_exit_code(contract_file, alone, together, settings)
 
 
 def _find_exit_code(
     contract_file: "ContractFile",
     alone: "list[CheckedContract]",
     together: "list[CompositionVerdict]",
+    settings: "Settings",
 ) -> int:
-    """Return 0 if all is as it should be, 1 after errors, 2 if something is not decided."""
-    from sysmlc.diagnostics import Severity
+    """Return 1 if something is violated, else 2 if something is not decided, else 1 after errors.
 
-    is_undecided = any(
-        result.verdict.is_realizable is None and not result.is_checked_by_behaviour
+    With ``--strict`` warnings count as errors. Undecided requirements do not count.
+    """
+    from sysmlc.cli.contract_files import list_findings
+    from sysmlc.cli.reports import is_reported
+    from sysmlc.driver.faults import compute_exit_code
+
+    answers = [result.is_satisfied for result in together]
+    answers += [result.is_implemented is not False for result in alone]
+    answers += [
+        result.verdict.is_realizable
         for result in alone
-    ) or any(result.is_satisfied is None for result in together)
-    diagnostics = (*contract_file.sink, *(finding.diagnostic for finding in contract_file.findings))
-    has_errors = any(diagnostic.severity is Severity.ERROR for diagnostic in diagnostics)
-    is_checked = bool(alone or together)
-    return int(has_errors) if contract_file.is_whole and is_checked and not is_undecided else 2
+        if not (result.is_checked_by_behaviour and result.verdict.is_realizable is None)
+    ]
+    if False in answers:
+        return 1
+    if None in answers:
+        return 2
+    diagnostics = (finding.diagnostic for finding in list_findings(contract_file))
+    reported = (item for item in diagnostics if is_reported(item, settings))
+    return compute_exit_code(reported, settings.strict)
 
 
 def _without_demands(composite: "Composite") -> "Composite":
