@@ -51,7 +51,7 @@ NEVER_WRITTEN = {
         for member in (
             *("requirement", "component", "formula", "verdict", "reason"),
             *("witness", "witness/loop", "witness/steps", "vacuous", "needs"),
-            *("assumed_ranges", "unread_conditions"),
+            *("witness/violated", "assumed_ranges", "unread_conditions"),
         )
     ),
     *(
@@ -66,6 +66,13 @@ NEVER_WRITTEN = {
             "write_conflicts",
             "assumed_ranges",
         )
+    ),
+    # ``watch`` and commands that fail write these; tests/cli checks them.
+    "sysmlc-diagnostics#/failure",
+    "sysmlc-diagnostics#/output",
+    *(
+        f"sysmlc-diagnostics#/output/{member}"
+        for member in ("folder", "is_updated", "changed", "withheld")
     ),
 }
 
