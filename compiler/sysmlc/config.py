@@ -249,7 +249,7 @@ def _match(part: str, folder: Path) -> Iterator[Path]:
     if part == "**":
         yield from (Path(path) for path, _, _ in os.walk(folder))
     elif set(part) & set(_WILDCARDS):
-        with suppress(PermissionError):
+        with suppress(OSError):
             yield from (path for path in folder.iterdir() if fnmatch(path.name, part))
     elif os.path.lexists(folder / part):
         yield folder / part

@@ -222,6 +222,18 @@ def test_naming_a_file_of_a_unit_compiles_the_whole_unit(workspace):
     assert workspace.list_inputs() == ["extra.ir", "plant.ir"]
 
 
+def test_a_wildcard_of_the_configuration_that_matches_nothing_is_reported(workspace):
+    workspace.write(
+        "sysmlc.toml",
+        'emit = ["graph"]\n[[model]]\nname = "a"\nfiles = ["plant.ir"]\n'
+        '[[model]]\nname = "b"\nfiles = [\n  "plant.ir",\n  "lines/*.ir",\n]\n',
+    )
+    result = workspace.sysmlc("check")
+    assert "sysmlc.toml:7: 'lines/*.ir' in 'files' matches no file\n" in result.stderr
+    assert result.stderr.count("matches no file") == 1
+    assert result.exit_code == 0
+
+
 def test_a_suppression_that_matches_nothing_is_reported(workspace):
     workspace.write("untyped.ir", UNTYPED)
     workspace.write(

@@ -1,5 +1,7 @@
 """A SysML v2 file that is named alone is compiled with the files of its project that it needs."""
 
+from pathlib import Path
+
 import pytest
 
 WORDS = "package Words { attribute def Go; }"
@@ -69,6 +71,18 @@ def test_outside_of_projects_only_the_folder_of_the_file_is_searched(project):
     assert any("unknown name 'Pumps'" in line for line in check(project, "plant.sysml"))
     project.write("pumps.sysml", PUMPS)
     assert not any("Pumps" in line for line in check(project, "plant.sysml"))
+
+
+@pytest.mark.parametrize("problem", [PermissionError, FileNotFoundError])
+def test_a_folder_that_cannot_be_listed_has_no_siblings(project, monkeypatch, problem):
+    (project.folder / ".git").rmdir()
+    project.write("pumps.sysml", PUMPS)
+
+    def refuse(_folder):
+        raise problem(13, "refused")
+
+    monkeypatch.setattr(Path, "iterdir", refuse)
+    assert any("unknown name 'Pumps'" in line for line in check(project, "plant.sysml"))
 
 
 def test_a_copy_of_the_standard_library_is_no_sibling(project):

@@ -4,7 +4,7 @@ The files to compile are those that the command line names, or those of every ``
 """
 
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -47,7 +47,7 @@ def select(
     from sysmlc.config import find_boundary
 
     folder = config.folder or Path.cwd()
-    declared = [(unit, _expand(config, unit.files)) for unit in config.models]
+    declared = [(unit, _expand(config, index)) for index, unit in enumerate(config.models)]
     chosen = [
         Selection(
             tuple(files),
@@ -70,18 +70,25 @@ def select(
     return chosen
 
 
-def _expand(config: "Config", patterns: Iterable[str]) -> list[Path]:
-    """Return the files of a ``[[model]]``, without pipes, sockets and devices.
+def _expand(config: "Config", index: int) -> list[Path]:
+    """Return the files of the ``[[model]]`` with this index, without pipes, sockets and devices.
 
     Exits with code 2 if a file is outside the project root.
     """
-    from sysmlc.config import ConfigError, expand_files
+    from sysmlc.config import ConfigError, expand_files, locate_key
     from sysmlc.sources.files import is_special
 
-    try:
-        files = expand_files(config, patterns)
-    except ConfigError as problem:
-        fail(str(problem))
+    files: list[Path] = []
+    for pattern in config.models[index].files:
+        try:
+            matches = expand_files(config, [pattern])
+        except ConfigError as problem:
+            fail(str(problem))
+        if not matches and config.file is not None:
+            place = locate_key(config.file, ["model", index, "files"])
+            message = f"'{pattern}' in 'files' matches no file"
+            terminal.echo(f"sysmlc: warning: {place}: {message}", err=True)
+        files += matches
     for file in filter(is_special, files):
         message = f"'{file}' is a pipe, a socket or a device; it is not read"
         terminal.echo(f"sysmlc: warning: {message}", err=True)
@@ -166,7 +173,7 @@ def find_leftover_outputs(units: Sequence[Unit]) -> list[Path]:
         folder
         for parent in shared
         if parent.is_dir()
-        for folder in (parent, *sorted(parent.iterdir()))
+        for folder in (parent, *sorted(parent.glob("*")))
     ]
     return [folder for folder in folders if folder not in used and is_output_folder(folder)]
 

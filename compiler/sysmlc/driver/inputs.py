@@ -203,7 +203,8 @@ def _is_excluded(path: Path, excluded: frozenset[Path]) -> bool:
 def _report_missing(path: Path, absolute: Path, root: Path, sink: Sink) -> None:
     name = path.as_posix()
     folder = absolute.parent
-    names = [p.name for p in sorted(folder.iterdir())] if folder.is_dir() else []
+    # Unlike iterdir, glob skips a folder that may not be listed.
+    names = [p.name for p in sorted(folder.glob("*"))]
     similar = find_similar(absolute.name, [name for name in names if not name.startswith(".")])
     advice = f"did you mean '{similar}'?" if similar else ""
     if not folder.is_dir():

@@ -206,7 +206,7 @@ def _load_usable(names: Iterable[str], foreign: dict[str, EntryPoint]) -> list[B
 def _find_foreign_backends() -> dict[str, EntryPoint]:
     """Return the back ends of other distributions by name, without those that take our names."""
     plug_ins = find_plug_ins(BACKEND_GROUP)
-    for name in plug_ins.keys() & _BACKENDS.keys():
+    for name in sorted(plug_ins.keys() & _BACKENDS.keys()):
         entry = plug_ins.pop(name)
         _ignore_plug_in(f"the plug-in {entry.value} takes the name of back end '{name}'")
     return plug_ins

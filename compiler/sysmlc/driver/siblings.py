@@ -73,8 +73,9 @@ def _load_candidates(known: AbstractSet[Path], roots: Roots) -> Iterator[tuple[P
     subfolders are not searched.
     """
     for folder in roots.folders:
-        files = find_model_files(folder) if is_project_root(folder) else folder.iterdir()
-        for path in sorted(file for file in files if file.suffix.lower() in _SUFFIXES):
+        for path in sorted(
+            file for file in _list_files(folder) if file.suffix.lower() in _SUFFIXES
+        ):
             real = Path(os.path.realpath(path))
             if real in known or not roots.allows(path) or is_special(path):
                 continue
@@ -82,6 +83,14 @@ def _load_candidates(known: AbstractSet[Path], roots: Roots) -> Iterator[tuple[P
                 yield path, Source(path.name, read_whole(path, path.name, DEFAULT_LIMITS))
             except SourceError:
                 continue
+
+
+def _list_files(folder: Path) -> list[Path]:
+    """Return the files that may be siblings; none if the folder cannot be listed."""
+    try:
+        return list(find_model_files(folder) if is_project_root(folder) else folder.iterdir())
+    except OSError:
+        return []
 
 
 # Possessive quantifiers: a word of a megabyte would otherwise take quadratic time.

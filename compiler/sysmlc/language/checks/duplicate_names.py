@@ -42,8 +42,8 @@ def check_names(model: Model, node: Node) -> Iterator[Finding]:
     """Report members that share a name or short name."""
     members_by_name: dict[str, list[Node]] = {}
     for member in node.members:
-        for name in {member.name, member.short_name} - {None}:
-            members_by_name.setdefault(str(name), []).append(member)
+        for name in dict.fromkeys(filter(None, (member.name, member.short_name))):
+            members_by_name.setdefault(name, []).append(member)
     for name, members in members_by_name.items():
         if len(members) > 1:
             for member in members:

@@ -36,8 +36,8 @@ class Model:
         self._roots_by_name: dict[str, list[Node]] = {}
         for document in self.documents:
             for member in document.root.members:
-                for name in {member.name, member.short_name} - {None}:
-                    self._roots_by_name.setdefault(str(name), []).append(member)
+                for name in dict.fromkeys(filter(None, (member.name, member.short_name))):
+                    self._roots_by_name.setdefault(name, []).append(member)
         self._elements_by_name: dict[str, Node | None] = {}
         self._candidates: dict[Node, list[tuple[str, Node]]] = {}
         self._alike: dict[tuple[object, ...], _ImpliedGenerals] = {}
