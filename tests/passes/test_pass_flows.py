@@ -3,6 +3,7 @@
 import pytest
 from pass_runs import list_codes, run_until
 
+from sysmlc.driver import Request, compile_model
 from sysmlc.ir import Edge
 
 LINE = """\
@@ -161,3 +162,40 @@ def test_an_item_flow_conveys_what_the_flow_properties_at_its_ends_pass():
         "item flow 'f' conveys 'Pallet', but its end 'Tank::out' has the type 'Water'",
         "item flow 'f' conveys 'Pallet', but its end 'Press::in' has the type 'Hot'",
     ]
+
+
+BUSES = """package P {{
+    item def Command; item def Status; item def FastCommand :> Command;
+    port def Bus {{ in item command : Command; out item status : Status; }}
+    port def Peer {{ in item received : Command; out item sent : FastCommand; }}
+    port def Served :> Bus {{ port extra; }}
+    port def Outer {{ port bus : Bus; }}
+    part def S {{
+        part a {{ port p : {0}; }}
+        part b {{ port p : {1}; }}
+        {2}
+    }}
+}}"""
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "connection", "codes"),
+    [
+        pytest.param("Bus", "Bus", "connect a.p to b.p;", ["SM347"], id="inputs meet inputs"),
+        pytest.param("~Bus", "~Bus", "connect a.p to b.p;", ["SM347"], id="both conjugated"),
+        pytest.param("Bus", "Bus", "interface a.p to b.p;", ["SM347"], id="interface"),
+        pytest.param("Bus", "~Bus", "connect a.p to b.p;", [], id="one conjugated"),
+        pytest.param("Peer", "Peer", "connect a.p to b.p;", [], id="each sends to the other"),
+        pytest.param("Served", "Served", "connect a.p to b.p;", [], id="nested ports"),
+        pytest.param("Outer", "Outer", "connect a.p.bus to b.p.bus;", ["SM347"], id="nested"),
+        pytest.param("~Outer", "Outer", "connect a.p.bus to b.p.bus;", [], id="outer conjugated"),
+        pytest.param("Bus", "Bus", "port q : Bus; connect q to a.p;", [], id="delegation"),
+    ],
+)
+def test_a_connector_needs_an_output_that_an_input_can_take(
+    tmp_path, first, second, connection, codes
+):
+    path = tmp_path / "bus.sysml"
+    path.write_text(BUSES.format(first, second, connection))
+    reported = {diagnostic.rule.code for diagnostic in compile_model(Request((path,))).diagnostics}
+    assert sorted(reported & {"SM315", "SM316", "SM347"}) == codes

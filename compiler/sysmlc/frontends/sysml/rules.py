@@ -94,6 +94,11 @@ WORDINGS = {
         "({information})",
         "write one connection for the material or energy and one for the information",
     ),
+    "SM347": Wording(
+        "connection '{connector}' joins '{one}' with '{other}', but nothing that leaves one of "
+        "them can enter the other",
+        "conjugate the type of one of the ports (~), or choose another type for it",
+    ),
     "SM410": Wording(
         "",
         "write 'assert constraint {{ {name} >= {low} and {name} <= {high} }}'",

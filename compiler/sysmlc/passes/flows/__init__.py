@@ -13,6 +13,7 @@ from sysmlc.ir.query import (
     domain_of,
     end_direction,
     ends,
+    flow_directions,
     flow_properties,
     flow_source,
     flow_target,
@@ -73,6 +74,14 @@ CONNECTOR_TYPES = rule(
     Severity.WARNING,
     "connector '{connector}' joins '{one}' of type '{type}' with '{other}' of type '{other_type}'",
     help="type both ports with the same interface block, one of them conjugated",
+)
+CONNECTOR_WITHOUT_FLOW = rule(
+    "SM347",
+    "connector-without-flow",
+    Severity.WARNING,
+    "connector '{connector}' joins '{one}' with '{other}', but nothing that leaves one of them can "
+    "enter the other",
+    help="conjugate one of the ports, or choose another type for it",
 )
 MIXED_DOMAINS = rule(
     "SM317",
@@ -337,9 +346,22 @@ def _check_connector(graph: Graph, sink: Sink, connector: Element) -> None:
         for port, along, _ in _list_port_ends(graph, flow)
     )
     has_sides = not any(begins_elsewhere(graph, connector, end) for end in connector_ends)
-    if has_sides and not is_reported and not _has_matching_directions(graph, connector_ends):
+    types = [type_ for type_ in (type_of(graph, port) for port in ports) if type_ is not None]
+    are_compatible = len(types) < 2 or _are_compatible(graph, *types)
+    if not are_compatible:
+        _report_types(graph, sink, connector, connector_ends, types)
+    if not has_sides or is_reported:
+        return
+    if not _has_matching_directions(graph, connector_ends):
         _report_directions(graph, sink, connector, connector_ends)
-    _check_types(graph, sink, connector, connector_ends, ports)
+    elif are_compatible and not _can_exchange_items(graph, connector_ends, types):
+        sink.report(
+            CONNECTOR_WITHOUT_FLOW,
+            graph.subject(connector),
+            connector=_title(graph, connector),
+            one=_name_end(graph, connector, connector_ends[0]),
+            other=_name_end(graph, connector, connector_ends[1]),
+        )
 
 
 def _has_matching_directions(graph: Graph, connector_ends: list[Element]) -> bool:
@@ -377,20 +399,51 @@ def _name_end(graph: Graph, connector: Element, end: Element) -> str:
     return "::".join([graph.qualified_name(owner), *steps, role.name])
 
 
-def _check_types(
-    graph: Graph, sink: Sink, connector: Element, attached: list[Element], ports: list[Element]
+def _can_exchange_items(graph: Graph, connector_ends: list[Element], types: list[Element]) -> bool:
+    """Whether something may pass between two ports whose types have inputs and outputs.
+
+    An output needs an input that may have its type (SysML 1.6 clause 9.3.2.8). Ports whose types
+    have other features as well may be there for these.
+    """
+    is_continued = is_boundary(graph, connector_ends[0]) != is_boundary(graph, connector_ends[1])
+    kinds = {feature.kind for type_ in types for feature in graph.targets(type_, Edge.FEATURE)}
+    if is_continued or kinds & {Kind.PORT, Kind.OPERATION, Kind.RECEPTION}:
+        return True
+    first, second = (_list_flow_features(graph, end) for end in connector_ends)
+    return not (first and second) or any(
+        direction != other_direction or "inout" in (direction, other_direction)
+        for item, direction in first
+        for other_item, other_direction in second
+        if _may_equal_types(graph, item, other_item)
+    )
+
+
+def _list_flow_features(graph: Graph, end: Element) -> list[tuple[Element, str]]:
+    """Return the flow properties of the port at an end, with directions as in ``end_direction``."""
+    port = role_of(graph, end)
+    directions = [] if port is None else flow_directions(graph, port)
+    outer_ports = [step for step in graph.targets(end, Edge.PATH) if step.kind is Kind.PORT]
+    if sum(bool(outer.attrs.get("conjugated")) for outer in outer_ports) % 2:
+        return [(item, opposite(direction) or direction) for item, direction in directions]
+    return directions
+
+
+def _may_equal_types(graph: Graph, left: Element, right: Element) -> bool:
+    first, second = type_of(graph, left), type_of(graph, right)
+    return first is None or second is None or _are_related(graph, first, second)
+
+
+def _report_types(
+    graph: Graph, sink: Sink, connector: Element, attached: list[Element], types: list[Element]
 ) -> None:
-    first, second = (type_of(graph, port) for port in ports)
-    if first is None or second is None or _are_compatible(graph, first, second):
-        return
     sink.report(
         CONNECTOR_TYPES,
         graph.subject(connector),
         connector=_title(graph, connector),
         one=_name_end(graph, connector, attached[0]),
-        type=first.name,
+        type=types[0].name,
         other=_name_end(graph, connector, attached[1]),
-        other_type=second.name,
+        other_type=types[1].name,
     )
 
 
