@@ -55,3 +55,48 @@ def test_json_and_diagrams_have_the_violated_step(check, workspace):
     (diagram,) = workspace.folder.glob("out/**/*.run1.puml")
     after = diagram.read_text().partition("== step 4 ==\n")[2].partition("== step 5 ==")[0]
     assert "note over p1 #FFDDDD : violated here\n" in after
+
+
+GUARDED = """package Shop {{
+    private import ScalarValues::*;
+    attribute def Go;
+    part def Feeder {{
+        in attribute n : Integer;
+        assert constraint {{ 0 <= n and n <= 5 }}
+        in attribute armed : Boolean;
+        attribute on : Boolean := false;
+        exhibit state Feed {{
+            entry; then Waiting;
+            state Waiting;
+            transition first Waiting accept Go if {guard} do assign on := true then Feeding;
+            state Feeding;
+        }}
+    }}
+    requirement def Starts {{
+        subject feeder : Feeder;
+        assume constraint {{ language "ltl" /* G F event=Go{assumed} */ }}
+        require constraint {{ language "ltl" /* F on */ }}
+    }}
+}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("guard", "assumed", "shown", "hidden"),
+    [
+        ("armed", "", " armed=false, ", " n="),
+        ("n > 3", "", " n=0, ", "armed"),
+        # Each of the two inputs alone disables the transition.
+        ("n > 3 and armed", "", " armed=false, ", " n="),
+        ("n > 3 or armed", "", " n=0, armed=false, ", "Waiting"),
+        ("n > 3 and armed", " & G armed", " n=0, ", "Waiting"),
+    ],
+)
+def test_the_first_step_shows_inputs_that_never_change_but_matter(
+    workspace, all_passes, guard, assumed, shown, hidden
+):
+    workspace.write("shop.sysml", GUARDED.format(guard=guard, assumed=assumed))
+    text = workspace.sysmlc("contracts", "check", "shop.sysml").stderr
+    (first,) = [line for line in text.splitlines() if "note: step 1: " in line]
+    assert shown in first
+    assert hidden not in first

@@ -20,6 +20,7 @@ from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.synthesis.decision import Options, Place, Verdict, decide
 from sysmlc.synthesis.games.game import OutsideGr1Error, make_game
 from sysmlc.synthesis.lints import lint
+from sysmlc.synthesis.relevant_inputs import find_relevant_inputs
 from sysmlc.synthesis.requirement_verdicts import (
     Answer,
     BehaviourCheck,
@@ -281,7 +282,7 @@ def _check_requirements(
 
 
 def _trim_run(trace: Trace, broken: Conjunct, behaviour: Contract) -> Trace:
-    """Return a run with its violated step marked, and without the inputs that nothing reads."""
+    """Return a run with its violated step and the inputs that matter, without those not read."""
     formulas = (*behaviour.guarantees, *behaviour.assumptions, broken)
     read = f.variable_names(*(conjunct.formula for conjunct in formulas))
     unread = {
@@ -289,7 +290,11 @@ def _trim_run(trace: Trace, broken: Conjunct, behaviour: Contract) -> Trace:
         for variable in behaviour.variables
         if variable.owner is Owner.ENVIRONMENT and variable.name not in read
     }
-    return replace(mark_violation(trace, broken), auxiliary=trace.auxiliary | unread)
+    return replace(
+        mark_violation(trace, broken),
+        auxiliary=trace.auxiliary | unread,
+        relevant=find_relevant_inputs(trace, behaviour),
+    )
 
 
 def _find_behaviour_findings(

@@ -106,10 +106,10 @@ def _hidden_variables(trace: Trace, broken: Conjunct | None) -> Set[str]:
 
 
 def _constant_variables(trace: Trace, broken: Conjunct) -> set[str]:
-    """Return the variables that never change and that the conjunct does not read."""
+    """Return the variables that never change, unless the conjunct reads them or they matter."""
     changing = {name for changed in list(_iter_changes(trace))[1:] for name in changed}
     read = {variable.name for variable in f.variables(broken.formula)}
-    return set(trace.steps[0]) - changing - read
+    return set(trace.steps[0]) - changing - read - trace.relevant
 
 
 def name_run(trace: Trace, atoms: Sequence[Atom]) -> Trace:
@@ -130,7 +130,14 @@ def name_run(trace: Trace, atoms: Sequence[Atom]) -> Trace:
     )
     auxiliary = {atom.variable.name for atom in atoms if atom.variable.is_auxiliary}
     quiet = frozenset(atom.variable.name for atom in atoms if atom.is_quiet)
-    return replace(trace, steps=steps, auxiliary=trace.auxiliary | auxiliary, quiet=quiet)
+    names = {atom.replaced: atom.variable.name for atom in atoms}
+    return replace(
+        trace,
+        steps=steps,
+        auxiliary=trace.auxiliary | auxiliary,
+        quiet=quiet,
+        relevant=frozenset(names.get(name, name) for name in trace.relevant),
+    )
 
 
 def name_conjunct(conjunct: Conjunct, atoms: Sequence[Atom]) -> Conjunct:

@@ -306,7 +306,8 @@ class Trace(Struct, frozen=True):
     and the variables of this side have no value in the last step. ``auxiliary`` are the names of
     auxiliary variables (``Variable``), ``quiet`` those that texts omit while they have been false.
     ``violated`` is the step that violates the formula which the run refutes, if one is to blame;
-    ``is_open`` means that the formula only demands something later that never comes.
+    ``is_open`` means that the formula only demands something later that never comes. ``relevant``
+    are inputs that texts show although they never change.
     """
 
     steps: tuple[Mapping[str, Literal], ...]
@@ -315,6 +316,7 @@ class Trace(Struct, frozen=True):
     quiet: frozenset[str] = frozenset()
     violated: int | None = None
     is_open: bool = False
+    relevant: frozenset[str] = frozenset()
 
 
 def shortest_path(runs: Runs, target: Node) -> list[Node]:
