@@ -92,7 +92,7 @@ def test_a_game_shorter_than_the_first_clock_check_obeys_the_limit_of_nodes(
     few = CliRunner().invoke(sysmlc, ["synth", str(file), "--realizable", "--nodes", "1"])
     many = CliRunner().invoke(sysmlc, ["synth", str(file), "--realizable", "--nodes", "1000"])
 
-    assert (few.exit_code, "the limit of 1 nodes was reached" in few.output) == (2, True)
+    assert (few.exit_code, "the limit of 1 node was reached" in few.output) == (2, True)
     assert many.exit_code == 0, many.output
 
 

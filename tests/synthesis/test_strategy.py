@@ -221,7 +221,7 @@ def test_a_fault_of_a_goal_shows_the_loop():
 
 def test_too_many_states_moves_or_conditions_raise():
     door = parse_contract(DOOR)
-    with pytest.raises(TooLargeError, match="the limit of 1 states of the machine"):
+    with pytest.raises(TooLargeError, match="the limit of 1 state of the machine"):
         draft_machine(door, max_states=1)
     with pytest.raises(TooLargeError, match="the limit of 5 moves of the machine"):
         draft_machine(door, max_moves=5)

@@ -77,7 +77,7 @@ NOT_COMPOSED = rule(
     "SM598",
     "parts-not-composed",
     Severity.WARNING,
-    "the composition of the parts of '{component}' is not checked: {reason}",
+    "the composition of the parts of '{component}' is not decided: {reason}",
     help="give more time (--question-limit), or use known property patterns",
 )
 
@@ -99,6 +99,8 @@ class CompositionVerdict(Struct, frozen=True):
     witnesses: tuple[Witness, ...] = ()
     basis: Basis = Basis()
     """The ranges that are assumed in the contracts of the parts and of the block."""
+    reason: str = ""
+    """Why the composition is not decided, if it is not."""
 
     def text(self) -> str:
         """Return the verdict on one line."""
@@ -110,7 +112,7 @@ class CompositionVerdict(Struct, frozen=True):
 
     def _verdict(self) -> str:
         if self.is_satisfied is None:
-            return "the composition of its parts is not checked"
+            return f"the composition of its parts is not decided: {self.reason}"
         if self.has_whole and self.has_shared_variables:
             if self.parts == 1:
                 verb = "satisfies" if self.is_satisfied else "violates"
@@ -138,19 +140,18 @@ def check_compositions(
 ) -> Iterator[CompositionVerdict]:
     """Compose the parts of each block, report open assumptions and violations, yield verdicts."""
     for composite in composites:
-        results = [
-            (group, _compose(group, place, sink, options)) for group in _list_groups(composite)
-        ]
-        decided = [
-            (group, composition) for group, composition in results if composition is not None
-        ]
+        decided: list[tuple[Composite, Composition]] = []
+        reasons: list[str] = []
+        for group in _list_groups(composite):
+            composition, reason = _compose(group, place, sink, options)
+            decided += [] if composition is None else [(group, composition)]
+            reasons += [reason] if reason else []
         is_broken = any(
             composition.open or composition.failures or composition.conflict
             for _, composition in decided
         )
         # A violation in one group is a verdict even if another group is undecided.
-        is_undecided = len(decided) < len(results) or any(c.undecided for _, c in decided)
-        is_satisfied = None if is_undecided and not is_broken else not is_broken
+        is_satisfied = None if reasons and not is_broken else not is_broken
         witnesses = tuple(
             witness
             for group, composition in decided
@@ -168,6 +169,7 @@ def check_compositions(
             is_satisfied,
             witnesses,
             find_basis(_list_contracts(composite)),
+            "; ".join(dict.fromkeys(reasons)),
         )
 
 
@@ -179,15 +181,17 @@ def _list_groups(composite: Composite) -> list[Composite]:
 
 def _compose(
     composite: Composite, place: Place, sink: Sink, options: Options
-) -> Composition | None:
+) -> tuple[Composition | None, str]:
+    """Return the composition, if it was computed, and why something about it is not decided."""
     try:
         composition = compose_parts(composite, manager_factory(options)())
     except (OutsideGr1Error, DomainError, DriverError, LimitError) as problem:
         subject, reason = place(composite.origin), describe_problem(problem)
         sink.report(NOT_COMPOSED, subject, component=composite.component, reason=reason)
-        return None
+        return None, reason
     undecided = composition.undecided
     composition = _drop_doubtful(composite, composition, place, sink)
+    reasons = list(composition.undecided[len(undecided) :])
     if composition.conflict:
         _report_conflict(composite, composition, place, sink)
     for assumption in _drop_repeated(composition.open):
@@ -201,14 +205,16 @@ def _compose(
         report_failure(LOST, loss, composite.component, place(composite.origin), sink)
     if undecided:
         names = ", ".join(f"'{name}'" for name in undecided)
+        reason = f"no part decides {names}, which guarantees of the block are about"
+        reasons.append(reason)
         sink.report(
             NOT_COMPOSED,
             place(composite.origin),
             component=composite.component,
-            reason=f"no part decides {names}, which guarantees of the block are about",
+            reason=reason,
             help="let a part assign the feature, or a behaviour of the block",
         )
-    return composition
+    return composition, "; ".join(reasons)
 
 
 def _list_contracts(composite: Composite) -> tuple[Contract, ...]:

@@ -303,7 +303,7 @@ class _Unrolling:
         domains_by_name = {variable.name: variable.domain for variable in controller.inputs}
         # Check before the inputs are listed.
         if domains.count(domains_by_name) > max_steps:
-            raise LimitError("steps of the strategy", f"{max_steps:,}")
+            raise LimitError.of_number(max_steps, "step", "of the strategy")
         self._inputs = list(domains.valuations(domains_by_name))
         self._node_indices: dict[tuple[tuple[Literal, ...], int], int] = {}
         self._nodes: list[tuple[dict[str, Literal], int]] = []
@@ -325,7 +325,7 @@ class _Unrolling:
         for inputs in self._inputs:
             self._steps_left -= 1
             if self._steps_left < 0:
-                raise LimitError("steps of the strategy", f"{self._max_steps:,}")
+                raise LimitError.of_number(self._max_steps, "step", "of the strategy")
             current, following = (values, inputs) if values else (inputs, None)
             if all(rule(current, following) for rule in rules):
                 try:

@@ -85,7 +85,7 @@ WRONG_OWNER = rule(
     "SM537",
     "decided-by-the-other",
     Severity.WARNING,
-    "'{component}' {name} '{formula}', which {detail} decides alone",
+    "'{component}' {name} '{formula}', {detail} decides alone",
     help="move it to the other side of the contract, or change the owner of the variables",
 )
 NO_FAIRNESS = rule(

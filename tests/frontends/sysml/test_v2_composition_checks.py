@@ -69,10 +69,10 @@ def test_parts_of_a_block_that_promises_nothing_fit_or_do_not():
 
 def test_a_check_beyond_the_limits_is_not_decided():
     (result,), (diagnostic,) = check_model(together_rules.BREAK.read_page().right, Limits(nodes=1))
-    assert result.text() == "Line::Cell: the composition of its parts is not checked"
+    reason = "the limit of 1 node was reached"
+    assert result.text() == f"Line::Cell: the composition of its parts is not decided: {reason}"
     assert diagnostic.message == (
-        "the composition of the parts of 'Line::Cell' is not checked: the limit of 1 nodes "
-        "was reached"
+        f"the composition of the parts of 'Line::Cell' is not decided: {reason}"
     )
 
 
@@ -143,10 +143,10 @@ def test_a_part_alone_keeps_what_the_block_promises_and_the_others_do_not_matter
 def test_a_guarantee_about_a_variable_of_no_part_is_not_checked():
     nobody = together_rules.OPEN.read_page().right.replace("bind picker.taken = taken;", "")
     (result,), diagnostics = check_model(nobody)
-    assert result.text() == "Line::Cell: the composition of its parts is not checked"
+    reason = "no part decides 'taken', which guarantees of the block are about"
+    assert result.text() == f"Line::Cell: the composition of its parts is not decided: {reason}"
     assert [diagnostic.message for diagnostic in diagnostics] == [
-        "the composition of the parts of 'Line::Cell' is not checked: no part decides 'taken', "
-        "which guarantees of the block are about"
+        f"the composition of the parts of 'Line::Cell' is not decided: {reason}"
     ]
 
 

@@ -17,12 +17,14 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
-from itertools import count
+from itertools import count as count_up
 from types import FrameType, ModuleType
-from typing import Protocol
+from typing import Protocol, Self
 from weakref import WeakValueDictionary
 
 from msgspec import Struct
+
+from sysmlc.support.counts import count
 
 
 class Limits(Struct, frozen=True):
@@ -45,12 +47,15 @@ class Usage(Struct, frozen=True):
 
 
 class LimitError(Exception):
-    """Reports that a limit was reached: the limited *quantity*, and the limit as text."""
+    """Reports that a limit was reached: what is limited (``of CPU time``), and how much of it."""
 
-    def __init__(self, quantity: str, limit: str) -> None:
-        super().__init__(f"the limit of {limit} {quantity} was reached")
-        self.quantity = quantity
-        self.limit = limit
+    def __init__(self, subject: str, limit: str) -> None:
+        super().__init__(" ".join(filter(None, ("the limit of", limit, subject, "was reached"))))
+
+    @classmethod
+    def of_number(cls, number: int, noun: str, subject: str = "") -> Self:
+        """Return the error about a limited number of things: ``1 node``, ``2 steps``."""
+        return cls(subject, count(number, noun))
 
 
 class TooLargeError(LimitError):
@@ -69,9 +74,9 @@ def find_exceeded_limit(usage: Usage, limits: Limits, ceiling: int) -> StopReaso
     *ceiling* is a temporary limit of nodes, reported as TooLargeError; 0 means that there is none.
     """
     if ceiling and usage.nodes > ceiling:
-        return lambda: TooLargeError("nodes", f"{ceiling:,}")
+        return lambda: TooLargeError.of_number(ceiling, "node")
     if limits.nodes and usage.nodes > limits.nodes:
-        return lambda: LimitError("nodes", f"{limits.nodes:,}")
+        return lambda: LimitError.of_number(limits.nodes, "node")
     if limits.seconds and usage.seconds > limits.seconds:
         return lambda: LimitError("of CPU time", f"{limits.seconds:g} s")
     return None
@@ -114,7 +119,7 @@ class Stoppable(Protocol):
 _stoppables: WeakValueDictionary[int, Stoppable] = WeakValueDictionary()
 """The objects that CUDD asks, by the key that CUDD passes to the callback. A key is no pointer, so
 that a callback after the end of its object finds nothing."""
-_callback_keys = count(1)
+_callback_keys = count_up(1)
 
 
 def install_termination_callback(

@@ -148,8 +148,8 @@ class _ConditionWriter:
             self._cases_left -= 1
             self._manager.check("computing the conditions of the machine")
             if self._cases_left < 0:
-                raise TooLargeError(
-                    "cases in the conditions of the machine", f"{self._max_cases:,}"
+                raise TooLargeError.of_number(
+                    self._max_cases, "case", "in the conditions of the machine"
                 )
             formula, case_node = self._generalise(self._decode(values, variables), forbidden)
             yield formula

@@ -120,7 +120,7 @@ class _StateEnumeration:
             outputs = dict(zip(mode.outputs, functions, strict=False))
             yield _MemoryClass(memory, len(self._states))
             self._states.append(_State(Mode(outputs, functions[count:]), possible))
-            self._check_count("states", len(self._states), self._max_states)
+            self._check_count("state", len(self._states), self._max_states)
 
     def _split_functions(
         self, vector: tuple[Node, ...], care: Node
@@ -160,7 +160,7 @@ class _StateEnumeration:
                 if restricted != manager.false:
                     key = tuple(cofactor(function, value) for function in functions)
                     split[key] = split.get(key, manager.false) | restricted
-            self._check_count("states", len(self._states) + len(split), self._max_states)
+            self._check_count("state", len(self._states) + len(split), self._max_states)
         return split
 
     def _compute_moves(self, state: _State, end: int) -> dict[Answer, Node]:
@@ -178,7 +178,7 @@ class _StateEnumeration:
                         key = answer, next_state
                         moves[key] = moves.get(key, self._manager.false) | answer_condition
                         self._move_count += 1
-                        self._check_count("moves", self._move_count, self._max_moves)
+                        self._check_count("move", self._move_count, self._max_moves)
         return moves
 
     def _split_by_output_bits(
@@ -277,7 +277,7 @@ class _StateEnumeration:
     def _states_with_value(self, outputs: Functions, name: str, value: Formula) -> Node:
         return states_with_value(self._strategy, outputs, name, value)
 
-    def _check_count(self, kind: str, number: int, limit: int) -> None:
+    def _check_count(self, noun: str, number: int, limit: int) -> None:
         self._manager.check("listing the states of the machine")
         if number > limit:
-            raise TooLargeError(f"{kind} of the machine", f"{limit:,}")
+            raise TooLargeError.of_number(limit, noun, "of the machine")

@@ -218,7 +218,7 @@ class _TableBuilder:
 
     def _add_node(self, node: Node, bit: str, low: int, high: int) -> None:
         if len(self._nodes) >= self._max_nodes:
-            raise TooLargeError("nodes of the controller", f"{self._max_nodes:,}")
+            raise TooLargeError.of_number(self._max_nodes, "node", "of the controller")
         bit_index = self._bit_indices.setdefault(bit, len(self._bit_indices))
         self._nodes.append((bit_index, low, high))
         self._positions[node] = len(self._nodes) + 1

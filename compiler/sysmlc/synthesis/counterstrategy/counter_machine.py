@@ -113,7 +113,7 @@ class _Exploration:
         self._moves_left -= 1
         self._symbols.manager.check("listing the moves of the environment")
         if self._moves_left < 0:
-            raise LimitError("answers of the system", f"{self._max_moves:,}")
+            raise LimitError.of_number(self._max_moves, "answer", "of the system")
 
     def _values_of(self, bits: Bits, owner: Owner) -> Row:
         values = self._symbols.decode(bits)

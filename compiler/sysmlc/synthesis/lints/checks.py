@@ -49,15 +49,21 @@ def check_ownership(contract: Contract) -> Iterator[LintFinding]:
     owners = {variable.name: variable.owner for variable in contract.variables}
     for conjunct in contract.assumptions:
         if _sole_owner(conjunct, owners) is Owner.SYSTEM:
-            yield LintFinding(rules.WRONG_OWNER, conjunct, "assumes", "the component")
+            yield _find_wrong_owner(conjunct, "assumes", "the component")
     for conjunct in contract.guarantees:
         if _sole_owner(conjunct, owners) is Owner.ENVIRONMENT:
-            yield LintFinding(rules.WRONG_OWNER, conjunct, "promises", "the environment")
+            yield _find_wrong_owner(conjunct, "promises", "the environment")
         elif conjunct.class_ is Class.INIT and Owner.ENVIRONMENT in _owners_of(conjunct, owners):
             yield LintFinding(rules.INITIAL_INPUT, conjunct)
     for conjunct in (*contract.assumptions, *contract.guarantees):
         if conjunct.class_ is Class.LIVENESS and _primed_names(conjunct.formula):
             yield LintFinding(rules.NEXT_IN_LIVENESS, conjunct)
+
+
+def _find_wrong_owner(conjunct: Conjunct, verb: str, side: str) -> LintFinding:
+    """Return the finding; in a conjunct about two steps, *side* decides the next values only."""
+    relation = "whose next values" if _primed_names(conjunct.formula) else "which"
+    return LintFinding(rules.WRONG_OWNER, conjunct, verb, f"{relation} {side}")
 
 
 def _sole_owner(conjunct: Conjunct, owners: dict[str, Owner]) -> Owner | None:
