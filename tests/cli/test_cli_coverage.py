@@ -32,7 +32,7 @@ PLANT = """\
 </xmi:XMI>
 """
 TEXT = """\
-55.5 % covered: 5 of 9 elements that mean something
+55.5 % covered: 5 of 9 elements with a meaning
 
 type           covered  unsupported  approximated  external  mapped  notation  elements
 uml:Nonsense     0.0 %            2             -         -       -         -         2
@@ -199,7 +199,7 @@ def test_an_impossible_limit_is_refused(plant):
 def test_several_files_are_listed_and_none_counts_twice(plant):
     plant.write("good.uml", '<uml:Model xmlns:uml="http://www.eclipse.org/uml2/5.0.0/UML"/>')
     lines = plant.sysmlc("coverage", "plant.uml", "good.uml").stdout.splitlines()
-    assert lines[0] == "60.0 % covered: 6 of 10 elements that mean something"
+    assert lines[0] == "60.0 % covered: 6 of 10 elements with a meaning"
     assert [line.split()[0] for line in lines[2:6]] == ["file", "plant.uml", "good.uml", "total"]
 
 

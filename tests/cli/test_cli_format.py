@@ -116,7 +116,7 @@ def test_a_folder_without_models_is_exit_code_2(tmp_path):
 
 def test_suffixes_in_capitals_are_recognised(tmp_path):
     (tmp_path / "PLANT.SYSML").write_text(UGLY)
-    assert run_format(tmp_path).stderr == "1 of 1 files reformatted\n"
+    assert run_format(tmp_path).stderr == "1 of 1 file reformatted\n"
 
 
 def test_a_read_only_file_is_not_changed(tmp_path):
@@ -152,7 +152,7 @@ def test_fix_writes_the_visibility_that_imports_lack(tmp_path):
     old = tmp_path / "old.sysml"
     old.write_text("package P { import Q::*; private import R::A; package Q; }\n")
     result = run_format(tmp_path, "--fix")
-    assert (result.exit_code, result.stderr) == (0, "1 of 1 files reformatted\n")
+    assert (result.exit_code, result.stderr) == (0, "1 of 1 file reformatted\n")
     assert old.read_text().splitlines()[1:3] == [
         "    public import Q::*;",
         "    private import R::A;",

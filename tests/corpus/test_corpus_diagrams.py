@@ -131,7 +131,7 @@ def test_every_chosen_element_is_drawn(name, compile_once):
     omissions = [d.message for d in compile_once(name).diagnostics if d.rule.code == "SM703"]
     expected = {
         "TMT-Models-and-Analysis-Profile.mdzip": [
-            "1 of the 4 elements that diagram 'Model Profile' shows are not drawn: Dependency"
+            "diagram 'Model Profile' is drawn without 1 of 4 elements: Dependency"
         ]
     }
     assert omissions == expected.get(name, [])

@@ -81,6 +81,6 @@ def test_inherited_parameters_and_the_subject_count_as_parameters():
         }
     """
     assert list_violations(text) == [
-        "SM248 'Mean' takes 2 values, but 3 values are given",
-        "SM248 'Light' takes 2 values, but 3 values are given",
+        "SM248 'Mean' takes 2 values, not 3 values",
+        "SM248 'Light' takes 2 values, not 3 values",
     ]

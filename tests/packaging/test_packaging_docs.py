@@ -67,7 +67,7 @@ def test_the_documented_scenario_passes(tmp_path):
     result = CliRunner().invoke(sysmlc, [*args, "-o", str(tmp_path)])
     assert result.stdout == (
         "passed  LegoRecipe::Plant::Gripper: the gripper closes and opens (5 steps)\n"
-        "1 of 1 scenarios passed\n"
+        "1 of 1 scenario passed\n"
     )
     assert result.exit_code == 0
     assert 'failures="0"' in report.read_text()

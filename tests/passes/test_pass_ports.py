@@ -308,8 +308,8 @@ FIRST_PORTS = ", ".join(f"'C::p{n}'" for n in range(8))
 def test_ports_of_plants_without_a_type_are_reported_once_for_each_file():
     assert run_on_plants('  Port p{n} "p{n}" direction="in" @{file}.aml:{n}\n') == (
         [
-            f"SM122: 10 of 11 ports of 'a.aml' have no type: {FIRST_PORTS} and 2 more",
-            "SM122: 1 of 1 ports of 'b.aml' have no type: 'C::p10'",
+            f"SM122: 10 of 11 ports of 'a.aml' without type: {FIRST_PORTS} and 2 more",
+            "SM122: 1 of 1 port of 'b.aml' without type: 'C::p10'",
         ],
         ["p0", "p10"],
     )
@@ -318,7 +318,7 @@ def test_ports_of_plants_without_a_type_are_reported_once_for_each_file():
 def test_ports_of_plants_without_a_direction_are_reported_if_another_port_has_one():
     port = '  Port p{n} "p{n}" @{file}.aml:{n}\n    -> typed-by c\n'
     assert run_on_plants(port) == (
-        [f"SM121: 10 of 11 ports of 'a.aml' have no direction: {FIRST_PORTS} and 2 more"],
+        [f"SM121: 10 of 11 ports of 'a.aml' without direction: {FIRST_PORTS} and 2 more"],
         ["p0"],
     )
 

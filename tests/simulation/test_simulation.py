@@ -72,7 +72,7 @@ def test_a_scenario_that_follows_the_diagram_passes():
     assert list(sink) == []
     assert report.passed
     assert report.as_text() == (
-        "passed  Gate.pass: a wide gate pulls (4 steps)\n1 of 1 scenarios passed\n"
+        "passed  Gate.pass: a wide gate pulls (4 steps)\n1 of 1 scenario passed\n"
     )
 
 
@@ -88,7 +88,7 @@ def test_the_first_difference_is_reported_with_its_line():
     assert report.as_text() == (
         "FAILED  Gate.pass: a wide gate pulls\n"
         "        s.yaml:10: step 4: run_pull is true, expected false\n"
-        "0 of 1 scenarios passed\n"
+        "0 of 1 scenario passed\n"
     )
 
 

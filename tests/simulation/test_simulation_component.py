@@ -371,7 +371,7 @@ def test_an_expectation_is_undecided_if_not_all_runs_are_followed(tmp_path):
     scenario = "component: P::Cell\nsteps:\n  - expect: {held: true}\n"
     report = run_scenarios(compile_model(path).graph, Source("s.yaml", scenario.encode()), sink)
     assert [diagnostic.rule.code for diagnostic in sink] == ["SM578"]
-    assert report.as_text() == "not decided P::Cell: scenario 1\n0 of 1 scenarios passed\n"
+    assert report.as_text() == "not decided P::Cell: scenario 1\n0 of 1 scenario passed\n"
     assert "the scenario is not decided" in report.as_junit()
 
 

@@ -226,8 +226,8 @@ def _summarise_requirements(result: "CheckedContract") -> str:
     if result.is_implemented is False:
         return ", violates its requirements"
     if "not-decided" in answers:
-        count = answers.count("not-decided")
-        return f", {count} of {len(answers)} requirements not decided"
+        undecided = answers.count("not-decided")
+        return f", {undecided} of {count(len(answers), 'requirement')} not decided"
     ranges = dict.fromkeys(text for item in result.requirements for text in item.basis.ranges)
     within = Basis(tuple(ranges)).range_text
     needed = (ending for requirement in result.requirements for ending in requirement.needed)

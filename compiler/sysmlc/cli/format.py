@@ -11,6 +11,7 @@ import click
 from msgspec import Struct
 
 from sysmlc.cli import terminal
+from sysmlc.support.counts import count
 from sysmlc.support.escapes import escape_undecodable
 
 if TYPE_CHECKING:
@@ -225,7 +226,7 @@ def _write(texts: list[_Text]) -> None:
     files = [text for text in texts if text.path is not None]
     changed = sum(text.is_changed for text in files)
     if files:
-        click.echo(f"{changed} of {len(files)} files reformatted", err=True)
+        click.echo(f"{changed} of {count(len(files), 'file')} reformatted", err=True)
 
 
 def _replace(target: Path, name: str, content: str) -> None:

@@ -25,6 +25,7 @@ from sysmlc.ir.verify import verify
 from sysmlc.overlay import SUFFIX
 from sysmlc.passes.pipeline import Pass
 from sysmlc.sources import Source, SourceError
+from sysmlc.support.counts import count as count_nouns
 from sysmlc.support.output import Artefact, Output
 from sysmlc.support.suggestions import did_you_mean
 
@@ -325,7 +326,11 @@ class _CompilationRun:
             if count:
                 subject = Subject(file.file, place=Place(file.file, ordinal=0))
                 self._sink.report(
-                    faults.UNSUPPORTED, subject, number=count, file=file.file, all=file.elements
+                    faults.UNSUPPORTED,
+                    subject,
+                    number=count,
+                    file=file.file,
+                    all=count_nouns(file.elements, "element"),
                 )
 
     def _list_diagnostics(self) -> tuple[Diagnostic, ...]:

@@ -67,7 +67,7 @@ UNSUPPORTED = rule(
     "SM174",
     "unsupported-content",
     Severity.ERROR,
-    "{number} of the {all} elements of '{file}' are not supported",
+    "not supported: {number} of {all} of '{file}'",
     help="remove them from the model, or compile without --strict-input",
 )
 SKIPPED = rule(

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from sysmlc.diagnostics import Place, Severity, Sink, Subject, rule
 from sysmlc.driver.inputs import Recognised
 from sysmlc.sources import Source
+from sysmlc.support.counts import count
 
 if TYPE_CHECKING:
     from sysmlc.sources.user_schemas import Schema, Schemas, Violation
@@ -31,7 +32,7 @@ MORE = rule(
     "SM188",
     "more-schema-violations",
     Severity.WARNING,
-    "'{file}' does not conform to {schema} in {count} more places",
+    "'{file}' does not conform to {schema} in {count}",
 )
 
 
@@ -65,4 +66,10 @@ def _report_violations(
         sink.report(VIOLATION, subject, notes=(), help="", schema=schema.name, **facts)
     hidden = len(violations) - _MOST
     if hidden > 0:
-        sink.report(MORE, _make_subject(source), file=source.name, schema=schema.name, count=hidden)
+        sink.report(
+            MORE,
+            _make_subject(source),
+            file=source.name,
+            schema=schema.name,
+            count=count(hidden, "more place"),
+        )

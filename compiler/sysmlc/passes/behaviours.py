@@ -28,7 +28,7 @@ CALL_ARGUMENTS = rule(
     "SM401",
     "call-arguments",
     Severity.WARNING,
-    "action '{action}' has {pins} pins, '{called}' has {parameters} parameters",
+    "pins of action '{action}': {pins}; parameters of '{called}': {parameters}",
     help="let the modelling tool synchronise the pins of the action",
 )
 NO_BEHAVIOR = rule(

@@ -8,6 +8,7 @@ from msgspec import Struct
 from sysmlc.diagnostics import Rule, Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.ir.query import interactions
+from sysmlc.support.counts import count as count_nouns
 
 MESSAGE_WITHOUT_LIFELINE = rule(
     "SM440",
@@ -20,7 +21,7 @@ OPERANDS = rule(
     "SM441",
     "wrong-number-of-operands",
     Severity.WARNING,
-    "fragment '{operator}' of '{interaction}' has {count} operands, but {wanted}",
+    "fragment '{operator}' of '{interaction}' has {count}, but {wanted}",
     help="move the contents into one operand, or choose another operator",
 )
 ACROSS_OPERANDS = rule(
@@ -201,7 +202,7 @@ def _check_operands(graph: Graph, sink: Sink, interaction: Element, fragment: El
             graph.subject(fragment),
             operator=fragment.subkind,
             interaction=graph.qualified_name(interaction),
-            count=count,
+            count=count_nouns(count, "operand"),
             wanted="it has exactly one" if is_single else "it has at least one",
         )
 

@@ -31,6 +31,7 @@ from sysmlc.ir.query import (
     tag,
     type_of,
 )
+from sysmlc.support.counts import count
 
 UNDIRECTED_PORTS = rule(
     "SM300",
@@ -64,14 +65,14 @@ UNDIRECTED_PLANT_PORTS = rule(
     "SM121",
     "undirected-plant-ports",
     Severity.INFO,
-    "{count} of {all} ports of '{file}' have no direction: {ports}",
+    "{count} of {all} of '{file}' without direction: {ports}",
     help="give the interfaces an attribute Direction, or say in an overlay what flows",
 )
 UNTYPED_PLANT_PORTS = rule(
     "SM122",
     "untyped-plant-ports",
     Severity.WARNING,
-    "{count} of {all} ports of '{file}' have no type: {ports}",
+    "{count} of {all} of '{file}' without type: {ports}",
     help="let the interfaces refer to interface classes",
 )
 
@@ -394,7 +395,7 @@ def _report_by_file(
             rule,
             graph.subject(reported[0]),
             count=len(reported),
-            all=totals[file],
+            all=count(totals[file], "port"),
             file=file,
             ports=", ".join(names) + more,
         )

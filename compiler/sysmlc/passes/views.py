@@ -9,12 +9,13 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir.element import derived_id
 from sysmlc.ir.pending import Drawing
+from sysmlc.support.counts import count
 
 MISSING = rule(
     "SM162",
     "diagram-shows-unknown",
     Severity.INFO,
-    "{missing} of the {all} elements that diagram '{name}' shows are in no file of the unit",
+    "diagram '{name}' shows {missing} of {all} from no file of the unit",
     help="give the other project as a further input",
 )
 
@@ -135,6 +136,6 @@ def _report_missing(
             MISSING,
             graph.subject(view),
             missing=missing,
-            all=len(shown) - relation_count,
+            all=count(len(shown) - relation_count, "element"),
             name=view.name or drawing.type,
         )

@@ -8,6 +8,7 @@ from sysmlc.recipe.durations import count_rounds, find_unbounded_loops
 from sysmlc.recipe.flow import STEPS, find_cycles, find_reachable, list_forward_edges
 from sysmlc.recipe.model import FlowGraph, Model, Node
 from sysmlc.recipe.tables import Finding, Tables
+from sysmlc.support.counts import count
 
 NO_WAY = rule(
     "SM603",
@@ -162,7 +163,7 @@ ROUNDS = rule(
     "SM649",
     "loop-bound-too-small",
     Severity.WARNING,
-    "the guards let the loop at '{loop}' run up to {rounds} times, but maxIterations is {bound}",
+    "the guards let the loop at '{loop}' run up to {rounds}, but maxIterations is {bound}",
     help="correct maxIterations of «Loop», or the guards",
 )
 
@@ -174,5 +175,9 @@ def check_rounds(model: Model, tables: Tables) -> Iterator[Finding]:
             if node.kind == "loop" and node.max_iterations is not None:
                 rounds = count_rounds(graph, node)
                 if rounds is not None and rounds > node.max_iterations:
-                    facts = {"loop": node.id, "rounds": rounds, "bound": node.max_iterations}
+                    facts = {
+                        "loop": node.id,
+                        "rounds": count(rounds, "time"),
+                        "bound": node.max_iterations,
+                    }
                     yield Finding(ROUNDS, node.element, facts)

@@ -21,6 +21,7 @@ from sysmlc.logic.formula import Formula, Op
 from sysmlc.robots import contract_terms as terms
 from sysmlc.robots.schedule import START, TravelTimes
 from sysmlc.robots.study import Robot, Study, Target
+from sysmlc.support.counts import count as count_nouns
 
 NONE, START_WORD = "none", "start"
 TIMER = "timer"
@@ -123,7 +124,8 @@ def _limit_travel_time(
         stays_at_origin,
         f.eq(f.prime(count), f.Apply(Op.ADD, (count, f.const(1)))),
     )
-    text = f"'{robot.name}' gets from '{origin}' to '{name}' in {max_steps} steps at most."
+    steps = count_nouns(max_steps, "step")
+    text = f"'{robot.name}' gets from '{origin}' to '{name}' in {steps} at most."
     return terms.safety_conjunct(
         f.implies(under_way, f.either(arrives, continues)), robot.origin, text
     )
@@ -210,6 +212,6 @@ def _meet_deadlines(study: Study) -> Iterator[Conjunct]:
             text = f"'{target.name}' is reached."
             yield terms.liveness_conjunct(is_done, target.origin, text)
             continue
-        text = f"'{target.name}' is reached within {limit} steps."
+        text = f"'{target.name}' is reached within {count_nouns(limit, 'step')}."
         is_late = f.compare(Op.GE, f.var(TIMER), f.const(limit))
         yield terms.safety_conjunct(f.implies(is_late, is_done), target.origin, text)

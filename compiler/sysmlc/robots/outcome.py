@@ -330,7 +330,8 @@ def _report_failure(outcome: Outcome, place: Place, sink: Sink) -> None:
         name = study.targets[late_target].name
         reason = f"'{name}' is not reached within {count(last_tried.validation.steps, 'step')}"
         if last_tried.validation.is_slow:
-            reason = f"a robot that is sent to '{name}' takes more than {study.within} steps"
+            steps = count(study.within or 0, "step")
+            reason = f"a robot that is sent to '{name}' takes more than {steps}"
     subject = place(study.targets[late_target].origin if late_target is not None else study.origin)
     notes = tuple(describe_moments(study, outcome.run))
     sink.report(NOT_VALIDATED, subject, notes=notes, floor=study.component, reason=reason)

@@ -66,7 +66,9 @@ class Report(Struct, frozen=True):
         """Return one line for each scenario, and the number that passed."""
         lines = [line for result in self.results for line in self._iter_result_lines(result)]
         passed = sum(result.passed for result in self.results)
-        return "\n".join([*lines, f"{passed} of {len(self.results)} scenarios passed"]) + "\n"
+        return (
+            "\n".join([*lines, f"{passed} of {count(len(self.results), 'scenario')} passed"]) + "\n"
+        )
 
     def _iter_result_lines(self, result: Result) -> Iterator[str]:
         title = escape_invisible(f"{result.component}: {result.name}")

@@ -127,7 +127,7 @@ def test_elements_without_a_place_in_the_notation_are_reported():
     _, diagnostics = emit_authored(graph)
     (diagnostic,) = diagnostics
     assert diagnostic.rule.code == "SM703"
-    assert diagnostic.message == "1 of the 2 elements that diagram 'Use' shows are not drawn: Pump"
+    assert diagnostic.message == "diagram 'Use' is drawn without 1 of 2 elements: Pump"
 
 
 def test_a_use_case_diagram_has_no_omitted_comment_and_is_not_empty():

@@ -221,8 +221,8 @@ def test_a_type_that_is_not_exported_has_the_kind_that_mtip_states(type, kind):
     ("default", "types", "findings"),
     [
         ("false", ["Boolean"], []),
-        ("", [], ["SM181 1 elements of type 'PrimitiveValueType' not read"]),
-        ("1", [], ["SM181 1 elements of type 'PrimitiveValueType' not read"]),
+        ("", [], ["SM181 1 element of type 'PrimitiveValueType' not read"]),
+        ("1", [], ["SM181 1 element of type 'PrimitiveValueType' not read"]),
     ],
 )
 def test_a_type_that_mtip_does_not_name_is_boolean_if_the_default_is(default, types, findings):

@@ -12,6 +12,7 @@ from sysmlc.backends.aml.rules import EMPTY, ILLEGAL_CHARACTERS, Losses
 from sysmlc.backends.base import EmitOptions, name_compile_unit
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.support.counts import count
 from sysmlc.support.output import Output, assign_file_names, fold_path
 
 FOLDER = "aml"
@@ -59,12 +60,12 @@ def write_files(graph: Graph, unit: str, sink: Sink) -> dict[str, str]:
         return {}
     texts, replaced = {}, 0
     for file in context.files:
-        texts[file.path], count = print_document(file.root)
-        replaced += count
+        texts[file.path], number = print_document(file.root)
+        replaced += number
     context.losses.report(sink)
     if replaced:
         subject = next((graph.subject(root) for root in graph.roots()), Subject())
-        sink.report(ILLEGAL_CHARACTERS, subject, count=replaced)
+        sink.report(ILLEGAL_CHARACTERS, subject, count=count(replaced, "character"))
     return texts
 
 

@@ -42,7 +42,7 @@ ILLEGAL_CHARACTERS = rule(
     "SM745",
     "caex-illegal-character",
     Severity.WARNING,
-    "{count} characters that XML does not allow were replaced in the saved plant",
+    "{count} not allowed in XML, replaced in the saved plant",
 )
 ADDED = rule(
     "SM746",

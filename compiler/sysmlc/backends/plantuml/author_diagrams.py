@@ -42,6 +42,7 @@ from sysmlc.backends.plantuml.views import (
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import CLASSIFIERS, is_requirement
+from sysmlc.support.counts import count
 from sysmlc.support.plantuml_text import escape_line, wrap_lines
 
 NOT_DRAWN = rule(
@@ -55,7 +56,7 @@ LEFT_OUT = rule(
     "SM703",
     "left-out-of-author-diagram",
     Severity.INFO,
-    "{count} of the {all} elements that diagram '{name}' shows are not drawn: {names}",
+    "diagram '{name}' is drawn without {count} of {all}: {names}",
     help="the element is still in the graph (--emit graph) and in the other outputs",
 )
 
@@ -219,7 +220,7 @@ def _report_left_out(selection: Selection, diagram: Diagram, sink: Sink) -> None
             LEFT_OUT,
             selection.graph.subject(selection.view),
             count=len(missing),
-            all=len(selection.shown),
+            all=count(len(selection.shown), "element"),
             name=selection.view.name,
             names=", ".join(names),
         )

@@ -28,6 +28,7 @@ from sysmlc.backends.uml.stereotypes import StereotypeWriter, write_profiles
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.support import resources
+from sysmlc.support.counts import count
 from sysmlc.support.output import Output, assign_file_names
 
 _NAMESPACES = {
@@ -105,7 +106,7 @@ def write_document(graph: Graph, sink: Sink) -> str:
     losses.report(sink)
     if replaced:
         subject = next((graph.subject(root) for root in graph.roots()), Subject())
-        sink.report(ILLEGAL_CHARACTERS, subject, count=replaced)
+        sink.report(ILLEGAL_CHARACTERS, subject, count=count(replaced, "character"))
     return text
 
 

@@ -12,6 +12,7 @@ from sysmlc.diagnostics import Rule, Severity, Sink, rule
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir.query.names import CAEX_ID, find_caex_id
 from sysmlc.ir.round_trip import Record, StoredElement, encode_record
+from sysmlc.support.counts import count
 
 UNSUPPORTED_KIND = rule(
     "SM720",
@@ -50,20 +51,19 @@ ILLEGAL_CHARACTERS = rule(
     "SM725",
     "uml-illegal-character",
     Severity.WARNING,
-    "{count} characters that XML does not allow were replaced in the saved model",
+    "{count} not allowed in XML, replaced in the saved model",
 )
 STORED_FACTS = rule(
     "SM726",
     "uml-kept",
     Severity.INFO,
-    "UML cannot express {count} facts of the plant: a comment preserves them for the "
-    "conversion back",
+    "UML cannot express {count} of the plant: a comment preserves this for the conversion back",
 )
 RESPELT_ID = rule(
     "SM747",
     "uml-value-names-respelt-id",
     Severity.WARNING,
-    "{count} values refer to elements by IDs that are not valid XML names: the saved "
+    "values with the ID of an element that is no valid XML name ({count}): the saved "
     "elements have other ids",
     help=(
         "let the plant's tool assign IDs that start with a letter, or follow these "
@@ -233,5 +233,10 @@ class Losses(LossCounter):
             phrases = [loss.phrase.format(**facts) for loss, _, facts in stored]
             notes = tuple(text.replace(" omitted from the saved model", "") for text in phrases)
             total = sum(int(str(facts["count"])) for _, _, facts in stored)
-            sink.report(STORED_FACTS, self.graph.subject(stored[0][1]), notes=notes, count=total)
+            sink.report(
+                STORED_FACTS,
+                self.graph.subject(stored[0][1]),
+                notes=notes,
+                count=count(total, "fact"),
+            )
         super().report(sink)

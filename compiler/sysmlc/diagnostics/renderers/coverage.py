@@ -23,6 +23,7 @@ from sysmlc.diagnostics.diagnostic import Diagnostic, Place, Subject
 from sysmlc.diagnostics.renderers.json_documents import render_sarif as render_findings_as_sarif
 from sysmlc.diagnostics.renderers.report import Finding, Report
 from sysmlc.diagnostics.renderers.text import paint_text
+from sysmlc.support.counts import count
 from sysmlc.support.escapes import escape_invisible
 from sysmlc.support.output import encode_json
 
@@ -52,7 +53,8 @@ def render_text(
 def _format_headline(total: Mapping[str, int]) -> str:
     covered, meaningful = count_covered(total), count_meaningful(total)
     share = _format_percent(compute_covered_permille(total))
-    return f"{share} % covered: {covered:,} of {meaningful:,} elements that mean something"
+    elements = count(meaningful, "element")
+    return f"{share} % covered: {covered:,} of {elements} with a meaning"
 
 
 def _format_percent(permille: int) -> str:

@@ -15,6 +15,7 @@ from sysmlc.frontends.caex.vocabulary import CLASS_TAGS, LIBRARIES
 from sysmlc.sources import Source
 from sysmlc.sources.caex_vocabulary import ATTRIBUTES, ORDER, TEXTS
 from sysmlc.sources.xml import SEPARATOR, make_parser, parse
+from sysmlc.support.counts import count as count_nouns
 from sysmlc.support.suggestions import did_you_mean
 
 UNKNOWN_ATTRIBUTE = rule(
@@ -231,7 +232,7 @@ def report_order(context: Context, document: Document) -> None:
     ]
     if misplaced:
         node, before = misplaced[0]
-        count = "1 place" if len(misplaced) == 1 else f"{len(misplaced)} places"
+        count = count_nouns(len(misplaced), "place")
         name = qualified_name(node.parent or node) or document.name
         facts = {"tag": node.tag, "element": name, "before": before.tag, "count": count}
         context.report(rules.ELEMENT_ORDER, document, node, **facts)

@@ -24,6 +24,7 @@ from sysmlc.frontends.caex.vocabulary import (
 )
 from sysmlc.ir import Edge
 from sysmlc.sources import Source
+from sysmlc.support.counts import count as count_nouns
 
 
 def report_coverage(context: Context, coverage: Coverage, sources: Sequence[Source]) -> None:
@@ -83,7 +84,7 @@ def _report_unread(context: Context, document: Document) -> None:
         if verdict is None:
             nodes_by_tag.setdefault(document.tags[row], []).append(document.node(row))
     for tag, nodes in nodes_by_tag.items():
-        count = "1 element" if len(nodes) == 1 else f"{len(nodes)} elements"
+        count = count_nouns(len(nodes), "element")
         context.report(rules.UNSUPPORTED, document, nodes[0], count=count, tag=tag)
 
 

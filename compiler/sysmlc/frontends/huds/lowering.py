@@ -17,6 +17,7 @@ from sysmlc.frontends.huds.relations import (
 from sysmlc.ir import Edge, Element, Graph, Kind, list_items
 from sysmlc.ir.element import derived_id
 from sysmlc.sources import DEFAULT_LIMITS, Fault, Source, SourceError
+from sysmlc.support.counts import count
 
 MALFORMED = rule(
     "SM185",
@@ -29,21 +30,21 @@ UNSUPPORTED = rule(
     "SM181",
     "unsupported-mtip-type",
     Severity.WARNING,
-    "{count} elements of type '{type}' not read",
+    "{count} of type '{type}' not read",
     help="save the model as .mdzip or .xml in Cameo: these are read more completely",
 )
 OWNERLESS = rule(
     "SM182",
     "mtip-owner-not-read",
     Severity.WARNING,
-    "{count} elements of type '{type}' not read, because their owners are not",
+    "{count} of type '{type}' not read: the owner is not read either",
     help="save the model as .mdzip or .xml in Cameo: these are read more completely",
 )
 LOOSE_END = rule(
     "SM184",
     "mtip-end-not-read",
     Severity.WARNING,
-    "{count} elements of type '{type}' lead from or to nodes that are not read",
+    "{count} of type '{type}' with an end that is not read",
     help="save the model as .mdzip or .xml in Cameo: these are read more completely",
 )
 REPEATED = rule(
@@ -251,7 +252,7 @@ class FileLowering:
             sink.report(
                 loss_rules[code],
                 Subject(name, place=Place(self.file, records[0].ordinal)),
-                count=len(records),
+                count=count(len(records), "element"),
                 type=name,
                 id=name,
                 file=self.file,

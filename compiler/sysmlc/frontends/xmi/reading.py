@@ -23,6 +23,7 @@ from sysmlc.frontends.xmi.unit import Unit
 from sysmlc.frontends.xmi.value_features import set_multiplicities
 from sysmlc.ir import Graph
 from sysmlc.sources import Source
+from sysmlc.support.counts import count
 from sysmlc.support.interpreter import pause_garbage_collection
 
 
@@ -164,7 +165,7 @@ def _subject(context: Context, row: int) -> Subject:
 
 
 def _format_count(number: int) -> str:
-    return "1 element" if number == 1 else f"{number} elements"
+    return count(number, "element")
 
 
 # -- losses ----------------------------------------------------------------------------------------

@@ -9,12 +9,13 @@ from sysmlc.language.names import Model
 from sysmlc.language.names.expression_results import find_named_element
 from sysmlc.language.names.implied import find_own_features
 from sysmlc.language.tree import Node, list_arguments
+from sysmlc.support.counts import count
 
 TOO_MANY = rule(
     "SM248",
     "extra-argument",
     Severity.WARNING,
-    "'{called}' takes {takes}, but {given} values are given",
+    "'{called}' takes {takes}, not {given}",
     help="remove the argument, or give the definition another parameter",
 )
 NO_PARAMETER = rule(
@@ -48,8 +49,12 @@ def check_arguments(model: Model, node: Node) -> Iterator[Finding]:
         parameter for parameter in parameters if _direction_of(parameter) in _INPUT_DIRECTIONS
     ]
     if len(arguments) > len(inputs):
-        expected = {0: "no value", 1: "one value"}.get(len(inputs), f"{len(inputs)} values")
-        facts = {"called": name_of(model, called), "takes": expected, "given": str(len(arguments))}
+        expected = {0: "no value", 1: "one value"}.get(len(inputs), count(len(inputs), "value"))
+        facts = {
+            "called": name_of(model, called),
+            "takes": expected,
+            "given": count(len(arguments), "value"),
+        }
         yield Finding(TOO_MANY, arguments[len(inputs)].start, facts)
 
 

@@ -16,6 +16,7 @@ from sysmlc.language.names import Model
 from sysmlc.language.names.generals import GENERALIZATION_KINDS
 from sysmlc.language.names.implied import find_owning_type
 from sysmlc.language.tree import Node
+from sysmlc.support.counts import count
 
 NONUNIQUE = rule(
     "SM250",
@@ -234,15 +235,14 @@ MORE = rule(
     "SM281",
     "more-than-general",
     Severity.WARNING,
-    "'{name}' may have {own} values, but '{general}' has at most {most}",
+    "'{name}' may have {own}, but '{general}' has at most {most}",
     help="lower the bound, or raise that of '{general}'",
 )
 FEWER = rule(
     "SM282",
     "fewer-than-redefined",
     Severity.WARNING,
-    "'{name}' may have only {own} values, but '{general}', which it redefines, requires "
-    "at least {least}",
+    "'{name}' may have only {own}, but '{general}', which it redefines, requires at least {least}",
     help="raise the bound, or lower that of '{general}'",
 )
 
@@ -271,13 +271,13 @@ def check_bounds(model: Model, node: Node) -> Iterator[Finding]:
             start = relation.reference.start
             if own_bounds.most > general_bounds.most:
                 most = {
-                    "own": _describe_number(own_bounds.most),
+                    "own": _describe_values(own_bounds.most),
                     "most": _describe_number(general_bounds.most),
                 }
                 yield Finding(MORE, start, {**names, **most})
             if relation.kind == "Redefinition" and own_bounds.least < general_bounds.least:
                 least = {
-                    "own": _describe_number(own_bounds.least),
+                    "own": _describe_values(own_bounds.least),
                     "least": _describe_number(general_bounds.least),
                 }
                 yield Finding(FEWER, start, {**names, **least})
@@ -311,6 +311,10 @@ def _evaluate_bound(model: Model, bound: Node) -> float | None:
         return inf
     value = evaluate_constant(model, bound)
     return value if isinstance(value, int) and not isinstance(value, bool) else None
+
+
+def _describe_values(number: float) -> str:
+    return "any number of values" if number == inf else count(int(number), "value")
 
 
 def _describe_number(number: float) -> str:

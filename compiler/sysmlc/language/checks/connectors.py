@@ -10,6 +10,7 @@ from sysmlc.language.metaclasses import USAGES, is_a, is_end, kinds_of
 from sysmlc.language.names import Model
 from sysmlc.language.names.implied import find_own_features, find_owning_type
 from sysmlc.language.tree import Node, Reference, Relation
+from sysmlc.support.counts import count as count_nouns
 
 END_TYPE = rule(
     "SM269",
@@ -87,8 +88,8 @@ def check_related(model: Model, node: Node) -> Iterator[Finding]:
     ends += model.lookup.features_of_role(node, "end")
     count = len({end for end in ends if _is_related(end)})
     if count < 2:
-        facts = {"name": name_of(model, node), "count": str(count)}
-        yield Finding(TOO_FEW, node.start, {**facts, "s": "" if count == 1 else "s"})
+        facts = {"name": name_of(model, node), "count": count_nouns(count, "related element")}
+        yield Finding(TOO_FEW, node.start, facts)
 
 
 def _is_related(end: Node) -> bool:

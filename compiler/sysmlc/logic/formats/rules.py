@@ -98,6 +98,6 @@ VARIABLES_NOT_RECORDED = rule(
     "SM594",
     "variables-not-recorded",
     Severity.WARNING,
-    "'{file}' has no values for {names}: {skipped} of {total} checks of '{component}' are skipped",
+    "'{file}' has no values for {names}: {skipped} of {total} of '{component}' skipped",
     help="record these variables, too",
 )

@@ -33,6 +33,7 @@ from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
 from sysmlc.logic.infix import NUMBER, Term, kind_of
 from sysmlc.logic.reduction.history import History
 from sysmlc.logic.syntax import Cursor, FormulaError, Token, tokenize
+from sysmlc.support.counts import count
 
 _CLASSES = {
     **dict.fromkeys(("G", "alw", "always", "trans"), Class.SAFETY),
@@ -320,7 +321,7 @@ def _bind(
 ) -> tuple[dict[str, Term], dict[str, Array]]:
     """Return the arguments of a use by the names of the parameters. Raises FormulaError."""
     if len(parameters) != len(arguments):
-        reason = f"'{token.text}' takes {len(parameters)} arguments, not {len(arguments)}"
+        reason = f"'{token.text}' takes {count(len(parameters), 'argument')}, not {len(arguments)}"
         raise FormulaError(reason, token.offset)
     terms: dict[str, Term] = {}
     arrays: dict[str, Array] = {}

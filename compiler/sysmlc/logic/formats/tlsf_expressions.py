@@ -17,6 +17,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.formula import Apply, Formula, Op, Var
 from sysmlc.logic.infix import MAX_DEPTH
 from sysmlc.logic.syntax import Cursor, FormulaError
+from sysmlc.support.counts import count
 
 INFIX = {
     "R": (1, "left"),
@@ -270,7 +271,7 @@ class Evaluator:
         definition = self._definitions[name]
         expected = len(definition.parameters)
         if len(arguments) != expected:
-            reason = f"'{name}' takes {expected} arguments, not {len(arguments)}"
+            reason = f"'{name}' takes {count(expected, 'argument')}, not {len(arguments)}"
             raise FormulaError(reason, tree.offset)
         self._call_depth += 1
         if self._call_depth > MAX_CALL_DEPTH:

@@ -27,6 +27,7 @@ from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.formal_texts import is_formal
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.simplification import simplify_constant
+from sysmlc.support.counts import count
 
 NOT_FORMAL = rule(
     "SM505",
@@ -271,9 +272,7 @@ class _InformalConditions:
             service, constraint, reason = conditions[0]
             others = len(conditions) - 1
             noun = "condition" if is_language else "service"
-            further = (
-                f"; the same holds for {others} more {noun}{'s' * (others > 1)}" if others else ""
-            )
+            further = f"; the same holds for {count(others, f'more {noun}')}" if others else ""
             sink.report(
                 NOT_FORMAL,
                 graph.subject(constraint),
