@@ -1,5 +1,7 @@
 """Contracts of SysML v1 models in XMI: verdicts and synthesised controllers."""
 
+import json
+
 import pytest
 
 pytestmark = pytest.mark.usefixtures("all_passes")
@@ -197,3 +199,23 @@ def test_a_requirement_that_cannot_be_read_is_an_error(workspace, rule, code):
     assert result.stdout.startswith("Plant::Door: realizable")
     assert result.exit_code == code
     assert ("error[SM522" in result.stderr) is (code == 1)
+
+
+@pytest.mark.parametrize("language", ["English", "Natural language", "OCL", "Requirement", ""])
+@pytest.mark.parametrize(
+    ("rule", "verdict"),
+    [
+        ("state = Closed always holds", "broken"),
+        ("state = OpenedUnit responds to event = open", "holds"),
+        ("event = open precedes state = OpenedUnit", "holds"),
+        ("After event = open, not (state = Closed) eventually holds.", "holds"),
+        ("The door always holds its state.", "not-decided"),
+    ],
+)
+def test_a_sentence_is_read_under_any_name_of_a_language(workspace, rule, verdict, language):
+    model = MODEL.format(DOOR.replace("{rule}", rule))
+    workspace.write("plant.uml", model.replace("<language>LTL<", f"<language>{language}<"))
+    result = workspace.sysmlc("contracts", "check", "plant.uml", "--format", "json")
+    (requirement,) = json.loads(result.stdout)["requirements"]
+    assert requirement["verdict"] == verdict
+    assert result.exit_code == (verdict == "broken")

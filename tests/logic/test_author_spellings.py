@@ -118,12 +118,58 @@ def test_prose_is_no_sentence(text):
         ("never p", "write 'G !(P)' (column 1)"),
         ("B", "did you mean 'state=B'? (column 1)"),
         ("p ? q : p", "write '(P -> Q) & (!P -> R)' for 'P ? Q : R' (column 3)"),
+        ("whenever p, q", "write 'G (P -> Q)' for 'whenever P, Q' (column 1)"),
+        ("p only if q", "write 'P -> Q' for 'P only if Q' (column 3)"),
+        ("p unless q", "write 'P W Q' for 'P unless Q' (column 3)"),
+        ("p before q", "write 'P precedes Q' with the language 'pattern' (column 3)"),
+        ("p after q", "write 'after Q, P always holds' with the language 'pattern' (column 3)"),
+        ("n between 1 and 3", "write 'a <= x & x <= b' (column 3)"),
+        ("infinitely often p", "write 'G F P' (column 1)"),
+        ("G (in(A) -> p)", "write 'state=P' for an active state (column 4)"),
+        ("G (done(q) -> p)", "write 'finished(P)' where an action ends (column 4)"),
+        ("G (active(q) -> p)", "write 'running(P)' while an action runs (column 4)"),
+        ("G (received(Go) -> p)", "write 'event=P' for an event that occurs (column 4)"),
     ],
 )
 def test_another_form_is_refused_with_the_nearest_one_that_is_read(text, advice):
     with pytest.raises(FormulaError) as caught:
         read(text)
     assert advice in describe_error(caught.value, text)
+
+
+@pytest.mark.parametrize(
+    ("text", "advice"),
+    [
+        ("p is always true", "write 'P always holds' (column 3)"),
+        ("p is never true", "write 'P never holds' (column 3)"),
+        ("p follows q", "write 'P responds to Q' (column 3)"),
+    ],
+)
+def test_a_sentence_in_other_words_is_refused_with_the_nearest_one(text, advice):
+    with pytest.raises(FormulaError) as caught:
+        read(text, "pattern")
+    assert advice in describe_error(caught.value, text)
+
+
+@pytest.mark.parametrize(
+    ("text", "language"),
+    [
+        ("G (p -> q)", "LTL"),
+        ("p W q", "LTL"),
+        ("1 <= n & n <= 3", "LTL"),
+        ("G F p", "LTL"),
+        ("p != q", "LTL"),
+        ("(p -> q) & (!p -> state=A)", "LTL"),
+        ("p precedes q", "pattern"),
+        ("after q, p always holds", "pattern"),
+        ("p never holds", "pattern"),
+        ("p responds to q", "pattern"),
+        ("always if p then q holds within 5 steps", "pattern"),
+        ("In A mode the Press shall always satisfy p", "FRET"),
+    ],
+)
+def test_the_forms_that_advice_names_are_read(text, language):
+    read(text, language)
 
 
 def test_a_duration_of_too_many_steps_names_the_step():

@@ -3,7 +3,7 @@
 A contract has variables with owners and domains, and classified conjuncts.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from enum import StrEnum
 
 from msgspec import Struct
@@ -60,6 +60,8 @@ class Variable(Struct, frozen=True):
     """Whether the compiler assumes the range, because the model states none (SM410)."""
     condition: str = ""
     """The text of the condition without formula that the input stands for (SM411), if it does."""
+    wording: str = ""
+    """The name in formulas of the author, such as ``running(pick)``, if it is another one."""
 
 
 def equals(variable: Variable, value: Formula, *, is_next: bool = False) -> Formula:
@@ -141,6 +143,11 @@ class Contract(Struct, frozen=True):
     assumptions: tuple[Conjunct, ...]
     guarantees: tuple[Conjunct, ...]
 
+    @property
+    def wordings(self) -> dict[str, str]:
+        """The names in formulas of the author, by variable, where they differ."""
+        return {variable.name: variable.wording for variable in self.variables if variable.wording}
+
     def list_assumptions(self, viewpoint: str) -> tuple[Conjunct, ...]:
         """Return the assumptions of a viewpoint: its own and those that are common to all."""
         return tuple(item for item in self.assumptions if item.viewpoint in ("", viewpoint))
@@ -155,6 +162,16 @@ def mark_derived(contract: Contract) -> Contract:
     return replace(
         contract, assumptions=mark(contract.assumptions), guarantees=mark(contract.guarantees)
     )
+
+
+def name_variables(contract: Contract, wordings: Mapping[str, str]) -> Contract:
+    """Return the contract with the names in formulas of the author, by variable."""
+    variables = []
+    for variable in contract.variables:
+        wording = wordings.get(variable.name, variable.wording)
+        wording = "" if wording == variable.name else wording
+        variables.append(replace(variable, wording=wording))
+    return replace(contract, variables=tuple(variables))
 
 
 class Part(Struct, frozen=True):

@@ -12,7 +12,7 @@ from msgspec.structs import replace
 
 from sysmlc.logic import formula as f
 from sysmlc.logic import property_patterns as patterns
-from sysmlc.logic.advice import suggest_form
+from sysmlc.logic.advice import is_foreign_call, suggest_form
 from sysmlc.logic.contract import Domain
 from sysmlc.logic.formula import PAST, Formula, Op, has_future, has_primes
 from sysmlc.logic.infix import FormulaReader, Term
@@ -40,6 +40,9 @@ _ENDING = re.compile(
     re.IGNORECASE,
 )
 """The end of such a sentence."""
+_PATTERN_WORD = re.compile(
+    r"\b(always|never|eventually|holds|held|responds|precedes)\b", re.IGNORECASE
+)
 _REQUIREMENT = re.compile(
     r"\bshall(?:\s+the\s+\w+)?(?:\s+|\s*,\s*)(always|never|immediately|eventually|finally|until|before"
     r"|at\s+the\s+(next|last)\s+timepoint|(within|for|after)\s+\d+\s*"
@@ -66,6 +69,11 @@ def is_formal(language: str, text: str) -> bool:
 def _is_sentence(text: str) -> bool:
     """Whether a text is a sentence of a pattern that no informal text resembles."""
     return _SENTENCE.match(text) is not None or _ENDING.search(text) is not None
+
+
+def has_pattern_word(text: str) -> bool:
+    """Whether a text may be a sentence of a pattern, if its other words are conditions."""
+    return _PATTERN_WORD.search(text) is not None
 
 
 def _is_requirement(text: str) -> bool:
@@ -103,8 +111,11 @@ def describe_error(error: FormulaError, text: str) -> str:
     """Return the message of an error with its column, and with its line in a longer text."""
     if not text.strip():
         return str(error)
-    advice = "" if "; " in str(error) else suggest_form(text, error.offset)
-    reason = f"{error}; {advice}" if advice else str(error)
+    reason = str(error)
+    if is_foreign_call(text, error.offset):
+        reason = reason.partition("; ")[0]
+    advice = "" if "; " in reason else suggest_form(text, error.offset)
+    reason = f"{reason}; {advice}" if advice else reason
     line, column = line_and_column(text, error.offset)
     location = f"line {line}, column {column}" if "\n" in text.strip() else f"column {column}"
     return f"{reason} ({location})"

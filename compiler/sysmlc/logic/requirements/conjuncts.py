@@ -73,7 +73,7 @@ def _split_by_class(
     about inputs alone, it is stated for the first step and for each next step: the environment can
     then never reach a step in which it has to violate the assumption.
     """
-    if statement.is_temporal:
+    if statement.is_temporal or f.has_future(formula) or f.has_past(formula):
         yield from classify(formula)
     elif is_assumed and scope.is_about_inputs(formula):
         yield Class.INIT, formula

@@ -16,13 +16,13 @@ from sysmlc.logic.components.derivation import (
 )
 from sysmlc.logic.components.names import ComponentNames, Meaning
 from sysmlc.logic.components.objects import ComponentError
-from sysmlc.logic.contract import Conjunct, Contract, Domain
+from sysmlc.logic.contract import Conjunct, Contract, Domain, name_variables
 from sysmlc.logic.expressions.context import report_range
 from sysmlc.logic.expressions.elaboration import ElaborationError, Fault, elaborate_condition
 from sysmlc.logic.expressions.expression import ExpressionError
 from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.feature_writes import WriterIndex
-from sysmlc.logic.formal_texts import describe_error, read_formal
+from sysmlc.logic.formal_texts import describe_error, has_pattern_word, read_formal
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines.reader import MachineOptions, find_context_classifier
 from sysmlc.logic.requirements.conjuncts import Reading, make_contract, state_initial_values
@@ -40,6 +40,7 @@ from sysmlc.logic.requirements.statements import (
     list_subject_names,
 )
 from sysmlc.logic.syntax import FormulaError, UnknownNameError
+from sysmlc.support.counts import count
 
 NOT_A_FORMULA = rule(
     "SM522",
@@ -102,7 +103,9 @@ def derive(
             scope = replace(scope, variables=variables)
         contract = make_contract(graph, subject, scope, formulas, behaviour)
         if contract is not None:
-            yield RequiredContract(contract, whole)
+            atoms = () if whole is None else whole.atoms
+            wordings = {atom.replaced: atom.variable.name for atom in atoms}
+            yield RequiredContract(name_variables(contract, wordings), whole)
     informal.report(graph, sink)
 
 
@@ -191,9 +194,7 @@ class _InformalStatements:
         """Report each statement once, with the reason for its first subject."""
         for statement, reasons in self._reasons.values():
             others, name = len(reasons) - 1, statement.constraint.name
-            further = (
-                f"; the same holds for {others} more subject{'s' * (others > 1)}" if others else ""
-            )
+            further = f"; the same holds for {count(others, 'more subject')}" if others else ""
             sink.report(
                 NOT_FORMAL,
                 graph.subject(statement.constraint),
@@ -227,6 +228,8 @@ def _read_statement(
         reading = _read_temporal(graph, scope, statement, Sink() if obstacle else sink)
         if reading is None and obstacle:
             informal.add(statement, obstacle)
+    elif (sentence := _read_sentence(scope, statement)) is not None:
+        reading = sentence
     elif language in _EXPRESSION_LANGUAGES:
         formula = _read_condition(scope, statement, informal)
         reading = None if formula is None else Reading(formula)
@@ -256,6 +259,11 @@ def _read_temporal(graph: Graph, scope: Scope, statement: Statement, sink: Sink)
             reason=_restore_text(describe_error(error, body), meanings),
         )
         return None
+    return _make_reading(scope, formula, meanings)
+
+
+def _make_reading(scope: Scope, formula: Formula, meanings: Mapping[str, Meaning]) -> Reading:
+    """Return a formula in variables, and in the names of the author if they differ."""
     wording = restore_names(formula, meanings) if meanings else None
     return Reading(replace_meanings(scope.substitute_constants(formula), meanings), wording)
 
@@ -268,16 +276,30 @@ def _restore_text(message: str, meanings: Mapping[str, Meaning]) -> str:
 def _describe_language(scope: Scope, statement: Statement) -> str:
     """Return that a text is not read, with the language under which it would be."""
     reason = f"it is written in {statement.constraint.attrs['language']}"
-    body = str(statement.constraint.attrs.get("body", ""))
-    for language in ("pattern", "FRET", "LTL"):
-        try:
-            text, meanings = scope.replace_names(body)
-            all_domains = scope.domains | {name: item.domain for name, item in meanings.items()}
-            _read_names(scope, text, language, all_domains)
-        except FormulaError:
-            continue
-        return f"{reason}; write the language '{language}' to have it read"
+    for language in ("FRET", "LTL"):
+        if _read_under(scope, statement, language) is not None:
+            return f"{reason}; write the language '{language}' to have it read"
     return reason
+
+
+def _read_sentence(scope: Scope, statement: Statement) -> Reading | None:
+    """Return the formula of a sentence of a pattern under any name of a language, or None.
+
+    Tools label any prose as English; prose has names that are unknown, or none of these words.
+    """
+    is_possible = has_pattern_word(str(statement.constraint.attrs.get("body", "")))
+    return _read_under(scope, statement, "pattern") if is_possible else None
+
+
+def _read_under(scope: Scope, statement: Statement, language: str) -> Reading | None:
+    """Return the formula that a text has in another language than its own; None if it has none."""
+    try:
+        text, meanings = scope.replace_names(str(statement.constraint.attrs.get("body", "")))
+        all_domains = scope.domains | {name: item.domain for name, item in meanings.items()}
+        formula = _read_names(scope, text, language, all_domains)
+    except FormulaError:
+        return None
+    return _make_reading(scope, formula, meanings)
 
 
 def _read_names(
