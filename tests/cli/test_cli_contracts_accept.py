@@ -36,7 +36,7 @@ def test_a_run_that_breaks_nothing_is_one_line(workspace):
 def test_a_broken_guarantee_is_an_error_at_its_step(workspace):
     run = "go;level;mode;done\n0;1;idle;0\n1;1;idle;0\n0;1;busy;0\n"
     result = accept(workspace, run)
-    assert [result.exit_code, result.stdout] == [1, "gate: step 3 breaks the contract\n"]
+    assert [result.exit_code, result.stdout] == [1, "gate: it breaks a guarantee in step 3\n"]
     assert (
         "error[SM592 run-breaks-guarantee]: step 3 (run.csv:4) breaks a guarantee of 'gate': "
         "G (go -> done')" in result.stderr

@@ -149,7 +149,7 @@ def test_a_recorded_run_needs_no_values_of_the_past(workspace, all_passes, contr
     )
     assert [right.exit_code, right.stdout] == [0, "P::Case0: 3 steps, no check is broken\n"]
     assert right.stderr == ""
-    assert [wrong.exit_code, wrong.stdout] == [1, "P::Case0: step 3 breaks the contract\n"]
+    assert [wrong.exit_code, wrong.stdout] == [1, "P::Case0: it breaks a guarantee in step 3\n"]
 
 
 def test_a_run_in_which_nothing_can_be_checked_is_not_called_unbroken(workspace, all_passes):

@@ -62,3 +62,25 @@ def test_a_command_without_scenario_says_what_to_name(oven):
     result = oven.sysmlc("simulate", "oven.sysml")
     assert result.exit_code == 2
     assert "name a file with --scenario, or list the names with --variables" in result.stderr
+
+
+def test_an_activity_alone_has_the_names_of_formulas(workspace, all_passes):
+    workspace.write(
+        "shop.sysml",
+        "package Shop { part def Press { exhibit state Run { entry; then On; state On; }"
+        " perform action work {"
+        " first start; then action load { first start; then action grip; then done; }"
+        " then action turn; then done; } } }",
+    )
+    result = workspace.sysmlc("simulate", "shop.sysml", "--variables")
+    own = result.stdout.partition("Shop::Press.work\n")[2].splitlines()
+    assert own[:2] == ["  input  finished(grip): Boolean", "  input  finished(turn): Boolean"]
+    workspace.write(
+        "turns.yaml",
+        "name: turns\ncomponent: Shop::Press.work\nsteps:\n"
+        "  - expect: {running(load): true, finished(grip): false}\n"
+        "  - inputs: {finished(grip): true}\n"
+        "  - expect: {running(grip): false, running(turn): true}\n",
+    )
+    result = workspace.sysmlc("simulate", "shop.sysml", "--scenario", "turns.yaml")
+    assert result.stdout.endswith("1 of 1 scenario passed\n")

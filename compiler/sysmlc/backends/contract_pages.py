@@ -19,6 +19,7 @@ from sysmlc.logic.contract import Class, Conjunct, Contract, Variable
 from sysmlc.logic.domains import describe
 from sysmlc.logic.expressions.named_elements import VALUE_KINDS
 from sysmlc.logic.feature_writes import iter_writes
+from sysmlc.logic.formula import rename_variables
 from sysmlc.logic.formula import variables as list_variables
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.requirements.statements import list_texts_about
@@ -44,7 +45,7 @@ _PREFIXES = {
     "was_": "whether the condition held in the previous step",
 }
 """Meanings of variables that stand for a part of a diagram, by the start of their names."""
-_UNSET = re.compile(r"!\w+$")
+_UNSET = re.compile(r"!(\w+|running\([\w.]+\)|finished\([\w.]+\))$")
 """The formula of a Boolean that is false."""
 _MANY_UNSET = 3
 """From this number on, Booleans that are initially false are one item with a list."""
@@ -112,9 +113,12 @@ class _PageBuilder:
     def __init__(self, graph: Graph) -> None:
         self._graph = graph
         self._labels: dict[str, tuple[str, str]] = {}
+        self._wordings: dict[str, str] = {}
+        """Names in formulas of the author, by variable."""
 
     def build_page(self, contract: Contract) -> Page:
         variables = contract.variables
+        self._wordings = contract.wordings
         element, place = self._label_element(contract.origin)
         return Page(
             escape_markdown(contract.component),
@@ -154,12 +158,14 @@ class _PageBuilder:
         return self._labels[id]
 
     def _build_variable(self, variable: Variable) -> Row:
-        name = escape_code(variable.name, in_table=True)
+        name = escape_code(variable.wording or variable.name, in_table=True)
         domain = escape_markdown(describe(variable.domain))
         if variable.is_range_assumed:
             domain += " (assumed)"
         if variable.condition:
             domain += f", stands for `{escape_code(variable.condition, in_table=True)}`"
+        if variable.wording:
+            domain += f"; `{escape_code(variable.name, in_table=True)}` in the other files"
         return Row(name, domain, *self._label_element(variable.origin))
 
     def _build_sections(self, conjuncts: Iterable[Conjunct]) -> tuple[Section, ...]:
@@ -174,7 +180,8 @@ class _PageBuilder:
         The text of a conjunct from a named constraint begins with the quoted name. The row shows
         the name as a sentence instead, and the requirement or owner of the constraint as element.
         """
-        formula = escape_code(print_formula(conjunct.formula))
+        named = conjunct.wording or rename_variables(conjunct.formula, self._wordings)
+        formula = escape_code(print_formula(named))
         element, place = self._label_element(conjunct.origin)
         constraint = self._graph.get(conjunct.origin)
         is_stated = conjunct.text.endswith(("demands it.", "assumes it."))
@@ -205,7 +212,8 @@ def _build_section(class_: Class, rows: list[Row]) -> Section:
 
 def _explain_prefixes(contract: Contract) -> Iterator[str]:
     """Yield the meaning of each prefix of variable names that the contract contains."""
-    prefixes = {v.name[: v.name.find("_") + 1] for v in contract.variables}
+    names = [v.name for v in contract.variables if not v.wording]
+    prefixes = {name[: name.find("_") + 1] for name in names}
     for prefix, meaning in _PREFIXES.items():
         if prefix in prefixes:
             yield f"`{prefix}...`: {meaning}"

@@ -13,7 +13,7 @@ from sysmlc.backends.contracts import list_traced_elements
 from sysmlc.backends.templates import Templates
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Graph
-from sysmlc.logic.contract import BooleanDomain, Class, Contract, EnumerationDomain, Owner
+from sysmlc.logic.contract import BooleanDomain, Class, Contract, EnumerationDomain, Owner, Variable
 from sysmlc.logic.domains import describe
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var, has_primes
 from sysmlc.logic.identifiers import identifier, make_unique
@@ -165,9 +165,15 @@ def _list_variables(contract: Contract, fields: Mapping[str, str]) -> Iterator[_
         yield _Variable(
             field=fields[variable.name],
             c_type="bool" if isinstance(variable.domain, BooleanDomain) else "long",
-            comment=format_comment(f"{variable.name}: {describe(variable.domain)}", _MAX_COMMENT),
+            comment=format_comment(_describe_variable(variable), _MAX_COMMENT),
             key=quote_python(variable.name),
         )
+
+
+def _describe_variable(variable: Variable) -> str:
+    """Return name and values of a variable, and its name in formulas of the author."""
+    wording = f", {variable.wording} in formulas" if variable.wording else ""
+    return f"{variable.name}: {describe(variable.domain)}{wording}"
 
 
 def _build_check(graph: Graph, check: Check, c_language: "_Language") -> _Check:

@@ -85,6 +85,7 @@ def _accept_run(
     """
     from sysmlc.cli.session import fail
     from sysmlc.diagnostics import Place
+    from sysmlc.logic.contract import Owner
     from sysmlc.logic.formats.recorded_runs import read_run
     from sysmlc.logic.monitors import build_monitor, find_first_violation
     from sysmlc.sources import Source, SourceError
@@ -112,11 +113,14 @@ def _accept_run(
     violation = find_first_violation(monitor, run.steps, run.missing)
     if violation is None:
         steps = count(len(run.steps), "step")
-        rest = f"; {skipped} of {len(monitor.checks)} checks were skipped" if skipped else ""
+        skipping = f"{skipped} of {count(len(monitor.checks), 'check')} skipped"
+        rest = f"; {skipping}" if skipped else ""
         return f"{contract.component}: {steps}, no check is broken{rest}", True
     place = Place(name, line=run.lines[violation.step], column=1)
     _report_violation(contract_file, contract, violation, place)
-    return f"{contract.component}: step {violation.step + 1} breaks the contract", True
+    is_assumption = violation.check.owner is Owner.ENVIRONMENT
+    culprit = "the environment breaks an assumption" if is_assumption else "it breaks a guarantee"
+    return f"{contract.component}: {culprit} in step {violation.step + 1}", True
 
 
 def _count_skipped_checks(monitor: "Monitor", missing: frozenset[str]) -> int:
@@ -142,7 +146,7 @@ def _report_missing_variables(
             file=name,
             names=", ".join(f"'{variable}'" for variable in sorted(missing)),
             skipped=skipped,
-            total=len(monitor.checks),
+            total=count(len(monitor.checks), "check"),
             component=monitor.contract.component,
         )
 
@@ -154,13 +158,18 @@ def _report_violation(
 
     The contract of a file has no elements; then the subject is the *step* in the recorded run.
     """
+    from msgspec.structs import replace
+
     from sysmlc.diagnostics import Subject
     from sysmlc.diagnostics.diagnostic import format_position
     from sysmlc.logic.contract import Owner
     from sysmlc.logic.formats import rules
+    from sysmlc.logic.formula import rename_variables
     from sysmlc.synthesis.witnesses import print_temporal
 
     conjunct = violation.check.conjunct
+    formula = rename_variables(conjunct.formula, contract.wordings)
+    conjunct = replace(conjunct, formula=formula)
     subject = contract_file.place(conjunct.origin or contract.origin)
     is_assumption = violation.check.owner is Owner.ENVIRONMENT
     contract_file.sink.report(

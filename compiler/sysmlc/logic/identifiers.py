@@ -8,6 +8,7 @@ _RESERVED = frozenset(
 )
 """Words with a meaning in one of the formula formats."""
 _INVALID_CHARACTERS = re.compile(r"[^0-9A-Za-z_]+")
+_SIGNS = re.compile(r"\W+")
 _MAX_LENGTH = 40
 _CACHED_NAMES = 1 << 12
 """Cache size: names of actions and states recur often."""
@@ -22,6 +23,14 @@ def identifier(name: str, fallback: str = "x") -> str:
     text = text.strip("_")[:_MAX_LENGTH].rstrip("_") or fallback
     text = f"_{text}" if text[0].isdigit() else text
     return f"{text}_" if text in _RESERVED else text
+
+
+def spell_name(name: str) -> str:
+    """Return the name of an action or state as formulas spell it: ``production_completed``.
+
+    Blanks and signs are underscores; letters of all scripts stay.
+    """
+    return _SIGNS.sub("_", name.strip())
 
 
 class Names:

@@ -17,10 +17,11 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities import derivation as activity_contract
+from sysmlc.logic.activities.action_names import name_actions
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.classification import classify
 from sysmlc.logic.components.derivation import ComponentBehaviour
-from sysmlc.logic.contract import Class, Conjunct, Contract, Owner, mark_derived
+from sysmlc.logic.contract import Class, Conjunct, Contract, Owner, mark_derived, name_variables
 from sysmlc.logic.expressions.context import context_of
 from sysmlc.logic.feature_writes import WriterIndex
 from sysmlc.logic.formal_texts import describe_error, is_formal, read_formal
@@ -125,7 +126,7 @@ def _is_submachine(graph: Graph, machine: Element) -> bool:
 
 def _derive_activities(graph: Graph) -> Iterator[Contract]:
     for tokens in graph.derived(TokenGraph):
-        yield activity_contract.derive_contract(tokens)
+        yield name_variables(activity_contract.derive_contract(tokens), name_actions(graph, tokens))
 
 
 def _number_components(graph: Graph, contracts: list[Contract], sink: Sink) -> list[Contract]:

@@ -12,6 +12,7 @@ from sysmlc.ir import Element, Graph, Kind, query
 from sysmlc.logic import evaluate
 from sysmlc.logic.activities import derivation as activity_contract
 from sysmlc.logic.activities import interpreter as token_game
+from sysmlc.logic.activities.action_names import name_actions
 from sysmlc.logic.activities.interpreter import BranchPlan
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.activities.token_step import State
@@ -21,10 +22,11 @@ from sysmlc.logic.contract import (
     Domain,
     EnumerationDomain,
     IntegerDomain,
+    Owner,
     Variable,
 )
 from sysmlc.logic.domains import contains, values
-from sysmlc.logic.formula import Literal, variable_names
+from sysmlc.logic.formula import Formula, Literal, both, var, variable_names
 from sysmlc.logic.machines import interpreter as machine_interpreter
 from sysmlc.logic.machines.interpreter import Valuation
 from sysmlc.logic.machines.machine import Machine
@@ -111,9 +113,31 @@ def list_atoms(graph: Graph, player: Player) -> list[Atom]:
             b for b in list_blocks(graph) if query.component_name(graph, b) == player.component
         ]
         opened = open_component(graph, named[0]) if named else None
-        atoms = () if opened is None else opened.behaviour.atoms
+        atoms = _list_own_atoms(graph, player) if opened is None else opened.behaviour.atoms
     variables = {variable.name for variable in player.variables}
     return [atom for atom in atoms if variables.issuperset(variable_names(atom.meaning))]
+
+
+def _list_own_atoms(graph: Graph, player: Player) -> tuple[Atom, ...]:
+    """Return what formulas may say of the steps of a state machine or activity alone."""
+    names: Mapping[str, str] = {}
+    if isinstance(player, ActivityPlayer):
+        names = name_actions(graph, player.tokens)
+    elif isinstance(player, MachinePlayer):
+        names = player.machine.wordings
+    variables = {wording: name for name, wording in names.items()}
+    atoms: list[Atom] = []
+    for variable in player.variables:
+        if variable.is_auxiliary:
+            continue
+        name = names.get(variable.name) or variable.wording or variable.name
+        meaning: Formula = var(variable.name)
+        if name.startswith("finished(") and variable.owner is Owner.ENVIRONMENT:
+            # The environment may end an action only while the action runs.
+            runs = variables[name.replace("finished", "running", 1)]
+            meaning = both(var(runs), meaning)
+        atoms.append(Atom(replace(variable, name=name), meaning, variable.name))
+    return tuple(atoms)
 
 
 class NamedPlayer(Struct, frozen=True, dict=True):

@@ -166,22 +166,21 @@ def derive_handshake(formulas: StepFormulas, handshake: Handshake) -> Iterator[C
     yield Conjunct(first, Class.INIT, origin, f"At the start {label} {verb}.")
     goes_on = f.both(running, f.negate(finished), f.negate(formulas.stop_formula()))
     runs = f.either(formulas.begin_formula(ACTIVITY_REGION), goes_on)
-    text = f"'{handshake.running}' is true {describe_performance(handshake)}."
+    name = f"{label[:1].upper()}{label[1:]}"
+    text = f"{name} runs {describe_performance(handshake)}."
     yield Conjunct(f.fold_iff(f.prime(running), runs), Class.SAFETY, origin, text)
     ends = f.both(running, formulas.completion_formula(ACTIVITY_REGION))
     text = (
-        f"'{handshake.finished}' is true in the last step of {label}: a token reaches a final "
-        "node, or nothing is left in it after this step."
+        f"{name} ends in the step in which a token reaches a final node, or after which nothing "
+        "is left in it."
     )
     yield Conjunct(f.fold_iff(finished, ends), Class.SAFETY, origin, text)
 
 
 def describe_performance(handshake: Handshake, quote: str = "'") -> str:
-    """Return from when until when an activity runs, with names between *quote*."""
-    start, stop, finished = (
-        f"{quote}{name}{quote}" for name in (handshake.start, handshake.stop, handshake.finished)
-    )
-    ends = f"until {finished}" + (f" or {stop}" if handshake.stop else "")
+    """Return from when until when an activity runs, with names of inputs between *quote*."""
+    start, stop = (f"{quote}{name}{quote}" for name in (handshake.start, handshake.stop))
+    ends = "until it ends" + (f" or {stop} abandons it" if handshake.stop else "")
     if not handshake.start:
         return f"from the first step {ends}, and not again"
     first = "from the first step, and " if handshake.is_started else ""

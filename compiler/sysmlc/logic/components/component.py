@@ -10,9 +10,10 @@ from functools import cached_property, partial
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic import formula as f
+from sysmlc.logic.activities.action_names import make_path
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
 from sysmlc.logic.components.arguments import Arguments
-from sysmlc.logic.components.copies import ActionPath, Caller, Root
+from sysmlc.logic.components.copies import Caller, Root
 from sysmlc.logic.components.machines import PlacedMachine, find_machines, place_machine
 from sysmlc.logic.components.names import finish_variable
 from sysmlc.logic.components.objects import ComponentError, ComponentObject, ObjectTree
@@ -176,7 +177,7 @@ class Component:
         names = machine.owner.extend_path(name)
         caller = Caller(object_, names, _join_names(prefix, state.literal, name))
         id = self.performances.add(activity, caller, run)
-        self.performances.paths.append(ActionPath((*names[:-1], state.literal, name), id))
+        self.performances.paths.append(make_path((*names[:-1], state.literal, name), id))
         if role is Edge.ENTRY:
             starts, stops = machine.entered_formula(state), machine.left_formula(state)
             is_first = machine.active_formula(state)
@@ -209,7 +210,7 @@ class Component:
         caller = Caller(object_, names, _join_names(prefix, name))
         id = self.performances.add(activity, caller, run)
         place = (*names[:-1], state.literal, name)
-        self.performances.paths.append(ActionPath(place, id))
+        self.performances.paths.append(make_path(place, id))
         is_first = f.FALSE if entry else machine.active_formula(state)
         entered = machine.entered_formula(state)
         left = f.either(machine.left_formula(state), machine.exit_starts_formula(state))

@@ -77,13 +77,6 @@ class PlacedWrite(Struct, frozen=True):
     root: str
 
 
-class ActionPath(Struct, frozen=True):
-    """An action with the names of the performances around it, outermost first."""
-
-    names: tuple[str, ...]
-    node: str
-
-
 @dataclass(slots=True)
 class Root:
     """A performance: its node, when it starts and stops, and whether it runs in the first step."""

@@ -14,19 +14,21 @@ from msgspec.structs import replace
 
 from sysmlc.ir import Edge
 from sysmlc.logic import formula as f
+from sysmlc.logic.activities.action_names import shorten_paths
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
-from sysmlc.logic.components.machines import EVENT, PlacedMachine
+from sysmlc.logic.components.machines import EVENT
 from sysmlc.logic.components.objects import ComponentError
 from sysmlc.logic.components.signals import derive_events
 from sysmlc.logic.composition.structure import join_path
 from sysmlc.logic.contract import BooleanDomain, Domain, Owner, Variable
 from sysmlc.logic.formula import Formula
-from sysmlc.logic.machines.machine import element_id
+from sysmlc.logic.identifiers import spell_name
+from sysmlc.logic.machines.region_names import choose_shortest, iter_region_names
 
 if TYPE_CHECKING:
     from sysmlc.logic.components.component import Component
 
-_ACTION = re.compile(r"(?:([\w.]+)\.)?(running|finished)\(\s*([\w.]+)\s*\)")
+_ACTION = re.compile(r"(?:([\w.]+)\.)?(running|finished)\(([^()]+)\)")
 """``running(load.grip)``, or with the path of a part in front: ``robot.running(grip)``."""
 
 
@@ -178,7 +180,7 @@ class ComponentNames:
         return None
 
     def _find_action(self, kind: str, path: str) -> Meaning | None:
-        wanted = tuple(path.split("."))
+        wanted = tuple(spell_name(name.strip(" '\"")) for name in path.split("."))
         paths = self._component.performances.paths
         actions = [action for action in paths if action.names[-len(wanted) :] == wanted]
         actions = actions or [action for action in paths if _is_within(wanted, action.names)]
@@ -211,64 +213,14 @@ def _collect_states(component: "Component") -> Mapping[str, list[tuple[str, Doma
     """Return the variables of regions by the names with which formulas denote them."""
     states: dict[str, list[tuple[str, Domain]]] = {}
     for machine in component.machines:
-        for name, variable in _iter_regions(component, machine):
+        prefix = f"{machine.owner.path}." if machine.owner.path else ""
+        is_only = sum(other.owner is machine.owner for other in component.machines) == 1
+        for path, variable in iter_region_names(component.graph, machine.machine, is_only):
+            name = prefix + path
             pair = machine.variables[variable], machine.machine.find_variable(variable).domain
             if pair not in states.setdefault(name, []):
                 states[name].append(pair)
     return states
-
-
-def _iter_regions(component: "Component", machine: PlacedMachine) -> Iterator[tuple[str, str]]:
-    """Yield each name of a region with the machine's own variable for it."""
-    prefix = f"{machine.owner.path}." if machine.owner.path else ""
-    named = f"{prefix}{machine.element.name}."
-    count = sum(other.owner is machine.owner for other in component.machines)
-    regions = machine.machine.regions
-    for id in machine.machine.top:
-        variable = regions[id].variable
-        if len(machine.machine.top) == 1:
-            yield f"{named}state", variable
-            if count == 1:
-                yield f"{prefix}state", variable
-        else:
-            region = component.graph[element_id(id)].name
-            yield f"{prefix}{region}.state", variable
-            yield f"{named}{region}.state", variable
-    for state in machine.machine.list_states():
-        for id in state.regions:
-            for path in _list_region_paths(component, machine, id):
-                yield f"{prefix}{path}.state", regions[id].variable
-                yield f"{named}{path}.state", regions[id].variable
-
-
-def _list_region_paths(component: "Component", machine: PlacedMachine, region: str) -> list[str]:
-    """Return the paths of a region in a state: its own name, from its state on, and the whole path.
-
-    A region that is the only one of its state has the name of the state.
-    """
-    levels = list(_iter_levels(component, machine, region))[::-1]
-    state, name = levels[-1]
-    states = [state for state, _ in levels if state]
-    whole = [part for level in levels for part in level if part]
-    paths = ([name], [state, name], whole, [*states, name])
-    return list(dict.fromkeys(".".join(filter(None, path)) for path in paths if any(path)))
-
-
-def _iter_levels(
-    component: "Component", machine: PlacedMachine, region: str
-) -> Iterator[tuple[str, str]]:
-    """Yield the names of the state and the region at each level around a region, inside out.
-
-    A region without siblings has no name, and a region of the machine no state.
-    """
-    graph, vertices = component.graph, machine.machine.vertices
-    id = region
-    while id:
-        state = machine.machine.regions[id].state
-        siblings = vertices[state].regions if state else machine.machine.top
-        name = graph[element_id(id)].name if len(siblings) > 1 else ""
-        yield graph[element_id(state)].name if state else "", name
-        id = vertices[state].region if state else ""
 
 
 # -- atoms of runs ---------------------------------------------------------------------------------
@@ -289,7 +241,7 @@ def iter_atoms(
     names = _name_variables(component)
     features = {feature.variable.name for feature in component.tree.used_slots.values()}
     nodes = {node.run: node for node in formulas.graph.workers()}
-    paths = _shorten_paths(component)
+    paths = shorten_paths(component.performances.paths)
     done_inputs = {node.done.name: node for node in nodes.values() if isinstance(node.done, f.Var)}
     repeated = {*accepted, *_list_performed_states(component)}
     for variable in variables:
@@ -314,35 +266,19 @@ def iter_atoms(
 
 def _name_variables(component: "Component") -> dict[str, str]:
     """Return the shortest name of each feature, region and event, by its variable."""
-    names: dict[str, list[str]] = {}
+    return choose_shortest(_iter_variable_names(component))
+
+
+def _iter_variable_names(component: "Component") -> Iterator[tuple[str, str]]:
+    """Yield the variable of each feature, region and event with each of its names."""
     for slot, feature in component.tree.used_slots.items():
-        names[feature.variable.name] = [
-            join_path(object_.path, name)
-            for object_, name in component.tree.iter_joined_names(slot)
-        ]
+        for object_, name in component.tree.iter_joined_names(slot):
+            yield feature.variable.name, join_path(object_.path, name)
     for name, variables in _collect_states(component).items():
         if len(variables) == 1:
-            names.setdefault(variables[0][0], []).append(name)
+            yield variables[0][0], name
     for path, variable in component.events.items():
-        names[variable] = [join_path(path, EVENT)]
-    return {
-        variable: min(spellings, key=lambda name: (name.count("."), len(name)))
-        for variable, spellings in names.items()
-    }
-
-
-def _shorten_paths(component: "Component") -> dict[str, str]:
-    """Return the shortest path that names an action without ambiguity, by its node."""
-    nodes: dict[tuple[str, ...], set[str]] = {}
-    for action in component.performances.paths:
-        for start in range(len(action.names)):
-            nodes.setdefault(action.names[start:], set()).add(action.node)
-    paths: dict[str, str] = {}
-    for action in component.performances.paths:
-        suffixes = (action.names[start:] for start in reversed(range(len(action.names))))
-        unique = next((path for path in suffixes if len(nodes[path]) == 1), action.names)
-        paths.setdefault(action.node, ".".join(unique))
-    return paths
+        yield variable, join_path(path, EVENT)
 
 
 def _list_performed_states(component: "Component") -> Iterator[str]:

@@ -7,12 +7,12 @@ creates an execution for each call). All performances of a component are one tok
 """
 
 from collections.abc import Iterable, Mapping
-from itertools import takewhile
 
 from msgspec.structs import replace
 
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.logic import formula as f
+from sysmlc.logic.activities.action_names import ActionPath, list_enclosing_actions, make_path
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.activities.token_nodes import (
     ACTIVITY_REGION,
@@ -25,7 +25,6 @@ from sysmlc.logic.activities.token_nodes import (
 )
 from sysmlc.logic.components.copies import (
     COPY_SEPARATOR,
-    ActionPath,
     Caller,
     Copy,
     PlacedWrite,
@@ -93,7 +92,7 @@ class Performances:
             if self.has_steps(activity):
                 self.undescribed[run] = self.undescribed[end] = _UNKNOWN_END.format(label)
         self.nodes.append(TokenNode(id, kind, label, activity.id, run=run, done=done))
-        self.paths.append(ActionPath(caller.names, id))
+        self.paths.append(make_path(caller.names, id))
         if tokens is not None:
             self._expand(tokens, activity, caller, id, (activity.id,))
         return id
@@ -264,19 +263,12 @@ class Performances:
         done = None if node.done is None else f.rename_variables(node.done, copy.variables)
         new = replace(node, id=ids[node.id], region=regions[node.region], run=run, done=done)
         is_work = node.kind is NodeKind.ACTION and bool(node.run)
-        names = (*copy.caller.names, *self._list_enclosing_actions(element), element.name)
+        names = (*copy.caller.names, *list_enclosing_actions(self._graph, element), element.name)
         if run and element.name:
-            self.paths.append(ActionPath(names, new.id))
+            self.paths.append(make_path(names, new.id))
         if is_work and self._graph.targets(element, Edge.CALLS) and _is_call(element):
             new = self._add_call(new, element, copy, names, around)
         self.nodes.append(new)
-
-    def _list_enclosing_actions(self, element: Element) -> list[str]:
-        """List the names of the actions in an activity that contain *element*, outermost first."""
-        enclosing = takewhile(
-            lambda owner: owner.kind is Kind.STRUCTURED, self._graph.ancestors(element)
-        )
-        return [owner.name for owner in enclosing if owner.name][::-1]
 
     def _add_call(
         self,
@@ -312,9 +304,9 @@ class Performances:
         assert object_ is not None
         self._drop_end(node)
         if object_.path != owner.path:
-            self.paths.append(ActionPath((*object_.path.split("."), activity.name), node.id))
+            self.paths.append(make_path((*object_.path.split("."), activity.name), node.id))
         elif activity.name != element.name:
-            self.paths.append(ActionPath((*names[:-1], activity.name), node.id))
+            self.paths.append(make_path((*names[:-1], activity.name), node.id))
         prefix = "_".join(
             filter(None, (copy.caller.prefix, identifier(element.name or activity.name)))
         )

@@ -100,7 +100,7 @@ def rename_contract(member: Member, wires: Iterable[Wire]) -> Contract:
         name = join_path(member.path, variable.name) if wire is None else wire.name
         domain = variable.domain if wire is None else _find_common_domain(wire)
         names[variable.name] = name
-        variables.append(replace(variable, name=name, domain=domain))
+        variables.append(replace(variable, name=name, domain=domain, wording=""))
         bounds[variable.owner] += _iter_range_conjuncts(variable, name, domain)
     contract = member.contract
     assumptions = _rename_conjuncts(contract.assumptions, names)

@@ -277,6 +277,7 @@ class _FeatureTable(Mapping[str, Feature]):
         graph, element, variable = self._graph, self._elements[name], self.variables[name]
         access = Access(self._classifier, name) if "." in name else None
         feature = make_feature(graph, element, variable, assumed_range, self._constants, access)
+        feature = feature if access is None else replace(feature, wording=name)
         if "direction" not in element.attrs:
             return feature
         direction = find_direction(graph, self._classifier, name, element)

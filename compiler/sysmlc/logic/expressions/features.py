@@ -60,12 +60,19 @@ class Feature(Struct, frozen=True):
     """``in``, ``out`` or ``inout`` as the owner sees it; empty if the feature has none."""
     has_several_values: bool = False
     """Whether the multiplicity allows other than one value; such a feature has no domain."""
+    wording: str = ""
+    """The dotted name by which expressions reach a feature of a part; empty for others."""
 
     def make_variable(self, owner: Owner) -> Variable:
         """Return the variable of a feature with a finite domain."""
         assert self.domain is not None, f"'{self.variable}' has no finite domain"
         return Variable(
-            self.variable, owner, self.domain, self.element.id, is_range_assumed=self.is_assumed
+            self.variable,
+            owner,
+            self.domain,
+            self.element.id,
+            is_range_assumed=self.is_assumed,
+            wording=self.wording,
         )
 
 

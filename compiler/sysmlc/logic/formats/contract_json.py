@@ -141,6 +141,7 @@ def _read_variable(name: str, declaration: object, offset: int) -> Variable:
         is_auxiliary=declaration.get("auxiliary") is True,
         is_range_assumed=declaration.get("assumed") is True and isinstance(domain, IntegerDomain),
         condition=text_at(declaration, "condition"),
+        wording=text_at(declaration, "wording"),
     )
 
 
@@ -285,6 +286,8 @@ def _encode_variable(variable: Variable) -> dict[str, object]:
         entry["assumed"] = True
     if variable.condition:
         entry["condition"] = variable.condition
+    if variable.wording:
+        entry["wording"] = variable.wording
     return entry
 
 

@@ -76,6 +76,14 @@ def _convert_rows(rows: list[_Row], contract: Contract) -> RecordedRun:
     declared = {variable.name: variable for variable in contract.variables}
     if not rows:
         raise _RunFileError("it has no step", 1)
+    for name, wording in contract.wordings.items():
+        if name in rows[0].cells and wording in rows[0].cells:
+            raise _RunFileError(f"'{wording}' and '{name}' are one variable", 1)
+    variables = {wording: name for name, wording in contract.wordings.items()}
+    rows = [
+        _Row(row.line, {variables.get(name, name): cell for name, cell in row.cells.items()})
+        for row in rows
+    ]
     names = rows[0].cells.keys()
     if declared.keys().isdisjoint(names):
         advice = did_you_mean(next(iter(names), ""), list(declared))

@@ -16,6 +16,7 @@ from sysmlc.logic.contract import (
     Contract,
     IntegerDomain,
     drop_trivial,
+    name_variables,
 )
 from sysmlc.logic.expressions.elaboration import elaborate_condition
 from sysmlc.logic.formula import Const, Formula, Op
@@ -63,7 +64,10 @@ def describe_exploration(exploration: Exploration, component: str) -> Contract:
         *_derive_clocks(exploration),
         *_derive_memories(exploration),
     )
-    return Contract(component, machine.id, machine.variables, assumptions, drop_trivial(guarantees))
+    contract = Contract(
+        component, machine.id, machine.variables, assumptions, drop_trivial(guarantees)
+    )
+    return name_variables(contract, machine.wordings)
 
 
 # -- initial states ----------------------------------------------------------------------------
@@ -89,7 +93,7 @@ def _derive_start(exploration: Exploration) -> Iterator[Conjunct]:
                 alternatives[0][name],
                 Class.INIT,
                 origin,
-                texts.describe_start(alternatives[0][name]),
+                texts.describe_start(exploration.machine, alternatives[0][name]),
             )
     yield from _derive_start_alternatives(exploration, alternatives)
 

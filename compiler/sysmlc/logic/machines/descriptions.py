@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from sysmlc.logic.expressions.expression import Expression, dotted_name, print_expression
-from sysmlc.logic.formula import TRUE, Const, Formula
+from sysmlc.logic.formula import TRUE, Const, Formula, rename_variables
 from sysmlc.logic.machines.machine import (
     AfterTicks,
     Machine,
@@ -17,6 +17,7 @@ from sysmlc.logic.machines.machine import (
 )
 from sysmlc.logic.machines.symbolic_path import Path
 from sysmlc.logic.printing import print_formula, print_literal
+from sysmlc.support.counts import count as count_nouns
 
 CLOCK_RUNS = "'{clock}' counts the steps for which '{state}' has been active."
 CLOCK_STOPS = "'{clock}' stops at the longest time that a transition waits for."
@@ -71,7 +72,7 @@ def describe_transition(
         f"'{source}' are complete" if transition.join_partners else f"'{source}' is complete"
     )
     guards = [] if transition.guard is None else [f"[{_print_expression(transition.guard)}]"]
-    branch_conditions = [] if condition == TRUE else [print_formula(condition)]
+    branch_conditions = [] if condition == TRUE else [_print_condition(machine, condition)]
     conditions = " and ".join([when, *guards, *branch_conditions])
     preempting_names = " or ".join(dict.fromkeys(name_transition(other) for other in preempting))
     unless = f", unless {preempting_names} is taken instead" if preempting_names else ""
@@ -88,7 +89,7 @@ def name_occurrence(occurrence: Occurrence) -> str:
         case OnEvent(literal):
             return f"event '{literal}'"
         case AfterTicks(count):
-            return f"time event 'after {count} step{'s' * (count != 1)}'"
+            return f"time event 'after {count_nouns(count, 'step')}'"
         case OnRise(_, condition):
             return f"change event '{_print_expression(condition)}'"
         case OnInput(variable):
@@ -102,7 +103,8 @@ def _describe_occurrence(occurrence: Occurrence) -> str:
         case OnEvent(literal):
             return f"'{literal}' occurs"
         case AfterTicks(count):
-            return f"{count} step{'s' * (count != 1)} have passed since it was entered"
+            passed = "has passed" if count == 1 else "have passed"
+            return f"{count_nouns(count, 'step')} {passed} since it was entered"
         case OnRise(_, condition):
             return f"'{_print_expression(condition)}' becomes true"
         case OnInput(variable):
@@ -111,6 +113,10 @@ def _describe_occurrence(occurrence: Occurrence) -> str:
 
 def _print_expression(expression: Expression) -> str:
     return dotted_name(expression) or print_expression(expression)
+
+
+def _print_condition(machine: Machine, condition: Formula) -> str:
+    return print_formula(rename_variables(condition, machine.wordings))
 
 
 def _describe_outcome(machine: Machine, transition: Transition, path: Path) -> str:
@@ -145,9 +151,9 @@ def describe_choice(machine: Machine, state: Vertex) -> str:
     return f"When several of {names} can be taken, '{state.pick}' selects the one that is taken."
 
 
-def describe_start(formula: Formula) -> str:
+def describe_start(machine: Machine, formula: Formula) -> str:
     """Describe one condition on the first step."""
-    return f"At the start: {print_formula(formula)}."
+    return f"At the start: {_print_condition(machine, formula)}."
 
 
 def describe_frame(machine: Machine, name: str) -> str:
@@ -156,7 +162,7 @@ def describe_frame(machine: Machine, name: str) -> str:
         return f"'{name}' is done only by transitions and states that refer to it."
     if any(vertex.pick == name for vertex in machine.vertices.values()):
         return f"'{name}' is none unless a choice was made."
-    return f"'{name}' does not change unless a transition changes it."
+    return f"'{machine.wordings.get(name, name)}' does not change unless a transition changes it."
 
 
 def describe_memory(name: str, truth: Formula) -> str:

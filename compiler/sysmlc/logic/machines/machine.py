@@ -172,6 +172,8 @@ class Region(Struct, frozen=True):
     initial: str
     vertices: tuple[str, ...]
     memory: str = ""
+    wording: str = ""
+    """The name by which formulas about the owner of the machine denote the variable."""
 
 
 class Machine(Struct, frozen=True):
@@ -202,6 +204,11 @@ class Machine(Struct, frozen=True):
     def find_variable(self, name: str) -> Variable:
         """Return the variable called *name*."""
         return next(variable for variable in self.variables if variable.name == name)
+
+    @property
+    def wordings(self) -> dict[str, str]:
+        """The names by which formulas of the author denote the regions, by variable."""
+        return {region.variable: region.wording for region in self.regions.values()}
 
     def list_states(self) -> list[Vertex]:
         """List all states in the order of the model."""

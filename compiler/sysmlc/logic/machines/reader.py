@@ -24,6 +24,7 @@ from sysmlc.logic.machines.conflicts import (
 )
 from sysmlc.logic.machines.descriptions import list_names
 from sysmlc.logic.machines.machine import NO_EVENT, Machine, Transition, element_id
+from sysmlc.logic.machines.region_names import name_regions
 from sysmlc.logic.machines.supported_constructs import is_supported
 from sysmlc.logic.machines.transitions import combine_joins, read_transitions
 from sysmlc.logic.machines.vertices import MachineDraft, add_history_memories, read_regions
@@ -203,7 +204,7 @@ def _assemble(draft: MachineDraft, top: tuple[str, ...]) -> Machine:
     defaults = {name: features[name].default for name in assigned}
     properties = _property_variables(reading)
     assumed = [variable.name for variable in properties if variable.is_range_assumed]
-    return Machine(
+    machine = Machine(
         draft.machine.id,
         draft.machine.name,
         (*_event_variable(draft), *properties, *reading.auxiliary.values()),
@@ -222,6 +223,12 @@ def _assemble(draft: MachineDraft, top: tuple[str, ...]) -> Machine:
             for target, names in reading.reads.items()
         },
     )
+    names = name_regions(reading.graph, machine)
+    regions = {
+        id: replace(region, wording=names.get(region.variable, ""))
+        for id, region in machine.regions.items()
+    }
+    return replace(machine, regions=regions)
 
 
 def _event_variable(draft: MachineDraft) -> tuple[Variable, ...]:

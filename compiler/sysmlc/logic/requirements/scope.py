@@ -25,7 +25,7 @@ from sysmlc.logic.syntax import FormulaError
 from sysmlc.support.suggestions import find_similar
 
 _NAME = re.compile(
-    r"(?:[^\W\d]\w*\.)*(?:running|finished)\(\s*[\w.]+\s*\)"
+    r"(?:[^\W\d]\w*\.)*(?:running|finished)\([^()]+\)"
     r"|[^\W\d]\w*(?:::[^\W\d]\w*)+"
     r"|[^\W\d]\w*(?:(?:\.|\#\(\d+\)\.)[^\W\d]\w*)*"
 )
@@ -130,7 +130,7 @@ class Scope(Struct, frozen=True):
         machine = f"{name}.state"
         if similar := find_similar(name, [*names, *filter(_is_qualified, self.context.literals)]):
             candidates = [similar]
-        elif self.names is not None and name.isidentifier() and self.names.find(machine):
+        elif self.names is not None and self.names.find(machine):
             candidates = [machine]
         else:
             candidates = [f"{k}={last}" for k in names if contains(self.find_domain(k), last)]
