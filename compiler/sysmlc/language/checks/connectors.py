@@ -23,7 +23,7 @@ TOO_FEW = rule(
     "SM270",
     "connects-too-few",
     Severity.ERROR,
-    "'{name}' connects {count} element{s}, but must connect at least two",
+    "'{name}' connects {count}, but must connect at least two",
     help="name a connected element at each of two or more ends",
 )
 NO_FLOW_END = rule(
@@ -88,7 +88,7 @@ def check_related(model: Model, node: Node) -> Iterator[Finding]:
     ends += model.lookup.features_of_role(node, "end")
     count = len({end for end in ends if _is_related(end)})
     if count < 2:
-        facts = {"name": name_of(model, node), "count": count_nouns(count, "related element")}
+        facts = {"name": name_of(model, node), "count": count_nouns(count, "element")}
         yield Finding(TOO_FEW, node.start, facts)
 
 
