@@ -152,7 +152,6 @@ def test_a_text_of_another_language_is_answered_with_the_language_that_reads_it(
 ):
     text = OVEN.replace("Globally, it is always the case that not (mode = Mode::fast) holds.", "{}")
     for sentence, language in (
-        ("mode = Mode::fast never holds", "pattern"),
         ("Oven shall satisfy mode = Mode::slow", "FRET"),
         ("G F mode = Mode::slow", "LTL"),
     ):
