@@ -1,4 +1,4 @@
-"""Types of what flows (SM244), and of what interfaces and connections connect (SM245)."""
+"""Types of what flows (SM244), and of what interfaces and connections connect (SM245, SM348)."""
 
 import pytest
 from small_models import list_codes, list_messages
@@ -111,7 +111,40 @@ def test_connected_features_of_unrelated_types_are_warnings(connection, messages
     assert list_messages(CONNECTIONS.format(connection)) == messages
 
 
-@pytest.mark.parametrize("code", ["SM244", "SM245"])
+WIRING = """
+    item def Command; item def Status;
+    port def Bus {{ in item command : Command; out item status : Status; }}
+    port def Plug;
+    interface def Wiring {{ end port server : Bus; end port client : ~Bus; }}
+    interface def Cable {{ end port one : Plug; end port two : ~Plug; }}
+    part a {{ port bus : Bus; port plug : Plug; }}
+    part b {{ port bus : ~Bus; port plug : ~Plug; }}
+    {}
+"""
+
+
+@pytest.mark.parametrize(
+    ("connection", "messages"),
+    [
+        ("interface : Wiring connect a.bus to b.bus;", []),
+        ("interface : Wiring connect client ::> b.bus to server ::> a.bus;", []),
+        ("interface : Cable connect b.plug to a.plug;", []),
+        (
+            "interface : Wiring connect b.bus to a.bus;",
+            [
+                "'bus' is connected as 'server' and 'bus' is connected as 'client': each has the "
+                "directions of the other end of the definition"
+            ],
+        ),
+        # That both ports have equal directions is a finding of pass 'flows'.
+        ("interface : Wiring connect a.bus to a.bus;", []),
+    ],
+)
+def test_ports_that_are_connected_in_the_wrong_order_are_warnings(connection, messages):
+    assert list_messages(WIRING.format(connection)) == messages
+
+
+@pytest.mark.parametrize("code", ["SM244", "SM245", "SM348"])
 def test_the_wrong_example_breaks_the_rule_and_the_right_one_does_not(code):
     page = catalogue()[code].read_page()
     assert list_codes(page.wrong, "sysml") == {code}

@@ -54,6 +54,13 @@ CONNECTED_UNLIKE = rule(
     "'{name}' of type '{type}' is connected as '{end}', whose type '{end_type}' is unrelated",
     help="connect a feature of the type of the end, or choose another definition",
 )
+ENDS_EXCHANGED = rule(
+    "SM348",
+    "ends-exchanged",
+    Severity.WARNING,
+    "{connected}: each has the directions of the other end of the definition",
+    help="exchange the connected features, or conjugate the types of both (~)",
+)
 
 _ASSOCIATIONS = kinds_of("Association")
 _CONNECTORS = kinds_of("Connector") - kinds_of("Flow")
@@ -114,13 +121,47 @@ def check_connected_types(model: Model, node: Node) -> Iterator[Finding]:
     """Report an end that connects a feature of another type than the definition states."""
     for end in find_own_features(node, "end"):
         for feature in _list_referenced(end):
-            for defined in model.lookup.redefined_features(end):
+            for defined in _list_redefined(model, end):
                 unlike = _find_unrelated_types(model, feature, defined)
                 if unlike is not None:
                     facts = {"name": name_of(model, feature), "type": name_of(model, unlike[0])}
                     facts |= {"end": name_of(model, defined)}
                     facts |= {"end_type": name_of(model, unlike[1])}
                     yield Finding(CONNECTED_UNLIKE, end.start, facts)
+
+
+def check_exchanged_ends(model: Model, node: Node) -> Iterator[Finding]:
+    """Report two connected ports whose directions are opposite to those of the ends they stand for.
+
+    If only one port does not fit its end, pass ``flows`` reports that both have equal directions.
+    """
+    ends = find_own_features(node, "end")
+    texts = [
+        f"'{name_of(model, feature)}' is connected as '{name_of(model, defined)}'"
+        for end in ends
+        for feature in _list_referenced(end)
+        for defined in _list_redefined(model, end)
+        # An end redefines by its position. With the name of the other end, it is meant as that one.
+        if end.name in (None, "", defined.name) and _is_reversed(model, feature, defined)
+    ]
+    if len(ends) == len(texts) == 2:
+        yield Finding(ENDS_EXCHANGED, node.start, {"connected": " and ".join(texts)})
+
+
+def _list_redefined(model: Model, end: Node) -> list[Node]:
+    return sorted(model.lookup.redefined_features(end), key=model.qualified_name)
+
+
+def _is_reversed(model: Model, feature: Node, end: Node) -> bool:
+    """Whether inputs of the end are outputs of the feature, or the other way round."""
+    directions = [
+        (find_direction(model, feature, member), find_direction(model, end, member))
+        for member in model.members(end)
+    ]
+    opposites = [_REVERSED.get(direction) for direction, _ in directions if direction in _REVERSED]
+    return bool(opposites) and opposites == [
+        end_direction for direction, end_direction in directions if direction in _REVERSED
+    ]
 
 
 def _is_owned_by_type(relation: Relation) -> bool:
@@ -229,6 +270,7 @@ END_CHECKS = (
     (_FLOW_USAGES, check_flow_directions),
     (_FLOW_USAGES, check_flow_types),
     (_CONNECTORS & USAGES, check_connected_types),
+    (_CONNECTORS & USAGES, check_exchanged_ends),
 )
 
 
