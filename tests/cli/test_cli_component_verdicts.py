@@ -40,6 +40,30 @@ def decide(workspace, all_passes):
 # -- features ------------------------------------------------------------------------------------
 
 
+def test_the_first_entry_decides_a_feature_without_initial_value(decide):
+    states = "state S {{ {} }} accept Go then T; state T {{ entry assign y := true; }}"
+    machine = "attribute x : Boolean; attribute y : Boolean; exhibit state s {{ entry; then S; {} }}"
+    block = machine.format(states.format("entry assign y := false;"))
+    assert decide(block, "G (y <-> state=T)", "G !y", "!x") == ["holds", "broken", "broken"]
+    block = machine.format(states.format("entry assign y := x;"))
+    assert decide(block, "y <-> x", "G (y -> x)", "!y") == ["holds", "broken", "broken"]
+    block = machine.format(states.format("entry assign y := not y;"))
+    assert decide(block, "y", "!y") == ["broken", "broken"]
+
+
+def test_a_state_may_have_the_name_of_an_operator(decide):
+    block = """attribute done : Boolean := false; exhibit state s { entry; then X; state X;
+        accept Go do assign done := true then 'true'; state 'true'; accept Go then U; state U; }"""
+    formulas = ("G (s.state=X & event=Go -> X done)", "G (done -> s.state!=X)", "s.state = X U done")
+    assert decide(block, *formulas, "F state=true -> F done", "G state!=U") == [
+        "holds",
+        "holds",
+        "broken",
+        "holds",
+        "broken",
+    ]
+
+
 def test_a_feature_that_nothing_assigns_keeps_its_value(decide):
     block = FLAGS + MOVE.format("if x do assign y := true")
     assert decide(block, "G !x", "G !y", "G (state=S)") == ["holds", "holds", "holds"]

@@ -19,7 +19,7 @@ from sysmlc.logic.components.objects import (
 )
 from sysmlc.logic.contract import Class, Conjunct, EnumerationDomain, Owner, Variable
 from sysmlc.logic.feature_writes import WriterIndex, iter_writes
-from sysmlc.logic.formula import Const, Formula, Literal, rename_variables
+from sysmlc.logic.formula import Const, Formula, rename_variables
 from sysmlc.logic.identifiers import identifier
 from sysmlc.logic.machines.derivation import (
     describe_exploration,
@@ -124,18 +124,12 @@ class PlacedMachine(Struct, frozen=True):
 
         It sets a feature to another value than the default, or the machine itself has the feature.
         """
-        initial: Mapping[str, Literal] = self.machine.initial
+        initial = {name: Const(value) for name, value in self.machine.initial.items()}
         return [
             name
             for name in self.machine.assigned
             if name not in self.slots
-            or (
-                name in initial
-                and any(
-                    path.values.get(name) != Const(initial[name])
-                    for path in self.exploration.starts
-                )
-            )
+            or any(path.values.get(name) != initial.get(name) for path in self.exploration.starts)
         ]
 
     def _drop_features(self) -> Exploration:
