@@ -40,9 +40,14 @@ def decide(workspace, all_passes):
 # -- features ------------------------------------------------------------------------------------
 
 
+FREE_FLAGS = "attribute x : Boolean; attribute y : Boolean; "
+
+
 def test_the_first_entry_decides_a_feature_without_initial_value(decide):
     states = "state S {{ {} }} accept Go then T; state T {{ entry assign y := true; }}"
-    machine = "attribute x : Boolean; attribute y : Boolean; exhibit state s {{ entry; then S; {} }}"
+    machine = (
+        "attribute x : Boolean; attribute y : Boolean; exhibit state s {{ entry; then S; {} }}"
+    )
     block = machine.format(states.format("entry assign y := false;"))
     assert decide(block, "G (y <-> state=T)", "G !y", "!x") == ["holds", "broken", "broken"]
     block = machine.format(states.format("entry assign y := x;"))
@@ -52,9 +57,14 @@ def test_the_first_entry_decides_a_feature_without_initial_value(decide):
 
 
 def test_a_state_may_have_the_name_of_an_operator(decide):
-    block = """attribute done : Boolean := false; exhibit state s { entry; then X; state X;
-        accept Go do assign done := true then 'true'; state 'true'; accept Go then U; state U; }"""
-    formulas = ("G (s.state=X & event=Go -> X done)", "G (done -> s.state!=X)", "s.state = X U done")
+    block = """attribute done : Boolean := false;
+        exhibit state s { entry; then X; state X; accept Go do assign done := true then 'true';
+            state 'true'; accept Go then U; state U; }"""
+    formulas = (
+        "G (s.state=X & event=Go -> X done)",
+        "G (done -> s.state!=X)",
+        "s.state = X U done",
+    )
     assert decide(block, *formulas, "F state=true -> F done", "G state!=U") == [
         "holds",
         "holds",

@@ -12,6 +12,7 @@ from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain
 from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
+from sysmlc.logic.identifiers import identifier
 from sysmlc.logic.syntax import (
     ARITHMETIC,
     COMPARISONS,
@@ -135,7 +136,8 @@ class FormulaReader:
         if op in _CHAINS:
             return self._read_chain(op, precedence, left)
         offset = self.cursor.take().offset
-        right = self.read_term(precedence + (op not in self._syntax.right_associative))
+        right = self._read_reserved_literal(op, left)
+        right = right or self.read_term(precedence + (op not in self._syntax.right_associative))
         if op in COMPARISONS:
             comparison = self._build_comparison(op, left, right, offset)
             if self._peek_operator(precedence) in COMPARISONS:
@@ -146,6 +148,17 @@ class FormulaReader:
             return Term(formula, NUMBER, left.offset)
         formula = _apply_connective(op, self.require_boolean(left), self.require_boolean(right))
         return Term(formula, BOOLEAN, left.offset)
+
+    def _read_reserved_literal(self, op: Op, left: Term) -> Term | None:
+        """Read a literal by its name in the model, if that is a reserved word (``state=X``)."""
+        token = self.cursor.next
+        if op not in COMPARISONS or not isinstance(left.kind, EnumerationDomain):
+            return None
+        literal = identifier(token.text)
+        if literal == token.text or literal not in left.kind.literals or token.kind != "name":
+            return None
+        self.cursor.take()
+        return Term(Const(literal), left.kind, token.offset)
 
     def _read_chain(self, op: Op, precedence: int, left: Term) -> Term:
         """Read all operands of a chain of one operator."""
