@@ -15,7 +15,7 @@ DUPLICATE = rule(
     "same-name",
     Severity.WARNING,
     "'{owner}' has {count} members with the name '{name}'",
-    help="give them different names, or remove all but one",
+    help="{advice}",
 )
 HIDING = rule(
     "SM284",
@@ -32,6 +32,17 @@ HIDING_LIBRARY = rule(
     "'{general}'",
     help="redefine the inherited feature (':>> {name}'), or give the new feature another name",
 )
+_DISTINGUISH = "give them different names, or remove all but one"
+_ATTRIBUTES = kinds_of("AttributeUsage") | {"ReferenceUsage"}
+_BEHAVIOURS = kinds_of("ActionDefinition") | kinds_of("ActionUsage")
+NEW_FEATURE = rule(
+    "SM292",
+    "value-of-new-feature",
+    Severity.WARNING,
+    "'{name}' of '{owner}' is a new feature; it changes nothing of the '{name}' of '{outer}'",
+    help="to change that one, write 'assign {name} := ...;'; for a new feature, write its kind: "
+    "'attribute {name} ...'",
+)
 MEMBERSHIPS = frozenset({"FeatureMembership", "OwningMembership", "EndFeatureMembership"})
 """Memberships of checked members. Parameters of cases are those of the included case."""
 _METADATA = kinds_of("MetadataFeature")
@@ -46,9 +57,49 @@ def check_names(model: Model, node: Node) -> Iterator[Finding]:
             members_by_name.setdefault(name, []).append(member)
     for name, members in members_by_name.items():
         if len(members) > 1:
-            for member in members:
+            bare = [member for member in members if _is_bare(member)]
+            advice = _advise_bare(name, node) if bare else _DISTINGUISH
+            for member in bare if 0 < len(bare) < len(members) else members:
                 facts = {"owner": name_of(model, node), "count": str(len(members)), "name": name}
-                yield Finding(DUPLICATE, member.name_start, facts)
+                yield Finding(DUPLICATE, member.name_start, facts | {"advice": advice})
+
+
+def check_new_features(model: Model, node: Node) -> Iterator[Finding]:
+    """Report members such as ``n := n + 1;`` of an action that an attribute around it hides."""
+    for member in node.members:
+        has_value = any(part.membership == "FeatureValue" for part in member.members)
+        if not has_value or not _is_bare(member) or member.name is None:
+            continue
+        outer = _find_outer_feature(node, member.name)
+        if outer is not None and not any(True for _ in model.lookup.inherited(node, member.name)):
+            facts = {"owner": name_of(model, node), "name": member.name, "outer": outer}
+            yield Finding(NEW_FEATURE, member.name_start, facts)
+
+
+def _find_outer_feature(node: Node, name: str) -> str | None:
+    """Return the name of the innermost element around a step that owns an attribute *name*."""
+    scope = node.owner
+    while scope is not None and scope.owner is not None:
+        for member in scope.members:
+            if member.name == name and member.kind in _ATTRIBUTES:
+                return scope.name or scope.kind
+        scope = scope.owner
+    return None
+
+
+def _is_bare(member: Node) -> bool:
+    """Whether a member is declared by its name without a keyword: ``x = 3;``, ``x;``."""
+    return member.kind == "ReferenceUsage" and member.start == member.name_start
+
+
+def _advise_bare(name: str, owner: Node) -> str:
+    """Return what to write in place of a declaration that is probably not meant as one."""
+    if owner.kind in _BEHAVIOURS:
+        return (
+            f"a name without a keyword declares a new feature: write 'assign {name} := ...;' to "
+            f"change the value, 'then {name};' to perform an action"
+        )
+    return f"a name without a keyword declares a new feature: write '{name}' once, with its value"
 
 
 def check_inherited(model: Model, node: Node) -> Iterator[Finding]:
@@ -96,6 +147,7 @@ def _redefines(model: Model, member: Node, hit: Node) -> bool:
 
 
 CHECKS = (
+    (_BEHAVIOURS, check_new_features),
     (kinds_of("Namespace"), check_names),
     (DECLARED_TYPES, check_inherited),
 )

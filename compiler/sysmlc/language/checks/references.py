@@ -17,7 +17,7 @@ OTHER_KIND = rule(
     "references-other-kind",
     Severity.ERROR,
     "'{name}' is {found}, but {wanted} is required here",
-    help="reference {wanted}",
+    help="{advice}",
 )
 PART_OF_PORT = rule(
     "SM237",
@@ -49,6 +49,7 @@ _REFERENCED_KINDS = {
     "EventOccurrenceUsage": (kinds_of("OccurrenceUsage") | kinds_of("Step"), "an occurrence"),
 }
 _USAGES = kinds_of("Usage")
+_VALUES = kinds_of("AttributeUsage") | {"ReferenceUsage"}
 _PORT_OWNERS = kinds_of("PortDefinition") | kinds_of("PortUsage")
 RELATIONS = frozenset({"ReferenceSubsetting", "Redefinition", "Subsetting", "FeatureTyping"})
 """Kinds of relations that are checked."""
@@ -89,8 +90,19 @@ def _find_other_kind(node: Node, relation: Relation, target: Node) -> Iterator[_
         name = str(relation.reference)
         yield (
             OTHER_KIND,
-            {"name": name, "found": describe_kind(target), "wanted": words},
+            {
+                "name": name,
+                "found": describe_kind(target),
+                "wanted": words,
+                "advice": _advise_reference(node, target, name, words),
+            },
         )
+
+
+def _advise_reference(node: Node, target: Node, name: str, words: str) -> str:
+    """Return what to write for a reference to an element of another kind than *words* says."""
+    is_assignment = node.kind == "PerformActionUsage" and target.kind in _VALUES
+    return f"to change it, write 'assign {name} := ...'" if is_assignment else f"reference {words}"
 
 
 def _has_other_direction(model: Model, node: Node, target: Node) -> bool:

@@ -1,4 +1,4 @@
-"""Names of types and units in other languages, and what the libraries of SysML v2 call them."""
+"""Names of units in other languages, and what the libraries of SysML v2 call them."""
 
 from functools import cache
 
@@ -8,27 +8,6 @@ from sysmlc.language.text import parse
 from sysmlc.language.text.spelling import quote_name
 from sysmlc.support import resources
 from sysmlc.support.units import find_unit
-
-_TYPES = """
-    ScalarValues::Boolean: bool boolean
-    ScalarValues::Integer: int integer long short sint dint lint
-    ScalarValues::Natural: uint unsigned usint udint nat
-    ScalarValues::Real: float double decimal real lreal
-    ScalarValues::String: str string wstring char text
-    ISQ::DurationValue: duration timedelta
-"""
-"""Qualified names of types, and words for them in programming languages, IEC 61131-3 and UML."""
-
-
-@cache
-def _read_types() -> dict[str, str]:
-    rows = (row.split(": ") for row in _TYPES.strip().splitlines())
-    return {word: type_.strip() for type_, words in rows for word in words.split()}
-
-
-def find_type(name: str) -> str:
-    """Return the qualified name of the type that another language calls *name*, or nothing."""
-    return _read_types().get(name.casefold(), "")
 
 
 def find_unit_name(model: Model, name: str) -> str:

@@ -6,10 +6,11 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.language.metaclasses import describe_kind, kinds_of
 from sysmlc.language.names import contexts
 from sysmlc.language.names.expression_results import find_result
-from sysmlc.language.names.foreign_names import find_type, find_unit_name
+from sysmlc.language.names.foreign_names import find_unit_name
 from sysmlc.language.names.generals import GENERALIZATION_KINDS
 from sysmlc.language.names.lookup import Lookup
 from sysmlc.language.names.model import Model
+from sysmlc.language.text.hints import find_type
 from sysmlc.language.tree import Document, Node, Reference, Relation, make_subject
 from sysmlc.support.suggestions import find_similar
 
@@ -45,8 +46,12 @@ _MAX_SIMILAR_NAMES = 200
 _NOT_GIVEN = "give the file that has it as an input too, or the folder of all files"
 _UNKNOWN = "declare it, import the package that has it, or give its file as an input too"
 _NOT_INHERITED = "only an inherited feature can be redefined: declare it in a general type"
-_SYNTAX_ERRORS = ("SM192", "SM195")
+_SYNTAX_ERRORS = ("SM192", "SM194", "SM195")
 """Rules of the parser whose finding about a word includes that the word is no known name."""
+_LITERALS = {"True": "true", "False": "false"} | dict.fromkeys(
+    ("None", "NULL", "Null", "nil", "nullptr", "undefined"), "null"
+)
+"""Literals of other languages."""
 _MAX_LISTED = 7
 """Names of the members of an element that are listed in place of a similar name."""
 _TYPES_OF_LIBRARY = ("ScalarValues", "ISQ")
@@ -219,6 +224,8 @@ def _name_in_library(
     name = ""
     if relation.kind == "FeatureTyping" and names[:-1] in ((), ("ScalarValues",)):
         name = find_type(names[-1])
+    elif relation.kind == "Membership" and names[0] in _LITERALS:
+        return _LITERALS[names[0]]
     elif relation.kind == "Membership" and names[:-1] in ((), ("SI",)) and _is_unit(node):
         name = find_unit_name(model, names[-1])
     own_name = name.rpartition("::")[2]
@@ -375,20 +382,18 @@ def report_unresolved(
     # A keyword in place of the name, or a stray word that is read as an expression.
     if sink.has_reported(_SYNTAX_ERRORS, subject.place):
         return
+    use, names = (node, relation), reference.chain[index]
+    advice = _make_advice(model, use, names, context, container, len(sink))
+    is_quoted = reference.start >= 0 and document.text.startswith("'", reference.start)
+    if advice == _UNKNOWN and is_quoted and relation.kind == "Membership":
+        advice = f'{advice}; a string stands in double quotes: "{name}"'
     sink.report(
         UNRESOLVED,
         subject,
         cause=f"unknown name {name}{inside}",
         name=name,
         inside=inside,
-        advice=_make_advice(
-            model,
-            (node, relation),
-            reference.chain[index],
-            context,
-            container,
-            len(sink),
-        ),
+        advice=advice,
     )
 
 

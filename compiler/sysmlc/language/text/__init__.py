@@ -170,6 +170,8 @@ _STEPS = {
     "ForkNode",
     "Membership",
 }
+_ENUMERATED_VALUE = ("EnumerationUsage", "VariantMembership")
+"""The metaclasses of a value and of its membership."""
 _MEMBER_BORDERS = (";", "{", "}")
 _IMPORTS = ("MembershipImport", "NamespaceImport")
 
@@ -209,14 +211,27 @@ def _check_bare_definition(tokens: Tokens, node: Node, errors: Errors) -> None:
 
 def _check_enumeration(node: Node, errors: Errors) -> None:
     for member in node.members:
-        if member.kind != "EnumerationUsage" and member.membership != "OwningMembership":
+        if member.membership == "ResultExpressionMembership":
+            _read_last_value(member, errors)
+        elif member.kind != "EnumerationUsage" and member.membership != "OwningMembership":
             _report(member, "a member that is not an enumerated value", "other definitions", errors)
         elif member.kind.endswith("Definition"):
             _report(member, "a definition", "packages and other definitions", errors)
 
 
+def _read_last_value(member: Node, errors: Errors) -> None:
+    """Report a last value without its semicolon, as other languages write it, and declare it."""
+    errors.report_missing_after(member.end, "';'")
+    if member.kind == "FeatureReferenceExpression" and member.relations:
+        member.name = member.relations[0].reference.chain[-1][-1]
+        member.kind, member.membership, member.name_start = *_ENUMERATED_VALUE, member.start
+        member.relations.clear()
+
+
 def _check_owner(tokens: Tokens, node: Node, owner: Node, errors: Errors) -> None:
     key = node.kind if node.kind in _ALLOWED_OWNERS else node.membership
+    if node.membership == "ResultExpressionMembership" and owner.kind == "EnumerationDefinition":
+        return
     if node.kind in _STEPS and key not in _ALLOWED_OWNERS:
         key = "action"
     what, kinds, where = _ALLOWED_OWNERS.get(key, ("", (), ""))

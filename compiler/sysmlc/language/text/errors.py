@@ -1,11 +1,13 @@
 """Syntax errors, reported at their location with the expected tokens and advice."""
 
 import re
+from bisect import bisect_left
 from collections.abc import Collection
 from functools import cached_property
 
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.language.text import hints, rules
+from sysmlc.language.text.corrections import Correction
 from sysmlc.language.text.lexer import LexicalFault, Tokens, TokenTypes
 from sysmlc.language.text.nesting import MAX_DEPTH
 from sysmlc.language.tree import ByteOffsets
@@ -33,6 +35,8 @@ _LEXICAL_FAULTS = {
         "{} is a typographic quotation mark",
         "write straight quotation marks: 'name' or \"text\"",
     ),
+    "stereotype": ("unexpected {}", hints.STEREOTYPE),
+    "operator": ("'{char}' is no operator", "write {}"),
     "number": ("{} is too large a number", "write it with an exponent below 308"),
     "negation": ("{} is no operator", "write 'not' for a negation"),
     "character": (
@@ -109,7 +113,9 @@ class Errors:
             if is_unclosed:
                 self._unclosed_lines.add(self._find_line(fault.start))
             what, advice = _LEXICAL_FAULTS[fault.what]
-            self.report(rule, fault.start, what=what.format(_quote_fault(fault)), advice=advice)
+            written, char = _quote_fault(fault), self._tokens.text[fault.start : fault.start + 1]
+            facts = {"what": what.format(written, char=char), "advice": advice.format(written)}
+            self.report(rule, fault.start, **facts)
 
     def report_unexpected(self, index: int, expected: list[str]) -> None:
         """Report a token in a place where only ``expected`` tokens are valid."""
@@ -150,15 +156,19 @@ class Errors:
         advice = f"'{word}' is not a keyword: did you mean '{keyword}'?"
         self.report(rules.SYNTAX, start, found=f"'{word}'", expected=f"'{keyword}'", advice=advice)
 
-    def report_correction(self, correction: hints.Correction) -> None:
+    def report_correction(self, correction: Correction) -> None:
         """Report a token that the parser replaces, removes or lacks, as in ``part a :: A``."""
         self.report(
             rules.SYNTAX,
             self._tokens.starts[correction.position],
             found=self._describe_token(correction.position),
-            expected=f"'{correction.expected}'",
+            expected=correction.expected,
             advice=correction.advice,
         )
+
+    def report_missing_after(self, end: int, words: str) -> None:
+        """Report a token that is missing after the one that ends at a character of the text."""
+        self.report_missing(bisect_left(self._tokens.ends, end) + 1, words)
 
     def report_missing(self, index: int, words: str) -> None:
         """Report a missing token before ``index``, where the token before it ends."""
@@ -175,7 +185,7 @@ class Errors:
     def _find_written_before(self, index: int) -> int:
         """Return the last token before ``index`` that recovery did not insert."""
         before = index - 1
-        while before > 0 and not self._tokens[before]:
+        while before > 0 and self._tokens.starts[before] == self._tokens.ends[before]:
             before -= 1
         return max(before, 0)
 
@@ -189,7 +199,9 @@ class Errors:
 
     def report_unclosed(self) -> None:
         """Report, once, the innermost brace that is open at the end of the text."""
-        if self._is_unclosed_reported:
+        # An open comment contains the rest of the text.
+        has_open_comment = any(fault.what == "comment" for fault in self._tokens.faults)
+        if self._is_unclosed_reported or has_open_comment:
             return
         self._is_unclosed_reported = True
         open_braces: list[int] = []

@@ -1,57 +1,104 @@
 """Advice about a token that does not fit: common slips, words of drafts and of other languages."""
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection
 from difflib import SequenceMatcher
-from typing import NamedTuple
+from functools import cache
 
 from sysmlc.language.text.lexer import Tokens
 from sysmlc.language.text.spelling import RESERVED
 from sysmlc.support.suggestions import did_you_mean
 
+COMMA = "members end with ';', they are not separated by commas"
 INITIAL = "':=' gives an initial value, '=' binds for good, 'default' may be overridden"
+_SHORT_NAME = "write the short name after the keyword: requirement <'R5'> name"
 _PARAMETERS = "parameters are members of the body: {{ in {0}; }}"
 _TOKENS = {
     "import": "write the import in a body: private import A::*;",
     ":=": INITIAL,
-    ",": "members end with ';', they are not separated by commas",
+    ",": COMMA,
     "extends": "write ':>' or 'specializes' before a general type",
     "is": "write ':>' or 'specializes' before a general type, and ':' before the type of a usage",
+    "id": _SHORT_NAME,
     "with": "ends of a connection are joined by 'to': connect a to b",
     "when": "write 'accept when c' for a change, 'if c' for a guard, both before 'then'",
 }
 """Advice about a token, wherever it stands."""
 _FIRST_WORDS = {
-    "activity": "'action' is meant",
-    "assoc": "in SysML an association is a 'connection def'",
-    "behavior": "in SysML a behaviour is an 'action def'",
-    "block": "a block is a 'part def'",
-    "class": "in SysML a class is a 'part def', 'item def' or 'attribute def'",
-    "component": "'part' is meant",
-    "datatype": "in SysML a type of values is an 'attribute def'",
-    "decision": "'decide' is meant",
-    "elif": "'else if' is meant",
-    "elseif": "'else if' is meant",
-    "enumeration": "'enum def' is meant",
-    "feature": "in SysML a feature is a 'ref', 'attribute', 'part' or 'item'",
-    "func": "'calc' is meant",
-    "function": "in SysML a function is a 'calc def'",
-    "id": "write the short name after the keyword: requirement <'R5'> name",
-    "link": "'connection' is meant",
-    "operation": "'action' is meant",
-    "property": "'attribute', 'part' or 'ref' is meant",
-    "readonly": "what never changes is 'constant', in KerML 'const'",
-    "predicate": "in SysML a predicate is a 'constraint def'",
-    "signal": "declare a signal as 'item def' or 'attribute def'",
-    "stream": "'flow' is meant: flow from a.x to b.y",
-    "struct": "in SysML a structure is a 'part def' or 'item def'",
-    "usecase": "'use case' is meant",
-    "value": "'attribute' is meant",
-    "var": "'attribute' is meant",
-    "valuetype": "a type of values is an 'attribute def'",
+    "activity": ("action", "'action' is meant"),
+    "assoc": ("connection def", "in SysML an association is a 'connection def'"),
+    "association": ("connection def", "in SysML an association is a 'connection def'"),
+    "behavior": ("action def", "in SysML a behaviour is an 'action def'"),
+    "block": ("part def", "a block is a 'part def'"),
+    "class": ("part def", "in SysML a class is a 'part def', 'item def' or 'attribute def'"),
+    "component": ("part", "'part' is meant"),
+    "connector": ("connect", "'connect' is meant: connect a to b"),
+    "datatype": ("attribute def", "in SysML a type of values is an 'attribute def'"),
+    "decision": ("decide", "'decide' is meant"),
+    "elif": (None, "'else if' is meant"),
+    "elseif": (None, "'else if' is meant"),
+    "enumeration": ("enum def", "'enum def' is meant"),
+    "equation": (None, "an equation is a constraint: assert constraint { a == b }"),
+    "extends": (None, "a definition names its general type before its body: part def A :> B"),
+    "feature": ("ref", "in SysML a feature is a 'ref', 'attribute', 'part' or 'item'"),
+    "final": ("", "what never changes is 'constant'"),
+    "foreach": ("for", "'for' is meant: for i in 1..3 { ... }"),
+    "full": ("", "every port is a 'port'"),
+    "func": ("calc", "'calc' is meant"),
+    "function": ("calc def", "in SysML a function is a 'calc def'"),
+    "id": (None, _SHORT_NAME),
+    "initial": ("entry ; then", "the first state follows the entry action: entry; then a;"),
+    "input": ("in", "'in' is meant"),
+    "let": ("attribute", "'attribute' is meant"),
+    "link": ("connect", "'connect' is meant: connect a to b"),
+    "method": ("action", "'action' is meant"),
+    "model": (None, "'package' or 'part def' is meant, with the members in braces"),
+    "module": ("package", "'package' is meant"),
+    "namespace": ("package", "'package' is meant"),
+    "note": ("comment", "a text in the model is a comment /* ... */, a note is written // ..."),
+    "operation": ("action", "'action' is meant"),
+    "output": ("out", "'out' is meant"),
+    "parameter": ("attribute", "'attribute' is meant"),
+    "predicate": ("constraint def", "in SysML a predicate is a 'constraint def'"),
+    "property": ("attribute", "'attribute', 'part' or 'ref' is meant"),
+    "proxy": ("", "every port is a 'port'"),
+    "readonly": ("constant", "what never changes is 'constant', in KerML 'const'"),
+    "set": ("assign", "'assign' is meant: assign x := 3;"),
+    "signal": ("item def", "declare a signal as 'item def' or 'attribute def'"),
+    "static": ("", "a feature belongs to each element of its type, or to a package"),
+    "stereotype": ("metadata def", "a stereotype is a 'metadata def'"),
+    "stream": ("flow", "'flow' is meant: flow from a.x to b.y"),
+    "struct": ("part def", "in SysML a structure is a 'part def' or 'item def'"),
+    "switch": (None, "write a choice with 'if': if x == 1 { ... } else if x == 2 { ... }"),
+    "text": (None, "the text of a requirement is its documentation: doc /* ... */"),
+    "timeout": (None, "a time is awaited: accept after 3 [SI::s];"),
+    "type": (None, "another name of a type is an alias: alias B for A;"),
+    "typedef": (None, "another name of a type is an alias: alias B for A;"),
+    "usecase": ("use case", "'use case' is meant"),
+    "using": ("private import", "names are imported: private import A::*;"),
+    "val": ("attribute", "'attribute' is meant"),
+    "value": ("attribute", "'attribute' is meant"),
+    "valuetype": ("attribute def", "a type of values is an 'attribute def'"),
+    "var": ("attribute", "'attribute' is meant"),
+    "variable": ("attribute", "'attribute' is meant"),
+    "virtual": ("", "every feature can be redefined: part :>> a"),
+    "void": ("action", "an operation is an 'action'"),
+    "wait": (None, "a time is awaited: accept after 3 [SI::s];"),
 }
-"""Advice about a word that begins a member and is no keyword."""
+"""The keywords that a word of another language at the beginning of a member stands for, and advice.
+
+The keywords are empty for a word to omit, and None where the rest of the member must change, too.
+"""
+_TYPES = """
+    ScalarValues::Boolean: bool boolean
+    ScalarValues::Integer: int integer long short sint dint lint
+    ScalarValues::Natural: uint unsigned usint udint nat natural
+    ScalarValues::Real: float double decimal real lreal
+    ScalarValues::String: str string wstring char text
+    ISQ::DurationValue: duration timedelta
+"""
+"""Qualified names of types, and words for them in programming languages, IEC 61131-3 and UML."""
 _END_TOKENS = frozenset({"to", "then", "="})
-_DIRECTIONS = frozenset({"in", "out", "inout"})
+DIRECTIONS = frozenset({"in", "out", "inout"})
 _SEPARATORS = ("", ";", "{", "}")
 _MIN_KEYWORD_LENGTH = 5
 """Length of the shortest word that is taken for a misspelt keyword; shorter ones are names."""
@@ -59,16 +106,17 @@ _MIN_MISSPELT_LENGTH = 3
 _MAX_MISSPELT_LENGTH = 30
 _MIN_SIMILARITY = 0.7
 """Ratio of ``difflib`` from which the first word of a member counts as a misspelt keyword."""
+_COMPARISONS = frozenset({"==", "!=", "<", "<=", ">", ">="})
+_OPERATORS = {"mod": "%", "div": "/", "rem": "%"}
 _DOUBLED_OPERATORS = {"&": "'and'", "|": "'or'"}
-_ARROWS = ("-", "->", "=>", "~", ",")
-_CONDITION_HEADS = frozenset({"constraint", "assert", "assume", "require"})
-_ORDER_HEADS = frozenset({"first", "succession", "transition"})
-_PAIR_HEADS = frozenset({"connect", "connection", "flow", "interface", "message"})
+ARROWS = ("-", "->", "=>", "~", ",")
 ARROW = "an order is written 'first a then b;', a transition 'transition first a then b;'"
-_JOINED_BY_TO = "ends are joined by 'to': a to b"
-_COMPARISON = "'==' compares two values, '=' binds one"
-_MAX_HEAD = 200
-"""Tokens before a member in which the head of its body is searched for."""
+JOINED_BY_TO = "ends are joined by 'to': a to b"
+COMPARISON = "'==' compares two values, '=' binds one"
+STEREOTYPE = (
+    "a stereotype is metadata: #name before a declaration, or @name; in a body; what a "
+    "'part def' declares is a block"
+)
 
 Hint = Callable[[Tokens, int, Collection[str]], str]
 """Returns advice about a token in whose place only other tokens are valid, or an empty string."""
@@ -118,7 +166,7 @@ def _advise_first_word(tokens: Tokens, index: int, beginnings: Collection[str]) 
     if not is_first or not word.isidentifier() or word in beginnings:
         return ""
     if word in _FIRST_WORDS:
-        return f"'{word}' is not a keyword: {_FIRST_WORDS[word]}"
+        return _explain_first_word(word)
     similar = list_similar_keywords(word, beginnings)
     return f"'{word}' is not a keyword: did you mean '{similar[0]}'?" if similar else ""
 
@@ -126,7 +174,7 @@ def _advise_first_word(tokens: Tokens, index: int, beginnings: Collection[str]) 
 def list_similar_keywords(word: str, keywords: Collection[str]) -> list[str]:
     """Return the keywords that *word* may misspell, most similar first."""
     # The comparison takes quadratic time, and a hostile text may have words of megabytes.
-    if not _MIN_MISSPELT_LENGTH <= len(word) <= _MAX_MISSPELT_LENGTH or word in _FIRST_WORDS:
+    if not _MIN_MISSPELT_LENGTH <= len(word) <= _MAX_MISSPELT_LENGTH or _is_foreign(word):
         return []
     candidates = sorted(keyword for keyword in keywords if keyword.isalpha())
     ratios = {
@@ -137,15 +185,47 @@ def list_similar_keywords(word: str, keywords: Collection[str]) -> list[str]:
     return sorted(similar, key=lambda key: (sorted(key) != sorted(word), -ratios[key]))
 
 
+def _is_foreign(word: str) -> bool:
+    """Whether a word begins declarations in another language."""
+    return word in _FIRST_WORDS or bool(find_type(word))
+
+
+@cache
+def _read_types() -> dict[str, str]:
+    rows = (row.split(": ") for row in _TYPES.strip().splitlines())
+    return {word: type_.strip() for type_, words in rows for word in words.split()}
+
+
+def find_type(name: str) -> str:
+    """Return the qualified name of the type that another language calls *name*, or nothing."""
+    return _read_types().get(name.casefold(), "")
+
+
+def translate_first_word(word: str, name: str) -> tuple[str | None, str]:
+    """Return the keywords for a word of another language before a declared name, and advice.
+
+    The keywords are None if no such word is known, or if the rest of the member must change, too.
+    """
+    if word in _FIRST_WORDS:
+        return _FIRST_WORDS[word][0], _explain_first_word(word)
+    type_ = find_type(word)
+    advice = f"write the kind first and the type after ':', such as attribute {name} : {type_};"
+    return ("attribute", advice) if type_ else (None, "")
+
+
+def _explain_first_word(word: str) -> str:
+    return f"'{word}' is not a keyword: {_FIRST_WORDS[word][1]}"
+
+
 def _advise_direction(tokens: Tokens, before: int, index: int, beginnings: Collection[str]) -> str:
     """Advise about a direction behind the kind of a feature: ``port in p``."""
     word, kind = tokens[index], tokens[before]
-    if word not in _DIRECTIONS or kind not in beginnings or not kind.isalpha():
+    if word not in DIRECTIONS or kind not in beginnings or not kind.isalpha():
         return ""
     return f"write the direction before the kind: {word} {kind} ..."
 
 
-def _member_before(tokens: Tokens, index: int) -> list[str]:
+def list_member_before(tokens: Tokens, index: int) -> list[str]:
     """Return the tokens before ``index`` that belong to the same member."""
     start = index
     while start > 0 and tokens[start - 1] not in _SEPARATORS:
@@ -153,7 +233,7 @@ def _member_before(tokens: Tokens, index: int) -> list[str]:
     return [tokens[position] for position in range(start, index)]
 
 
-def _next_tokens(tokens: Tokens, index: int) -> list[str]:
+def list_next_tokens(tokens: Tokens, index: int) -> list[str]:
     """Return up to two tokens after ``index``."""
     return [tokens[position] for position in range(index + 1, min(index + 3, len(tokens.types)))]
 
@@ -164,15 +244,21 @@ def _next_tokens(tokens: Tokens, index: int) -> list[str]:
 def _advise_unit(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
     """Advise about a name behind a number: the author probably means a unit, ``5 [kg]``."""
     unit, number = tokens[index], tokens[index - 1] if index else ""
-    is_unit = number[:1].isdigit() and unit[:1].isalpha() and unit not in RESERVED
-    return f"units stand in brackets: {number} [{unit}]" if is_unit else ""
+    if not number[:1].isdigit() or not unit.isidentifier() or unit in RESERVED:
+        return ""
+    if unit in _OPERATORS:
+        return f"write '{_OPERATORS[unit]}' for '{unit}'"
+    # Integers of other languages: 0x1F, 1_000.
+    if unit[0] == "_" or number == "0":
+        return "write the number in decimal digits only: 31 for 0x1F, 1000 for 1_000"
+    return f"units stand in brackets: {number} [{unit}]"
 
 
 def _advise_parameters(tokens: Tokens, index: int, expected: Collection[str]) -> str:
     """Advise about a list in parentheses behind a declared name."""
-    before = _member_before(tokens, index)
+    before = list_member_before(tokens, index)
     if tokens[index] == "(" and {";", "{"} <= set(expected):
-        names = [word for word in _next_tokens(tokens, index) if word not in _DIRECTIONS]
+        names = [word for word in list_next_tokens(tokens, index) if word not in DIRECTIONS]
         return _PARAMETERS.format(names[0] if names and names[0].isidentifier() else "x")
     is_list = tokens[index] in (")", ",", ":") and before[2:3] == ["("] and "," in expected
     return _PARAMETERS.format(before[3]) if is_list and len(before) > 3 else ""
@@ -181,33 +267,38 @@ def _advise_parameters(tokens: Tokens, index: int, expected: Collection[str]) ->
 def _advise_multiplicity(tokens: Tokens, index: int, expected: Collection[str]) -> str:
     if tokens[index] != "[" or _END_TOKENS.isdisjoint(expected):
         return ""
-    if "if" in expected and "transition" in _member_before(tokens, index):
+    if "if" in expected and "transition" in list_member_before(tokens, index):
         return "a guard is written with 'if': transition first a if x > 0 then b"
     return "write the multiplicity before the end: [0..1] a"
 
 
 def _advise_import(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
-    if "import" not in _member_before(tokens, index):
+    before = list_member_before(tokens, index)
+    if tokens[index] == "import" and before[:1] == ["from"]:
+        name = "".join(list_next_tokens(tokens, index)[:1])
+        return f"write 'private import {'::'.join(before[1::2])}::{name};'"
+    if "import" not in before:
         return ""
     if tokens[index] == ".":
         return "names of packages are joined by '::'"
-    name = "".join(_next_tokens(tokens, index)[:1])
+    name = "".join(list_next_tokens(tokens, index)[:1])
     return f"another name is an alias: alias {name} for ...;" if tokens[index] == "as" else ""
 
 
 def _advise_ends(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
     """Advise about the ends of a succession or transition."""
-    before = _member_before(tokens, index)
+    before = list_member_before(tokens, index)
     source = before[-1] if before else "a"
     if tokens[index] == "then" and before[-2:-1] == ["succession"]:
         return f"write 'first' before the source: succession first {source} then ..."
-    if tokens[index] == "to" and "transition" in before:
+    if tokens[index] in ("from", "to") and "transition" in before:
+        source = source if tokens[index] == "to" else "a"
         return f"a transition names its source and target: transition first {source} then ..."
     return ""
 
 
 def _advise_condition(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
-    is_condition = _member_before(tokens, index)[:1] == ["assert"]
+    is_condition = list_member_before(tokens, index)[:1] == ["assert"]
     return (
         "write the asserted condition in braces: assert constraint { x > 0 }"
         if is_condition
@@ -217,19 +308,19 @@ def _advise_condition(tokens: Tokens, index: int, _expected: Collection[str]) ->
 
 def _advise_result(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
     """Advise about ``return`` with an expression: it declares the result."""
-    is_value = _member_before(tokens, index)[:1] == ["return"]
+    is_value = list_member_before(tokens, index)[:1] == ["return"]
     return "'return' declares the result: return r = ...;" if is_value else ""
 
 
 def _advise_effect(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
     """Advise about ``/`` before the effect of a transition, as SysML v1 writes it."""
-    is_effect = tokens[index] == "/" and "accept" in _member_before(tokens, index)
+    is_effect = tokens[index] == "/" and "accept" in list_member_before(tokens, index)
     return "an effect is written with 'do': accept e do action x then b" if is_effect else ""
 
 
 def _advise_quotes(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
     """Advise about a declared name with a hyphen or a leading digit: ``part def my-part``."""
-    before, after = tokens[index - 1] if index else "", "".join(_next_tokens(tokens, index)[:1])
+    before, after = tokens[index - 1] if index else "", "".join(list_next_tokens(tokens, index)[:1])
     is_hyphen = tokens[index] == "-" and before.isidentifier() and after.isalnum()
     is_digit = tokens[index][:1].isdigit() and after.isidentifier() and before == "def"
     name = f"{before}-{after}" if is_hyphen else f"{tokens[index]}{after}"
@@ -240,13 +331,16 @@ def _advise_quotes(tokens: Tokens, index: int, _expected: Collection[str]) -> st
 
 
 def _advise_then(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
-    is_conditional = tokens[index] == "then" and "if" in _member_before(tokens, index)
-    return "a conditional expression has a question mark: if a ? b else c" if is_conditional else ""
+    before = list_member_before(tokens, index)
+    if tokens[index] == "then" and "if" in before:
+        return "a conditional expression has a question mark: if a ? b else c"
+    is_implication = before[:1] == ["if"] and "then" in before and tokens[index] in _COMPARISONS
+    return "a condition under a condition is written: a implies b" if is_implication else ""
 
 
 def _advise_call(tokens: Tokens, index: int, expected: Collection[str]) -> str:
     """Advise about a call as a statement: ``Drill();``."""
-    before = _member_before(tokens, index)
+    before = list_member_before(tokens, index)
     is_call = tokens[index] == ";" and list(expected) == ["}"] and before[1:2] == ["("]
     return f"an action is performed by a usage: action x : {before[0]};" if is_call else ""
 
@@ -258,20 +352,71 @@ def _advise_loop(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
 
 def _advise_sum(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
     """Advise about an assignment that changes a value: ``n += 1``."""
-    before = _member_before(tokens, index)
-    is_sum = before[:1] == ["assign"] and _next_tokens(tokens, index)[:1] == ["="]
-    return (
-        f"write the new value: {before[-1]} := {before[-1]} {tokens[index]} ..." if is_sum else ""
-    )
+    before = list_member_before(tokens, index)
+    if before[:1] == ["assign"] and list_next_tokens(tokens, index)[:1] == ["="]:
+        return f"write the new value: {before[-1]} := {before[-1]} {tokens[index]} ..."
+    name, operator = "".join(before[:-1]), "".join(before[-1:])
+    if tokens[index] == "=" and operator in ("+", "-", "*", "/") and before[0].isidentifier():
+        return f"write the new value: assign {name} := {name} {operator} ...;"
+    if tokens[index] in (";", "}") and before[1:] in (["+", "+"], ["-", "-"]):
+        return f"write the new value: assign {before[0]} := {before[0]} {operator} 1;"
+    return ""
 
 
-def _advise_note(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
-    is_note = _member_before(tokens, index)[:2] == ["-", "-"]
-    return "a note is written // ..." if is_note else ""
+def _advise_values(tokens: Tokens, index: int, expected: Collection[str]) -> str:
+    """Advise about decimals and lists: ``3,5``, ``3.``, ``[1, 2]``, ``{1, 2}``."""
+    before = list_member_before(tokens, index)
+    following = "".join(list_next_tokens(tokens, index)[:1])
+    head = list_member_before(tokens, max(index - len(before) - 1, 0))
+    is_list = tokens[index] == "," and head[-1:] == ["="]
+    if is_list or (tokens[index] == "[" and "null" in expected):
+        return "a list of values stands in parentheses: (1, 2, 3)"
+    if tokens[index] == "," and before[-2:-1] == ["="] and (before[-1] + following).isdigit():
+        return f"a decimal number has a point: {before[-1]}.{following}"
+    if before[-1:] == ["."] and before[-2:][0].isdigit():
+        return f"a digit follows the point: {before[-2]}.0"
+    return ""
+
+
+def _advise_bounds(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
+    """Advise about multiplicities: ``a[3..]``, ``part[3] a``."""
+    before = list_member_before(tokens, index)
+    if tokens[index] == "]" and before[-1:] == [".."]:
+        return f"no upper bound is written '*': [{before[-2]}..*]"
+    is_early = before[1:2] == ["["] and before[0] in RESERVED and "]" in before[:-1]
+    name = before[-1] if before else ""
+    bounds = "".join(before[1:-1])
+    return f"the multiplicity follows the name: {before[0]} {name}{bounds}" if is_early else ""
+
+
+def _advise_relation(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
+    """Advise about ``alias B = A``, ``alias A as B``, ``bind a b`` and ``a --> b``."""
+    before, symbol = list_member_before(tokens, index), tokens[index]
+    following = "".join(list_next_tokens(tokens, index)[:1])
+    if before[:1] == ["alias"] and symbol in ("=", "as"):
+        names = (before[-1], following) if symbol == "=" else (following, before[-1])
+        return f"write 'alias {names[0]} for {names[1]};'"
+    if before[:1] == ["bind"] and symbol.isidentifier():
+        return f"write '=' between both: bind {''.join(before[1:])} = {symbol};"
+    return ARROW if symbol == "->" and before[-1:] == ["-"] else ""
+
+
+def _advise_body(tokens: Tokens, index: int, expected: Collection[str]) -> str:
+    """Advise about ``if x action a;`` and ``package A; { ... }``."""
+    if tokens[index] == "{" and index and tokens[index - 1] == ";":
+        return "take away the ';' before the body"
+    is_step = tokens[index] == ";" and list_member_before(tokens, index)[:1] == ["if"]
+    return "the steps stand in braces: if x > 0 { ... }" if is_step and "{" in expected else ""
+
+
+def _advise_name(tokens: Tokens, index: int, expected: Collection[str]) -> str:
+    """Advise about a name in double quotes: ``part def "My part"``."""
+    is_name = tokens[index].startswith('"') and "NAME" in expected and "BODY" not in expected
+    return f"a name stands in single quotes: '{tokens[index][1:-1]}'" if is_name else ""
 
 
 def _advise_package(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
-    before = _member_before(tokens, index)
+    before = list_member_before(tokens, index)
     is_path = tokens[index] == "." and "package" in before
     return (
         f"a package in another one is a member of its body: package {before[-1]} {{ package ..."
@@ -291,7 +436,7 @@ def _advise_initial(tokens: Tokens, index: int, _expected: Collection[str]) -> s
 
 def _advise_type_first(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
     """Advise about a type before a name, as programming languages write it: ``Tank t;``."""
-    before, name = _member_before(tokens, index), tokens[index]
+    before, name = list_member_before(tokens, index), tokens[index]
     is_pair = len(before) == 1 and before[0].isidentifier() and name.isidentifier()
     if not is_pair or before[0] in _FIRST_WORDS or before[0][:1].islower():
         return ""
@@ -313,7 +458,11 @@ _SLIPS: tuple[Hint, ...] = (
     _advise_call,
     _advise_loop,
     _advise_sum,
-    _advise_note,
+    _advise_values,
+    _advise_bounds,
+    _advise_relation,
+    _advise_body,
+    _advise_name,
     _advise_package,
     _advise_initial,
     _advise_type_first,
@@ -332,7 +481,7 @@ def _advise_doubled_operator(tokens: Tokens, index: int, _expected: Collection[s
 
 def _advise_comparison(tokens: Tokens, index: int, expected: Collection[str]) -> str:
     is_binding = tokens[index] == "=" and "==" in expected and "=" not in expected
-    return _COMPARISON if is_binding else ""
+    return COMPARISON if is_binding else ""
 
 
 def _advise_conditional(tokens: Tokens, index: int, expected: Collection[str]) -> str:
@@ -352,8 +501,8 @@ def _advise_comment(tokens: Tokens, index: int, expected: Collection[str]) -> st
 
 
 def _advise_connection(tokens: Tokens, index: int, expected: Collection[str]) -> str:
-    is_arrow = tokens[index] in _ARROWS and "to" in expected
-    return _JOINED_BY_TO if is_arrow else ""
+    is_arrow = tokens[index] in ARROWS and "to" in expected
+    return JOINED_BY_TO if is_arrow else ""
 
 
 def _advise_spelling(tokens: Tokens, index: int, expected: Collection[str]) -> str:
@@ -374,100 +523,3 @@ _FOREIGN: tuple[Hint, ...] = (
     _advise_connection,
     _advise_spelling,
 )
-
-
-# -- corrections of a member ---------------------------------------------------------------------
-
-
-class Correction(NamedTuple):
-    """Tokens of a member that the parser reads as others: ``length`` of them from ``position``.
-
-    ``words`` are the keywords and symbols in their place, ``expected`` the one to report.
-    """
-
-    position: int
-    length: int
-    words: tuple[str, ...]
-    expected: str
-    advice: str
-
-
-def list_corrections(tokens: Tokens, start: int, index: int) -> Iterator[Correction]:
-    """Yield the corrections that may mend a member that begins at ``start`` and fails at ``index``.
-
-    The parser applies the first with which it accepts the member up to ``index``.
-    """
-    member = [tokens[position] for position in range(start, index + 1)]
-    is_condition = not _CONDITION_HEADS.isdisjoint(_read_body_head(tokens, start))
-    for position, symbol in enumerate(member, start):
-        if is_condition and symbol == "=":
-            yield _replace_by("==", position, _COMPARISON)
-        elif is_condition and symbol in ("=>", "->"):
-            yield _replace_by("implies", position, "an implication is written: a implies b")
-        elif symbol in ("::", ":"):
-            yield from _correct_colon(tokens, member, start, position)
-        elif symbol in _ARROWS and not _ORDER_HEADS.isdisjoint(member):
-            yield _replace_by("then", position, "an order is written: first a then b")
-        elif symbol in _ARROWS and not _PAIR_HEADS.isdisjoint(member):
-            yield _replace_by("to", position, _JOINED_BY_TO)
-        elif symbol == "on" and "satisfy" in member:
-            yield _replace_by("by", position, "write 'by' before what satisfies it")
-    yield from _correct_last_tokens(tokens, member, start, index)
-
-
-def _correct_colon(
-    tokens: Tokens, member: list[str], start: int, index: int
-) -> Iterator[Correction]:
-    """Yield what a colon may stand for: ``part a :: A``, ``part def B : A``, ``part b : > a``."""
-    following = _next_tokens(tokens, index)
-    if member[index - start] == "::":
-        if index > start + 1:
-            advice = "':' stands before a type, '::' joins the names of packages"
-            yield _replace_by(":", index, advice)
-    elif following[:2] == [">", ">"]:
-        yield Correction(index, 3, (":>>",), ":>>", "write ':>>' without blanks")
-    elif following[:1] == [">"]:
-        yield Correction(index, 2, (":>",), ":>", "write ':>' without blanks")
-    elif "def" in member:
-        advice = "':>' stands before a general type, ':' before the type of a usage"
-        yield _replace_by(":>", index, advice)
-
-
-def _correct_last_tokens(
-    tokens: Tokens, member: list[str], start: int, index: int
-) -> Iterator[Correction]:
-    """Yield corrections of the last two tokens of *member*, which ends at ``index``."""
-    before, last = member[-2] if len(member) > 1 else "", member[-1]
-    if (before, last) == ("<", ">"):
-        yield Correction(index - 1, 2, ("!=",), "!=", "'!=' means that two values differ")
-    if before == ",":
-        yield _replace_by(";", index - 1, _TOKENS[","])
-    if before == "then" and last == "{" and "if" in member:
-        advice = "the steps follow without 'then': if x > 0 { ... }"
-        yield Correction(index - 1, 1, (), "{", advice)
-    if last == "do" and _next_tokens(tokens, index)[:1] == ["{"]:
-        advice = "the steps follow without 'do': while x > 0 { ... }"
-        yield Correction(index, 1, (), "{", advice)
-    if last in _DIRECTIONS and "".join(_next_tokens(tokens, index)[:1]).isidentifier():
-        advice = f"write the direction before the kind: {last} {before} ..."
-        yield Correction(index - 1, 2, (last, before), last, advice)
-    if last == "then" and member[0].isidentifier():
-        advice = f"write 'first' before the source: first {member[0]} then ..."
-        yield Correction(start, 0, ("first",), "first", advice)
-    if last.isidentifier() and not _ORDER_HEADS.isdisjoint(member[:-1]):
-        advice = f"write 'then' before the target: then {last}"
-        yield Correction(index, 0, ("then",), "then", advice)
-
-
-def _replace_by(word: str, index: int, advice: str) -> Correction:
-    return Correction(index, 1, (word,), word, advice)
-
-
-def _read_body_head(tokens: Tokens, start: int) -> list[str]:
-    """Return the tokens of the member whose body has a member at ``start``."""
-    depth = 0
-    for position in range(start - 1, max(-1, start - _MAX_HEAD), -1):
-        depth += (tokens[position] == "}") - (tokens[position] == "{")
-        if depth < 0:
-            return _member_before(tokens, position)
-    return []

@@ -30,7 +30,16 @@ MAX_INTEGER_DIGITS = 1_000
 """Digits of the longest natural number that is read exactly."""
 _PROBE_LENGTH = 64
 """A file in UTF-16 has a zero among so many first characters."""
-_TYPOGRAPHIC = frozenset("\u201c\u201d\u201e\u2018\u2019\u201a\u00ab\u00bb")
+_TYPOGRAPHIC = re.compile(
+    "(?P<string>[\u201c\u201d\u201e][^\u201c\u201d\u201e\r\n]*[\u201c\u201d])"
+    "|(?P<name>[\u2018\u2019\u201a][^\u2018\u2019\u201a\r\n]*[\u2018\u2019])"
+    "|[\u201c\u201d\u201e\u2018\u2019\u201a]"
+)
+"""A string or name in typographic quotation marks, or one such mark."""
+_STEREOTYPE = re.compile("\u00ab[^\u00ab\u00bb\r\n]*\u00bb")
+_QUOTATION_MARKS = "'\"\u201c\u201d\u201e\u2018\u2019\u201a"
+_FOREIGN_SYMBOLS = {"≥": ">=", "≤": "<=", "≠": "!=", "∧": "and", "∨": "or", "×": "*"}
+"""Characters that are read as operators."""
 _CONTROL_CHARACTER = re.compile(r"[\x00-\x08\x0e-\x1f\x7f]")
 _CONTROL_SHARE = 0.05
 """A file is binary if more than this share of its first characters are control characters."""
@@ -46,8 +55,9 @@ class LexicalFault(Struct, frozen=True):
 
     ``what`` is the kind of fault: ``comment``, ``quote`` or ``string`` for an unterminated comment,
     quoted name or string, ``character`` for a character that no token contains, ``negation`` for
-    `!`, ``typography`` for a typographic quotation mark, ``number`` for a number that is too large,
-    ``encoding`` for a text that is not UTF-8.
+    `!`, ``operator`` for another character that is read as an operator, ``typography`` for a
+    typographic quotation mark, ``stereotype`` for a stereotype in guillemets, ``number`` for a
+    number that is too large, ``encoding`` for a text that is not UTF-8.
     """
 
     what: str
@@ -71,7 +81,7 @@ class Tokens(Struct, frozen=True, eq=False):
     Builders collect nodes and faults in the other lists: ``ref_usages`` has usages with the keyword
     `ref`, which is redundant or not depending on their owners; ``restricted_nodes`` has members
     that only some bodies may have; ``build_faults`` has other faults. ``corrections`` has the
-    keywords that stand for misspelt words, by the offsets of the words.
+    keywords that stand for misspelt and missing words, by the offsets of the words.
     """
 
     text: str
@@ -82,34 +92,39 @@ class Tokens(Struct, frozen=True, eq=False):
     ref_usages: list[Node]
     restricted_nodes: list[Node]
     build_faults: list[BuildFault]
-    corrections: dict[int, str]
+    corrections: dict[tuple[int, int], str]
 
     def __getitem__(self, index: int) -> str:
-        start = self.starts[index]
-        if start in self.corrections:
-            return self.corrections[start]
-        return self.text[start : self.ends[index]]
+        start, end = self.starts[index], self.ends[index]
+        return self.corrections.get((start, end)) or self.text[start:end]
 
-    def insert(self, index: int, kind: int) -> None:
-        """Insert an empty token that the text lacks."""
+    def append(self, kind: int, start: int, end: int) -> None:
+        """Append a token."""
+        self.types.append(kind)
+        self.starts.append(start)
+        self.ends.append(end)
+
+    def insert(self, index: int, kind: int, word: str = "") -> None:
+        """Insert an empty token that the text lacks, a keyword if *word* is given."""
         place = self.ends[index - 1] if index else 0
+        if word:
+            self.corrections[place, place] = word
         self.types.insert(index, kind)
         self.starts.insert(index, place)
         self.ends.insert(index, place)
 
     def replace(self, index: int, length: int, words: Mapping[str, int]) -> None:
-        """Replace tokens by at most as many keywords or symbols, given with their types.
+        """Replace tokens by keywords or symbols, given with their types.
 
-        A keyword in place of no token at all is inserted as an empty token.
+        Keywords for which there are too few tokens are inserted as empty tokens.
         """
-        if not length:
-            for kind in words.values():
-                self.insert(index, kind)
-            return
         surplus = slice(index + len(words), index + length)
         for position, (word, kind) in enumerate(words.items(), index):
-            self.types[position] = kind
-            self.corrections[self.starts[position]] = word
+            if position < index + length:
+                self.types[position] = kind
+                self.corrections[self.starts[position], self.ends[position]] = word
+            else:
+                self.insert(position, kind, word)
         del self.types[surplus], self.starts[surplus], self.ends[surplus]
 
     def forget_from(self, start: int) -> None:
@@ -127,7 +142,13 @@ class Tokens(Struct, frozen=True, eq=False):
     def read_name(self, index: int) -> str:
         """Return the name that a token writes, without quotes and escapes (KerML 8.2.2.3)."""
         written = self.text[self.starts[index] : self.ends[index]]
-        return unquote(written) if written[0] == "'" else written
+        # Recovery reads a string as a name.
+        return unquote(written) if written[0] in _QUOTATION_MARKS else written
+
+    def is_in_line(self, index: int, other: int) -> bool:
+        """Whether the second token begins in the line in which the first one begins."""
+        gap = self.text[self.starts[index] : self.starts[other]]
+        return "\n" not in gap and "\r" not in gap
 
 
 class TokenTypes(Struct, frozen=True):
@@ -198,14 +219,23 @@ def _skip_invalid(tokens: Tokens, types: TokenTypes, start: int) -> int:
         match = _REST_OF_LITERAL.match(text, start + 1)
         end = match.end() if match else len(text)
         tokens.faults.append(LexicalFault("quote" if char == "'" else "string", start, char))
-        tokens.types.append(types.name if char == "'" else types.string)
-        tokens.starts.append(start)
-        tokens.ends.append(end)
+        tokens.append(types.name if char == "'" else types.string, start, end)
         return end
     # A pair of quotation marks is one fault, and so are all of a text from a word processor.
-    if char in _TYPOGRAPHIC:
+    if match := _TYPOGRAPHIC.match(text, start):
         if all(fault.what != "typography" for fault in tokens.faults):
             tokens.faults.append(LexicalFault("typography", start, char))
+        if match.lastgroup:
+            kind = types.name if match.lastgroup == "name" else types.string
+            tokens.append(kind, start, match.end())
+        return match.end()
+    if match := _STEREOTYPE.match(text, start):
+        tokens.faults.append(LexicalFault("stereotype", start, match[0]))
+        return match.end()
+    if symbol := _FOREIGN_SYMBOLS.get(char, ""):
+        tokens.faults.append(LexicalFault("operator", start, symbol))
+        tokens.append(types.words[symbol], start, start + 1)
+        tokens.corrections[start, start + 1] = symbol
         return start + 1
     # Each character is reported once: a text in another script would give an error per letter.
     if all(char != fault.text for fault in tokens.faults):
@@ -247,7 +277,7 @@ def strip_comment(written: str) -> str:
 
 def unquote(written: str) -> str:
     """Return the text between quotes, without escapes (KerML 8.2.2.3, Table 4)."""
-    is_closed = len(written) > 1 and written[-1] == written[0]
+    is_closed = len(written) > 1 and (written[-1] == written[0] or not written[0].isascii())
     inner = written[1:-1] if is_closed else written[1:]
     return _ESCAPE.sub(_unescape, inner) if "\\" in inner else inner
 

@@ -7,6 +7,7 @@ panic mode drops the stack down to where the rest of the member can be parsed.
 from collections.abc import Iterator
 
 from sysmlc.language.text import hints
+from sysmlc.language.text.corrections import list_corrections
 from sysmlc.language.text.errors import Errors
 from sysmlc.language.text.lalr import Rules, Stack, Tables
 from sysmlc.language.text.lexer import Tokens
@@ -16,6 +17,8 @@ _MAX_RECOVERIES = 500
 """Recoveries after which the rest of a text is given up."""
 _MAX_CORRECTED = 100
 """Tokens of a member before the error, up to which a slip is searched for."""
+_CONDITIONS = ("assert", "assume", "require", "if")
+"""First words of members that mean something else without their conditions."""
 _PREFIX_WITH_BODY = "abstract"
 """A prefix that a body may follow, inserted before a body whose head was not understood."""
 
@@ -84,7 +87,8 @@ class Recovery:
             if self._accepts_all(states, (*prefixes, self._words[keyword], *following)):
                 self._errors.report_misspelt_keyword(word_index, keyword)
                 tokens.types[word_index] = self._words[keyword]
-                tokens.corrections[tokens.starts[word_index]] = keyword
+                word_span = tokens.starts[word_index], tokens.ends[word_index]
+                tokens.corrections[word_span] = keyword
                 del stack[3 * body + 3 :]
                 return start
         return -1
@@ -97,8 +101,10 @@ class Recovery:
             return -1
         body = self._find_body(stack[2::3])
         states = stack[2 : 3 * body + 3 : 3]
-        for correction in hints.list_corrections(tokens, start, index):
-            words = {word: self._words[word] for word in correction.words if word in self._words}
+        for correction in list_corrections(tokens, start, index):
+            if any(word not in self._words for word in correction.words):
+                continue
+            words = {word: self._words[word] for word in correction.words}
             before = tokens.types[start : correction.position]
             end = correction.position + correction.length
             after = tokens.types[end : max(index, end) + 1]
@@ -107,6 +113,9 @@ class Recovery:
                 tokens.forget_from(tokens.starts[start])
                 tokens.replace(correction.position, correction.length, words)
                 del stack[3 * body + 3 :]
+                # After a note or a stereotype the next error has nothing to do with it.
+                if not words and correction.position == start:
+                    self._last_error = start
                 return start
         return -1
 
@@ -128,9 +137,10 @@ class Recovery:
         return index
 
     def _substitute(self, states: list[int], index: int, is_quiet: bool) -> int:
-        """Take a keyword for a name, or one kind of `=` for another."""
+        """Take a keyword or string for a name, or one kind of `=` for another."""
         tokens, text = self._tokens, self._tokens[index]
-        if text[:1].isalpha() and text in self._words:
+        is_string = tokens.types[index] == self._tables.types.string
+        if is_string or (text[:1].isalpha() and text in self._words):
             candidates = [self._tables.types.name]
         elif text in ("=", ":=", "=="):
             substitutes = ("=", ":=") if text == "==" else (":=", "=")
@@ -140,7 +150,11 @@ class Recovery:
         for token_type in candidates:
             if self._accepts_all(states, (token_type, *tokens.types[index + 1 : index + 2])):
                 tokens.types[index] = token_type
-                if not is_quiet:
+                if is_string:
+                    # A name in typographic quotation marks is reported already.
+                    if not is_quiet and text[0] == '"':
+                        self._errors.report_unexpected(index, self._find_expected(states))
+                elif not is_quiet:
                     self._errors.report_substitution(index, self._tables.names[token_type])
                 return index
         return -1
@@ -241,8 +255,9 @@ class Recovery:
         for stop, symbol in self._find_stops(index):
             required = ";" if symbol in ("}", "") else symbol
             top = self._find_accepting(stack, body, self._words[required])
-            # A word of another language, as in 'block A;', declares nothing.
-            if index > 0 and self._find_member_start(index) == index - 1:
+            # A word of another language, as in 'block A;', and half a condition declare nothing.
+            start = self._find_member_start(index)
+            if index > 0 and (start == index - 1 or self._tokens[start] in _CONDITIONS):
                 top = -1
             del stack[3 * max(top, body) + 3 :]
             self._last_error = stop
