@@ -84,7 +84,7 @@ def test_a_guard_that_a_contract_cannot_express_is_no_error(guard, language, rea
 def test_a_word_without_a_language_is_a_condition_in_words():
     (finding,) = list_text_findings(guard="ready")
     assert finding == (
-        "SM411: guard 'ready' has no formula: the word 'ready' is not a property of 'Gate'; "
+        "SM411: guard 'ready' has no formula: the word 'ready' is no feature of 'Gate'; "
         "the contract treats it as the input 'ready'"
     )
 

@@ -357,7 +357,7 @@ def test_a_condition_over_a_feature_of_a_package_names_the_package():
     assert all(
         "has no formula: 'ready' is a feature of package 'P'; " in d.message for d in findings
     )
-    assert all(d.help.startswith("use a property of the owner") for d in findings)
+    assert all(d.help.startswith("give it to the owner") for d in findings)
 
 
 CONSTANTS = """package Limits {

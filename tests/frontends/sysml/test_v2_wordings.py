@@ -17,7 +17,9 @@ RECIPE = """package Shop {{
     {}
 }}
 """
-FOREIGN_WORDS = "«|stereotype|opaque|tagged value|initial node|pseudostate|orthogonal|lifeline"
+FOREIGN_WORDS = (
+    "«|stereotype|opaque|tagged value|initial node|pseudostate|orthogonal|lifeline|propert(?:y|ies)"
+)
 
 
 def list_findings(text, folder):

@@ -262,7 +262,7 @@ def lower_termination(lowering: "Lowering", node: Node, owner: Element) -> Eleme
     """Lower a terminate action: the end of the behaviour, or an action for another occurrence."""
     if any(expression is not None for expression in expressions.list_inputs(node)):
         construct = "a terminate action for another occurrence"
-        lowering.mark_approximated(node, construct, "an opaque action")
+        lowering.mark_approximated(node, construct, "an action of its own")
         return _add_action(lowering, node, owner, "destroy")
     name = nodes.name_of(node)
     end = lowering.add_element(node, Kind.CONTROL, name, owner, subkind="final")

@@ -100,20 +100,24 @@ WORDINGS = {
         "conjugate the type of one of the ports (~), or choose another type for it",
     ),
     "SM410": Wording(
-        "",
+        "attribute '{name}' has no range; {range} is assumed",
         "write 'assert constraint {{ {name} >= {low} and {name} <= {high} }}'",
     ),
     "SM412": Wording(
-        "{what} '{text}' reads '{name}', which is not a property of {context} itself; the contract "
+        "{what} '{text}' reads '{name}', which is no feature of {context} itself; the contract "
         "treats the condition as an input",
-        "pass the value to {context}, by a property or a signal, for a contract about it",
+        "pass the value to {context}, by an attribute or a signal, for a contract about it",
     ),
+    "SM414": Wording("", "correct the value or the range of the attribute"),
     "SM420": Wording(
         "", "remove it, write it with other states and transitions, or do without a contract"
     ),
     "SM421": Wording(
         "state '{owner}' has substates, but no entry transition to the first of them",
         "write 'entry; then <substate>;' into the state",
+    ),
+    "SM424": Wording(
+        "'{vertex}' leads back to itself without a state between", "put a state into the cycle"
     ),
     "SM426": Wording(
         "'{first}' and '{second}' of parallel states can both assign '{variable}' in one step; the "
@@ -124,6 +128,14 @@ WORDINGS = {
         "'{first}' leaves a parallel state while {others} can be taken in another of its states; "
         "the component gets no contract",
         "let the transition start at the parallel state, or use another event",
+    ),
+    "SM428": Wording(
+        "", "test the value before the assignment, or give the attribute a wider range"
+    ),
+    "SM431": Wording("", "let the transition end at a state that it may reach"),
+    "SM433": Wording(
+        "default value '{default}' of attribute '{name}' is not in {domain}",
+        "correct the default value or the range",
     ),
     "SM450": Wording(
         "action '{activity}' has no first step: a succession leads to each of its steps",
@@ -144,7 +156,7 @@ WORDINGS = {
         "pass activities)",
     ),
     "SM458": Wording(
-        "", "use properties of the action, or of the part that performs it, for a contract"
+        "", "use attributes of the action, or of the part that performs it, for a contract"
     ),
     "SM464": Wording(
         "parameter '{pin}' of {node} gets no value; it is taken as available",
@@ -174,6 +186,12 @@ WORDINGS = {
         "let '{component}' exhibit a state or perform an action, or move the formula to a "
         "component that does",
     ),
+    "SM504": Wording(
+        "",
+        "let its transitions lead to, or from, states in different states of one parallel state, "
+        "without guards and triggers",
+    ),
+    "SM520": Wording("", "give the attributes smaller ranges"),
     "SM526": Wording("", "connect the parts, or name them in the flow"),
     "SM545": Wording("", "correct the name, or declare an attribute of that name"),
     "SM601": Wording(

@@ -76,12 +76,11 @@ class Symbol(Struct, frozen=True):
 
 Scope = Callable[[str], Symbol | None]
 """Looks up a name; None if it is unknown."""
-FINITE_ADVICE = "use properties that are a Boolean, an enumeration or an Integer for a contract"
+FINITE_ADVICE = "use Booleans, enumerations and Integers for a contract"
 EMPTY_ADVICE = "write the condition as its text, or delete it if there is none"
 """Advice on a condition without text."""
 ELSEWHERE_ADVICE = (
-    "use a property of the owner of the behaviour, or pass the value by a signal, for a contract "
-    "about it"
+    "give it to the owner of the behaviour, or pass the value by a signal, for a contract about it"
 )
 _ORDER = {"<": Op.LT, "<=": Op.LE, ">": Op.GT, ">=": Op.GE}
 _EQUALITY = {"==": Op.EQ, "!=": Op.NE}

@@ -50,7 +50,7 @@ NOT_UNDERSTOOD = rule(
     "{what} '{text}' has no formula: {reason}; the contract treats it as the input '{variable}'",
     help=FINITE_ADVICE,
 )
-_SYNTAX_ADVICE = "write an expression over the properties of the owner"
+_SYNTAX_ADVICE = "write an expression over features of the owner"
 UNKNOWN_NAME = rule(
     "SM412",
     "unknown-name",
@@ -88,7 +88,7 @@ class TargetFault(NamedTuple):
 
 
 IS_CONSTANT = TargetFault("is constant", "make the property changeable, or assign another one")
-MISSING_TARGET_ADVICE = "correct the name, or let the owner of the property assign it"
+MISSING_TARGET_ADVICE = "correct the name, or let its owner assign it"
 OPAQUE_EFFECT = rule(
     "SM416",
     "opaque-effect",
@@ -243,7 +243,7 @@ def _explain_name(reading: ReadingContext, element: Element, text: str, name: st
         return f"'{name}' is not known, and only the name of the {named} has this text"
     language = str(element.attrs.get("guard_language", element.attrs.get("language", "")))
     if not language and text.strip() == name and not find_similar(name, reading.context.features):
-        return f"the word '{name}' is not a property of '{reading.context.name}'"
+        return f"the word '{name}' is no feature of '{reading.context.name}'"
     if language and language.lower() not in _CHECKED_LANGUAGES:
         return f"'{name}' is not known, and names in {language} are not checked"
     return f"'{name}' in single quotes is not a text here" if f"'{name}'" in text else ""
@@ -431,7 +431,7 @@ def _report_target(
     fault = IS_CONSTANT
     if feature is None:
         context = reading.context.name or "the context"
-        fault = TargetFault(f"is not a property of {context} itself", MISSING_TARGET_ADVICE)
+        fault = TargetFault(f"is no feature of {context} itself", MISSING_TARGET_ADVICE)
     output = _effect_output(reading, text, behaviour)
     reading.sink.report(
         NOT_ASSIGNABLE,

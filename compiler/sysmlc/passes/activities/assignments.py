@@ -208,7 +208,7 @@ NO_RANGE = Refusal(
     "it has no range", "constrain it ({name} >= 0 and {name} <= 9)", is_declared=True
 )
 SEVERAL_VALUES = Refusal(
-    "it has several values", "use one property for each value", is_declared=True
+    "it has several values", "give each value a name of its own", is_declared=True
 )
 GIVEN_OR_CONSTANT = Refusal(
     "others decide it too", "assign to a feature that is neither given nor constant"
@@ -216,7 +216,7 @@ GIVEN_OR_CONSTANT = Refusal(
 OTHER_OBJECT = Refusal("it belongs to another object", "let the object itself do it (an operation)")
 UNKNOWN_VALUE = Refusal(
     "the contract does not follow the assigned value",
-    "assign an expression over properties in an opaque action",
+    "assign an expression over features in the action",
 )
 
 

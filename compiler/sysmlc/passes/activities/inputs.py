@@ -162,7 +162,7 @@ class Scope:
                 activity = self._activity
                 owner = describe_feature_elsewhere(self._graph, activity, activity, error.name)
                 element = f"'{activity.name}'" if activity.name else "the activity"
-                message = owner or f"'{error.name}' is not a property of {element} or its owner"
+                message = owner or f"'{error.name}' is no feature of {element} or its owner"
                 advice = ELSEWHERE_ADVICE if owner else ""
                 raise UnreadableError(message, error.name, advice) from None
             advice = FINITE_ADVICE if error.fault is Fault.UNSUPPORTED else ""
