@@ -5,6 +5,7 @@ from pass_runs import list_codes
 from token_graphs import derive_token_graph, derive_token_graphs, list_edges, name_inputs
 
 from activity_sketch import sketch
+from rule_examples import read_graphs
 from sysmlc.diagnostics import catalogue
 from sysmlc.logic import evaluate
 from sysmlc.logic.activities.token_step import State, TokenStep
@@ -92,7 +93,7 @@ def test_the_nodes_of_a_sequence_node_run_in_order():
 
 
 def test_a_structured_node_without_flows_is_only_a_group_and_not_reported():
-    graphs, sink = derive_token_graphs(RULES["SM471"].read_page().right)
+    graphs, sink = derive_token_graphs(read_graphs(RULES["SM471"]).right)
     assert [node.kind for node in graphs[0].nodes].count("structured") == 0
     assert "SM471" not in list_codes(sink)
 
@@ -217,7 +218,7 @@ def test_a_fork_between_the_actions_of_a_test_belongs_to_the_test():
 
 
 def test_the_environment_decides_how_often_an_iterative_expansion_region_repeats():
-    graph = derive_token_graph(RULES["SM477"].read_page().right)
+    graph = derive_token_graph(read_graphs(RULES["SM477"]).right)
     assert name_inputs(graph) == ["input_more_e", "done_x"]
     guards = [edge.guard.text for edge in graph.edges if edge.guard]
     assert guards == ["there is another element", "else"]

@@ -5,6 +5,7 @@ from pass_runs import list_codes
 from token_graphs import derive_token_graph, derive_token_graphs, list_edges, name_inputs
 
 from activity_sketch import sketch
+from rule_examples import has_graphs, read_graphs
 from sysmlc.diagnostics import Sink, catalogue
 from sysmlc.ir.text import parse_text, print_text
 from sysmlc.logic.activities.token_graph import TokenGraph
@@ -14,31 +15,31 @@ LIMITS = {"SM455": {"max_markings": 3}, "SM479": {"max_depth": 1}}
 """Options with limits that the models of the rules about limits exceed."""
 RULES = {code: rule for code, rule in catalogue().items() if "SM450" <= code <= "SM479"}
 UNORDERED = "activity 'a' has nodes but no flows, so that nothing orders them; it gets no contract"
-WITH_GRAPHS = sorted(code for code, rule in RULES.items() if rule.read_page().language == "ir")
+WITH_GRAPHS = sorted(code for code, rule in RULES.items() if has_graphs(rule))
 """Rules whose examples are graphs; those in XMI or SysML v2 are compiled as files."""
 
 
 @pytest.mark.parametrize("code", WITH_GRAPHS)
 def test_rule_reports_its_wrong_example_and_not_its_right_one(code):
     options = LIMITS.get(code, {})
-    _, sink = derive_token_graphs(RULES[code].read_page().wrong, **options)
+    _, sink = derive_token_graphs(read_graphs(RULES[code]).wrong, **options)
     assert code in list_codes(sink)
     diagnostic = next(d for d in sink if d.rule.code == code)
-    assert diagnostic.subject.id in parse_text(RULES[code].read_page().wrong)
+    assert diagnostic.subject.id in parse_text(read_graphs(RULES[code]).wrong)
     assert "{" not in diagnostic.message + diagnostic.help
-    _, sink = derive_token_graphs(RULES[code].read_page().right, **options)
+    _, sink = derive_token_graphs(read_graphs(RULES[code]).right, **options)
     assert code not in list_codes(sink)
 
 
 @pytest.mark.parametrize("code", WITH_GRAPHS)
 def test_an_activity_without_token_graph_is_always_reported(code):
-    for text in (RULES[code].read_page().wrong, RULES[code].read_page().right):
+    for text in (read_graphs(RULES[code]).wrong, read_graphs(RULES[code]).right):
         token_graphs, sink = derive_token_graphs(text)
         assert token_graphs or len(sink)
 
 
 def test_the_pass_leaves_the_elements_unchanged_and_is_idempotent():
-    graph = parse_text(RULES["SM453"].read_page().right)
+    graph = parse_text(read_graphs(RULES["SM453"]).right)
     before = print_text(graph)
     Activities().run(graph, Sink())
     once = graph.derived(TokenGraph)
@@ -194,7 +195,7 @@ def test_a_data_store_retains_its_value_when_it_is_read():
 
 def test_an_activity_ends_when_no_token_in_it_can_move():
     """A join that waits in vain does not delay the end (fUML 1.5, 8.10.1)."""
-    graphs, sink = derive_token_graphs(RULES["SM453"].read_page().wrong)
+    graphs, sink = derive_token_graphs(read_graphs(RULES["SM453"]).wrong)
     assert graphs[0].finishes
     assert "SM453" in list_codes(sink)
 

@@ -3,6 +3,7 @@
 import pytest
 from pass_runs import STRUCTURAL, list_codes, run_until
 
+from rule_examples import has_graphs, read_graphs
 from sysmlc.diagnostics import catalogue
 from sysmlc.passes import pipeline
 
@@ -22,19 +23,19 @@ RULES = [
     (pass_name, rule)
     for rule in catalogue().values()
     for pass_name, numbers in MODULES.items()
-    if int(rule.code[2:]) in numbers and rule.read_page().language == "ir"
+    if int(rule.code[2:]) in numbers and has_graphs(rule)
 ]
 
 
 @pytest.mark.parametrize(("pass_name", "rule"), RULES, ids=lambda x: getattr(x, "name", x))
 def test_rule_reports_its_wrong_example_and_not_its_right_one(pass_name, rule):
-    assert rule.code in list_codes(run_until(rule.read_page().wrong, pass_name)[1])
-    assert rule.code not in list_codes(run_until(rule.read_page().right, pass_name)[1])
+    assert rule.code in list_codes(run_until(read_graphs(rule).wrong, pass_name)[1])
+    assert rule.code not in list_codes(run_until(read_graphs(rule).right, pass_name)[1])
 
 
 @pytest.mark.parametrize(("pass_name", "rule"), RULES, ids=lambda x: getattr(x, "name", x))
 def test_the_right_example_has_no_warnings_at_all(pass_name, rule):
-    _, sink = run_until(rule.read_page().right, pass_name)
+    _, sink = run_until(read_graphs(rule).right, pass_name)
     assert {diagnostic.severity for diagnostic in sink} <= {"info"}
 
 

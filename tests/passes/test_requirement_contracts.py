@@ -3,6 +3,7 @@
 import pytest
 from pass_runs import derive_contracts, list_codes, list_messages, print_conjuncts
 
+from rule_examples import read_graphs
 from sysmlc.diagnostics import catalogue
 from sysmlc.logic.contract import IntegerDomain
 from sysmlc.passes import pipeline
@@ -46,7 +47,7 @@ def derive(text):
 
 
 def test_rule_reports_its_wrong_example_and_not_its_right_one():
-    page = catalogue()["SM522"].read_page()
+    page = read_graphs(catalogue()["SM522"])
     assert "SM522" in list_codes(derive(page.wrong)[1])
     assert "SM522" not in list_codes(derive(page.right)[1])
 

@@ -5,6 +5,7 @@ import re
 import pytest
 from aml_files import refine, save
 
+from rule_examples import read_graphs
 from sysmlc.backends.aml import rules
 
 RULES = (
@@ -21,8 +22,8 @@ RULES = (
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
 def test_the_wrong_example_breaks_the_rule_and_the_right_one_does_not(rule):
-    assert rule.code in [message[:5] for message in save(refine(rule.read_page().wrong))[1]]
-    assert save(refine(rule.read_page().right))[1] == []
+    assert rule.code in [message[:5] for message in save(refine(read_graphs(rule).wrong))[1]]
+    assert save(refine(read_graphs(rule).right))[1] == []
 
 
 def test_a_loss_is_counted_and_reported_once():

@@ -3,6 +3,7 @@
 import pytest
 from diagrams import draw, emit
 
+from rule_examples import read_graphs
 from sysmlc.backends.plantuml import BAD_TEMPLATE, partitioning
 from sysmlc.backends.plantuml.partitioning import split_view
 from sysmlc.backends.plantuml.undrawn import OVERTAKEN
@@ -211,12 +212,12 @@ StateMachine outer "Outer"
 
 
 def test_a_message_that_another_overtakes_is_reported():
-    _, diagnostics = emit(parse_text(OVERTAKEN.read_page().wrong))
+    _, diagnostics = emit(parse_text(read_graphs(OVERTAKEN).wrong))
     assert [diagnostic.message for diagnostic in diagnostics] == [
         "message 'slow' of 'Feed' is drawn where it is sent, though 'quick' comes first on "
         "lifeline 'belt'"
     ]
-    _, diagnostics = emit(parse_text(OVERTAKEN.read_page().right))
+    _, diagnostics = emit(parse_text(read_graphs(OVERTAKEN).right))
     assert diagnostics == []
 
 

@@ -7,6 +7,7 @@ import pytest
 
 from backend_runs import emit
 from examples.compiling import ROOT, compile_example, outputs
+from rule_examples import read_graphs
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.reqtable import (
     BACKEND,
@@ -205,8 +206,8 @@ def test_packages_of_the_same_name_have_files_of_their_own():
 
 @pytest.mark.parametrize("rule", [UNSATISFIED, UNVERIFIED], ids=lambda rule: rule.name)
 def test_open_requirements_are_reported(rule):
-    assert rule in [diagnostic.rule for diagnostic in emit_tables(rule.read_page().wrong)[1]]
-    assert [diagnostic.rule for diagnostic in emit_tables(rule.read_page().right)[1]] == []
+    assert rule in [diagnostic.rule for diagnostic in emit_tables(read_graphs(rule).wrong)[1]]
+    assert [diagnostic.rule for diagnostic in emit_tables(read_graphs(rule).right)[1]] == []
 
 
 def list_open_requirements(text):

@@ -4,7 +4,7 @@ import pytest
 from sysml_texts import refine, text_of, write
 from toolkit_comparison import compare_together
 
-from rule_examples import parse_rule_examples
+from rule_examples import parse_rule_examples, read_graphs
 from sysmlc.backends.sysml import rules
 
 RULES = (
@@ -26,8 +26,8 @@ def list_codes(text):
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
 def test_the_wrong_example_breaks_the_rule_and_the_right_one_does_not(rule):
-    assert rule.code in list_codes(rule.read_page().wrong)
-    assert write(refine(rule.read_page().right))[1] == []
+    assert rule.code in list_codes(read_graphs(rule).wrong)
+    assert write(refine(read_graphs(rule).right))[1] == []
 
 
 def test_equal_losses_are_one_diagnostic_with_their_number():
