@@ -175,3 +175,57 @@ def test_a_condition_beyond_an_assumed_range_decides_nothing(workspace):
     workspace.write("lamp.sysml", workspace.read("lamp.sysml").replace("perform", inputs))
     reason = "it depends on n in 0..15 and k in 0..15 (assumed)"
     assert f"  Lights: not decided: {reason}: F on\n" in check(workspace)
+
+
+SELF = """package Shop {{
+    private import ScalarValues::*;
+    item def Go; item def Start;
+    port def Pipe {{ out item go : Go; }}
+    part def Lamp {{
+        attribute on : Boolean := false; port p : Pipe; port q : ~Pipe;
+        {behaviour}
+    }}
+    requirement def Lights {{ subject lamp : Lamp;
+        require constraint {{ language "ltl" /* F on */ }} }}
+}}"""
+SENT_TO_ITSELF = [
+    "perform action job {{ first start; then send Go() {to}; then accept Go {via};"
+    " then assign on := true; then done; }}",
+    "exhibit state Work {{ entry; then A; state A; then B; state B; state C;"
+    " transition first A do send Go() {to} then B;"
+    " transition first B accept Go {via} do assign on := true then C; }}",
+]
+
+
+@pytest.mark.parametrize("behaviour", SENT_TO_ITSELF, ids=["action", "machine"])
+def test_nobody_else_need_send_what_a_component_sends_itself(workspace, behaviour):
+    """It was "holds if Go comes sooner or later", or broken by a run in which it never comes."""
+    workspace.write("lamp.sysml", SELF.format(behaviour=behaviour.format(to="to self", via="")))
+    result = workspace.sysmlc("contracts", "check", "lamp.sysml")
+    assert "  Lights: not decided: F on\n" in result.stdout
+    assert "'Lamp' may send 'Go' to itself, without a port" in result.stderr
+
+
+@pytest.mark.parametrize("behaviour", SENT_TO_ITSELF, ids=["action", "machine"])
+@pytest.mark.parametrize(("to", "via"), [("via p", "via q"), ("to p", ""), ("to self", "via q")])
+def test_what_leaves_or_comes_by_a_port_is_sent_to_others(workspace, behaviour, to, via):
+    workspace.write("lamp.sysml", SELF.format(behaviour=behaviour.format(to=to, via=via)))
+    result = workspace.sysmlc("contracts", "check", "lamp.sysml")
+    assert "  Lights: not decided" not in result.stdout
+
+
+def test_what_an_action_sends_without_a_connection_is_not_lost(workspace):
+    text = SELF.format(behaviour="").replace(
+        "requirement",
+        """part def Switch { perform action press { first start; then send Go(); then done; } }
+    part def Room { part switch : Switch; part lamp : Lamp {
+        perform action job { first start; then accept Go; then assign on := true; then done; } } }
+    requirement""",
+    )
+    workspace.write(
+        "lamp.sysml",
+        text.replace("lamp : Lamp;\n", "room : Room;\n").replace("F on", "F room.lamp.on"),
+    )
+    result = workspace.sysmlc("contracts", "check", "lamp.sysml")
+    assert "  Lights: not decided: F" in result.stdout
+    assert "no connection leads 'Go' from 'switch'" in result.stderr

@@ -18,11 +18,12 @@ from sysmlc.logic.composition.members import Block, Member
 from sysmlc.logic.composition.messages import (
     Receipt,
     derive_wiring,
+    find_message_name,
     is_reachable_from_outside,
     iter_listeners,
     iter_unsent,
 )
-from sysmlc.logic.composition.naming import Wire
+from sysmlc.logic.composition.naming import Wire, name_in_composite
 from sysmlc.logic.composition.structure import ITSELF
 from sysmlc.logic.contract import (
     BooleanDomain,
@@ -116,7 +117,7 @@ def derive_events(component: "Component") -> Wiring:
         replace(conjunct, source=Source.DERIVED)
         for conjunct in derive_wiring(block, members, wires)
     ]
-    gaps = _find_unwired(block, wires, wiring)
+    gaps = _find_unwired(block, wires, wiring, acceptances)
     deliveries = list(_iter_deliveries(block, members, wires))
     for receipt, port in iter_unsent(block, members, tuple(wires)):
         if _is_port_closed(component, block, receipt, port):
@@ -328,26 +329,50 @@ def _add_member(
     wires += (Wire(name, ((member, variable),)) for variable, name in pairs)
 
 
-def _find_unwired(block: Block, wires: list[Wire], wiring: list[Conjunct]) -> dict[str, str]:
-    """Return the sent messages that some other object could receive but that lead nowhere.
+def _find_unwired(
+    block: Block,
+    wires: list[Wire],
+    wiring: list[Conjunct],
+    acceptances: Mapping[str, tuple[str, str]],
+) -> dict[str, str]:
+    """Return the sent messages that some object could receive but that lead nowhere.
 
-    A message through a port leads where the connectors of the port lead, if they are read.
+    A message through a port leads where the connectors of the port lead, if they are read. Another
+    one may be for its own sender. The *acceptances* of such messages are returned, too, because the
+    environment need not send them.
     """
     read = {variable.name for conjunct in wiring for variable in f.variables(conjunct.formula)}
     gaps: dict[str, str] = {}
     for wire in wires:
         ((member, variable),) = wire.ends
-        message = variable.name.removeprefix("send_").rpartition("_")[2]
-        port = member.ports.get(message, "")
-        is_followed = port and not _has_unread_connector(block, member, port)
-        if variable.owner is not Owner.SYSTEM or wire.name in read or is_followed:
-            continue
-        for other in block.members:
-            for event in other.contract.variables:
-                literals = getattr(event.domain, "literals", ())
-                if other.path != member.path and message in literals:
-                    gaps[wire.name] = f"no connection leads '{message}' from '{member.name}'"
+        sent = find_message_name(block.graph, variable)
+        for receiver, event, message in _iter_receivers(block, sent):
+            port = member.ports.get(message, "")
+            is_followed = port and not _has_unread_connector(block, member, port)
+            if variable.owner is not Owner.SYSTEM or wire.name in read or is_followed:
+                continue
+            reason = f"no connection leads '{message}' from '{member.name}'"
+            if receiver.path == member.path:
+                if message in receiver.ports:
+                    continue
+                sender = block.graph[member.origin].name
+                reason = f"'{sender}' may send '{message}' to itself, without a port"
+            receipt = name_in_composite(receiver, event, wires), message
+            accepted = (name for name in acceptances if acceptances[name] == receipt)
+            gaps |= dict.fromkeys((wire.name, *accepted), reason)
     return gaps
+
+
+def _iter_receivers(block: Block, sent: str) -> Iterator[tuple[Member, str, str]]:
+    """Yield the members with an event for a message, the event, and its literal.
+
+    A message for a part has the name of the part before it.
+    """
+    for member in block.members:
+        for event in member.contract.variables:
+            for literal in getattr(event.domain, "literals", ()):
+                if sent == literal or sent.endswith(f"_{literal}"):
+                    yield member, event.name, literal
 
 
 def _has_unread_connector(block: Block, member: Member, name: str) -> bool:

@@ -231,10 +231,10 @@ def _iter_outputs(graph: Graph, member: Member) -> Iterator[tuple[str, str]]:
     for variable in member.contract.variables:
         is_output = variable.owner is Owner.SYSTEM and isinstance(variable.domain, BooleanDomain)
         if is_output and variable.name not in member.features.values():
-            yield _message_name(graph, variable), variable.name
+            yield find_message_name(graph, variable), variable.name
 
 
-def _message_name(graph: Graph, output: Variable) -> str:
+def find_message_name(graph: Graph, output: Variable) -> str:
     """Return the name of the signal or operation that an output sends, or else its own name."""
     element = graph.get(output.origin)
     if element is not None and element.kind is Kind.ACTION:
