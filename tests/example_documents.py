@@ -5,9 +5,11 @@ import re
 _XMI = """\
 <xmi:XMI xmi:version="20131001" xmlns:xmi="http://www.omg.org/spec/XMI/20131001"
     xmlns:uml="http://www.eclipse.org/uml2/5.0.0/UML"
+    xmlns:Activities="http://www.eclipse.org/papyrus/sysml/1.6/SysML/Activities"
     xmlns:Blocks="http://www.eclipse.org/papyrus/sysml/1.6/SysML/Blocks"
     xmlns:ConstraintBlocks="http://www.eclipse.org/papyrus/sysml/1.6/SysML/ConstraintBlocks"
     xmlns:PortsAndFlows="http://www.eclipse.org/papyrus/sysml/1.6/SysML/PortsAndFlows"
+    xmlns:Requirements="http://www.eclipse.org/papyrus/sysml/1.6/SysML/Requirements"
     xmlns:plant="http://example.org/plant">
   <uml:Model xmi:id="model" name="Model">
 {elements}
@@ -35,7 +37,9 @@ _MTIP = """\
 {records}
 </packet>
 """
-_APPLICATION = re.compile(r"^<(?:Blocks|ConstraintBlocks|PortsAndFlows|plant):.*/>$", re.MULTILINE)
+_APPLICATION = re.compile(
+    r"^<(?:Activities|Blocks|ConstraintBlocks|PortsAndFlows|Requirements|plant):.*/>$", re.MULTILINE
+)
 _FILE_NAMES = {
     "CAEXFile": "model.aml",
     "html": "model.xml",

@@ -4,6 +4,7 @@ import pytest
 from pass_runs import derive_contracts, list_codes, print_conjuncts
 
 from machine_samples import arrow, choice, machine, machine_of, region, state
+from rule_examples import has_graphs, read_graphs
 from sysmlc.diagnostics import Sink, catalogue
 from sysmlc.ir.text import print_text
 from sysmlc.logic.contract import Class, Contract
@@ -23,14 +24,14 @@ def print_formulas(contract, class_):
     return [print_formula(c.formula) for c in contract.guarantees if c.class_ is class_]
 
 
-WITH_GRAPHS = [rule for rule in RULES if rule.read_page().language == "ir"]
+WITH_GRAPHS = [rule for rule in RULES if has_graphs(rule)]
 """Rules whose examples are graphs; those in XMI or SysML v2 are compiled as files."""
 
 
 @pytest.mark.parametrize("rule", WITH_GRAPHS, ids=lambda rule: rule.name)
 def test_rule_reports_its_wrong_example_and_not_its_right_one(rule):
-    assert rule.code in list_codes(derive_contracts(rule.read_page().wrong)[2])
-    assert rule.code not in list_codes(derive_contracts(rule.read_page().right)[2])
+    assert rule.code in list_codes(derive_contracts(read_graphs(rule).wrong)[2])
+    assert rule.code not in list_codes(derive_contracts(read_graphs(rule).right)[2])
 
 
 def test_there_are_twenty_eight_rules():

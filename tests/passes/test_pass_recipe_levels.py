@@ -5,6 +5,7 @@ from pass_runs import list_codes, list_messages
 from recipe_runs import derive_model, run_recipe
 
 import recipe_samples as samples
+from rule_examples import read_graphs
 from sysmlc.driver import load_full_catalogue
 from sysmlc.logic.expressions.expression import Literal
 
@@ -20,7 +21,7 @@ def test_a_block_that_owns_a_machine_function_is_treated_as_a_machine_and_report
 
 
 def test_rule_reports_its_wrong_example_and_not_its_right_one():
-    page = load_full_catalogue()["SM483"].read_page()
+    page = read_graphs(load_full_catalogue()["SM483"])
     assert list_codes(run_recipe(page.wrong)[1]) == ["SM483"]
     assert list_codes(run_recipe(page.right)[1]) == []
 
