@@ -49,7 +49,7 @@ def test_strict_refuses_formulas_that_are_not_decided(
 def test_texts_are_counted_apart_from_undecided_formulas(workspace, all_passes):
     result = run_check(workspace, require("G !on"), guard="if heat < 3.5")
     lines = result.stdout.splitlines()
-    assert lines[0] == "Shop::Lamp: realizable, 1 of 1 requirements not decided"
+    assert lines[0] == "Shop::Lamp: realizable, 1 of 1 requirement not decided"
     assert lines[-1] == "1 requirement not formalised: Bright"
 
 
