@@ -32,6 +32,8 @@ _TIME_UNITS = {
 }
 _WITHOUT_DECLARATIONS = frozenset({"transition", "succession", "flow", "constraint"})
 """Keywords of namespaces that declare no features; the namespace around them does."""
+_ACCEPTING = frozenset({"accept", "accept-call"})
+"""Actions whose features some tools do not find from their triggers."""
 
 
 # -- conditions and times ------------------------------------------------------------------------
@@ -82,11 +84,10 @@ def _declare(writer: Writer, scope: Member | None, element: Element, text: str, 
     name = " ".join(text.split()) or "undefined"
     writer.losses.record(TEXT_AS_NAME, element, text=name)
     namespace = scope
-    while (
-        namespace is not None
-        and namespace.parent is not None
-        and namespace.shape.keyword in _WITHOUT_DECLARATIONS
-    ):
+    while namespace is not None and namespace.parent is not None:
+        is_trigger = namespace.element is not None and namespace.element.subkind in _ACCEPTING
+        if not is_trigger and namespace.shape.keyword not in _WITHOUT_DECLARATIONS:
+            break
         namespace = namespace.parent
     if namespace is None:
         return quote_name(name)
