@@ -47,12 +47,19 @@ KNOWN_RULES = {
         {"SM281"},
         "a feature subsets one of its own owner with fewer values",
     ),
-    "papyrus/AssertionLibrary.uml": ({"SM283"}, "flows across structured nodes"),
-    "papyrus/TankBarrelExample.uml": (
-        {"SM249"},
-        "the target of a call is no parameter of the operation",
+    "magicdraw/TestProject2.mdzip": ({"SM244"}, "flows between ports of unrelated types"),
+    "papyrus/AssertionLibrary.uml": (
+        {"SM244", "SM283"},
+        "flows across structured nodes, and between numbers of unrelated types",
     ),
-    "papyrus/TutoFMU.uml": ({"SM249"}, "the target of a call is no parameter of the operation"),
+    "papyrus/TankBarrelExample.uml": (
+        {"SM244", "SM249"},
+        "self is the action, and the target of a call is no parameter of the operation",
+    ),
+    "papyrus/TutoFMU.uml": (
+        {"SM244", "SM249"},
+        "self is the action, and the target of a call is no parameter of the operation",
+    ),
     "papyrus/fUML-Exception-Tests.uml": (
         {"SM249"},
         "the target of a call is no parameter of the operation",
