@@ -269,7 +269,7 @@ def test_texts_are_those_that_a_behaviour_mentions_and_any_other():
         ("no_good", "other", "idle", "empty", "other_2"), ("no good", "other", "idle", "")
     )
     assert domains["last"] == domains["note"] == domains["report_text"] == words
-    assert domains["kind"] == IntegerDomain(-2, 40)
+    assert domains["kind"] == IntegerDomain(-2, 41)
     assert {"SM415", "SM458"}.isdisjoint(reading.list_codes())
     moves = [print_formula(guarantee.formula) for guarantee in contract.guarantees]
     assert any("report_text=no_good" in text for text in moves)
