@@ -15,7 +15,7 @@ MISSING = rule(
     "SM162",
     "diagram-shows-unknown",
     Severity.INFO,
-    "diagram '{name}' shows {missing} of {all} from no file of the unit",
+    "diagram '{name}' shows {all}, {missing} of them from no file of the unit",
     help="give the other project as a further input",
 )
 
