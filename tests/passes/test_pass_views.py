@@ -92,7 +92,9 @@ def test_shown_elements_outside_the_unit_are_reported():
     _, sink = run_views(make_drawing(owner="plant", shown=("gate", "gone", "x.uml#far away")))
     (diagnostic,) = sink
     assert (diagnostic.rule.code, diagnostic.subject.name) == ("SM162", "Plant::Gates")
-    assert diagnostic.message == ("diagram 'Gates' shows 3 elements, 2 of them from no file of the unit")
+    assert diagnostic.message == (
+        "diagram 'Gates' shows 3 elements, 2 of them from no file of the unit"
+    )
 
 
 def test_a_diagram_with_an_empty_or_used_id_gets_another_id():

@@ -127,7 +127,9 @@ def test_diagrams_of_magicdraw_have_names_types_contents_and_nesting(tmp_path, w
 def test_missing_elements_are_reported_at_the_diagram(tmp_path):
     compilation = compile_diagrams(in_one_file(tmp_path))
     (diagnostic,) = [item for item in compilation.diagnostics if item.rule.code == "SM162"]
-    assert diagnostic.message == ("diagram 'Gates' shows 5 elements, 1 of them from no file of the unit")
+    assert diagnostic.message == (
+        "diagram 'Gates' shows 5 elements, 1 of them from no file of the unit"
+    )
     assert diagnostic.subject.name == "Plant::Gates"
     assert diagnostic.subject.place.ordinal == 4
 
