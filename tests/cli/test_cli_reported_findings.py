@@ -59,7 +59,7 @@ def test_the_text_has_one_line_for_each_rule_with_infos(check):
         "",
         "info[SM300 undirected-ports]: ports of 'P::Valve' without a direction (1): 'p' "
         "(tank.sysml:14:14)",
-        "info[SM410 assumed-range]: attribute 'level' has no range; 0..15 is assumed "
+        "info[SM410 assumed-range]: attribute 'level' has no range; 0..7 is assumed "
         "(tank.sysml:4:19 and 1 more)",
         "info[SM481 v2-approximated]: a constraint that nothing asserts is read as one that holds "
         "(1 in the unit) (tank.sysml:6:9)",
@@ -98,7 +98,7 @@ def test_grouped_lines_stand_below_their_file(check):
     head = "info[SM410 assumed-range]"
     assert lines == [
         "tank.sysml",
-        f"  4:19: {head}: attribute 'level' has no range; 0..15 is assumed (P::Tank::level)",
+        f"  4:19: {head}: attribute 'level' has no range; 0..7 is assumed (P::Tank::level)",
         f"  5:19: {head}: attribute 'limit' has no range; 0..15 is assumed (P::Tank::limit)",
         "",
         "2 infos in 1 file",

@@ -111,7 +111,7 @@ def test_every_shown_element_is_in_the_graph_or_reported(name, corpus, compile_o
     reported = Counter()
     for diagnostic in compilation.diagnostics:
         if diagnostic.rule.code == "SM162":
-            reported[diagnostic.subject.id] += int(diagnostic.message.split()[0])
+            reported[diagnostic.subject.id] += int(diagnostic.message.split(", ")[-1].split()[0])
     for id, (title, _, used) in expected.items():
         targets = compilation.graph.targets(compilation.graph[id], "references")
         shown = {element.id.rpartition("#")[2] for element in targets}

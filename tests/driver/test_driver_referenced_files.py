@@ -115,7 +115,7 @@ def test_strict_input_makes_unsupported_content_an_error(tmp_path):
         if reported.rule.name == "unsupported-content"
     ]
     assert unsupported == 1
-    assert diagnostic.message.startswith("1 of the ")
+    assert diagnostic.message.startswith("not supported: 1 of ")
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ from recipe_files import SCHEMA, compile_recipe, find_example, list_faults, list
 
 import backend_runs
 import recipe_samples as samples
+from rule_examples import read_graphs
 from sysmlc.backends.base import EmitOptions, InputFile
 from sysmlc.backends.recipe import BACKEND
 from sysmlc.diagnostics import Sink
@@ -61,9 +62,9 @@ def test_the_file_has_the_name_of_the_recipe_and_its_sources_in_order():
 
 
 def test_a_recipe_without_tasks_is_reported_and_not_written():
-    rule = load_full_catalogue()["SM621"]
-    assert emit(rule.read_page().wrong) == ({}, ["SM621"])
-    assert emit(rule.read_page().right)[1] == []
+    example = read_graphs(load_full_catalogue()["SM621"])
+    assert emit(example.wrong) == ({}, ["SM621"])
+    assert emit(example.right)[1] == []
 
 
 def test_an_opc_ua_call_with_an_invalid_node_id_is_omitted():
