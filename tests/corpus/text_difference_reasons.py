@@ -14,7 +14,7 @@ from text_differences import BEHAVIOURS, Difference, Reason
 from sysmlc.backends.sysml.profiles import is_standard
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.compare import What
-from sysmlc.logic.expressions.expression import ExpressionError, print_expression
+from sysmlc.ir.expressions import ExpressionError, print_expression
 from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
 
 # -- texts -----------------------------------------------------------------------------------------

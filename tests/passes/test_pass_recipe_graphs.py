@@ -3,7 +3,7 @@
 from recipe_runs import derive_model, derive_service_graph, print_application, shorten_id
 
 import recipe_samples as samples
-from sysmlc.logic.expressions.expression import Binary, Literal, Unary
+from sysmlc.ir.expressions import Binary, Literal, Unary
 from sysmlc.recipe.expression import make_variable
 
 

@@ -7,7 +7,7 @@ from recipe_runs import derive_model, run_recipe
 import recipe_samples as samples
 from rule_examples import read_graphs
 from sysmlc.driver import load_full_catalogue
-from sysmlc.logic.expressions.expression import Literal
+from sysmlc.ir.expressions import Literal
 
 
 def test_a_block_that_owns_a_machine_function_is_treated_as_a_machine_and_reported():

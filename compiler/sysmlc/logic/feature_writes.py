@@ -13,7 +13,7 @@ from msgspec import Struct
 
 from sysmlc.diagnostics import Severity, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.logic.expressions.expression import (
+from sysmlc.ir.expressions import (
     Assignment,
     Expression,
     ExpressionError,

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 
 from sysmlc.diagnostics import Severity, rule
 from sysmlc.ir.algorithms import sort_topologically
-from sysmlc.logic.expressions.expression import Expression, last_name
+from sysmlc.ir.expressions import Expression, last_name
 from sysmlc.recipe.expression import (
     ANOTHER_TEXT,
     UndecidedError,

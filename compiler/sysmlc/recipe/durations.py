@@ -11,7 +11,7 @@ from functools import partial, reduce
 from msgspec import Struct
 from msgspec.structs import replace
 
-from sysmlc.logic.expressions.expression import Expression, Literal
+from sysmlc.ir.expressions import Expression, Literal
 from sysmlc.recipe.costs import Measures, NodeCost, to_maximum
 from sysmlc.recipe.executions import (
     Exploration,

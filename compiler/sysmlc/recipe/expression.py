@@ -1,4 +1,4 @@
-"""Expressions of recipes: those of ``logic.expressions`` in the normal form of the JSON schema.
+"""Expressions of recipes: those of ``ir.expressions`` in the normal form of the JSON schema.
 
 A name has one segment, which may contain dots (``belt.places``). The operators are
 + - * / mod == != < <= > >= and or not.
@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import product
 
-from sysmlc.logic.expressions.expression import (
+from sysmlc.ir.expressions import (
     Binary,
     Call,
     Expression,

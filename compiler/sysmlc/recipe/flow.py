@@ -12,7 +12,7 @@ from msgspec.structs import replace
 
 from sysmlc.ir import algorithms
 from sysmlc.ir.algorithms import sort_topologically, strongly_connected_components
-from sysmlc.logic.expressions.expression import Expression
+from sysmlc.ir.expressions import Expression
 from sysmlc.recipe.expression import disjunction, negation, variable_name
 from sysmlc.recipe.model import FlowEdge, FlowGraph, Node
 

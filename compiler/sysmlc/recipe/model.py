@@ -8,7 +8,7 @@ from typing import Literal as OneOf
 
 from msgspec import Struct
 
-from sysmlc.logic.expressions.expression import Expression
+from sysmlc.ir.expressions import Expression
 
 Number = int | float
 Scalar = bool | int | float | str

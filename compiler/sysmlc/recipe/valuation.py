@@ -9,7 +9,7 @@ from itertools import product
 
 from msgspec import Struct
 
-from sysmlc.logic.expressions.expression import Binary, Expression, Literal, Unary
+from sysmlc.ir.expressions import Binary, Expression, Literal, Unary
 from sysmlc.recipe.expression import (
     UndecidedError,
     apply_operator,

@@ -2,7 +2,7 @@
 
 from reading_v2 import Reading
 
-from sysmlc.logic.expressions.expression import Literal
+from sysmlc.ir.expressions import Literal
 from sysmlc.recipe.expression import make_variable
 from sysmlc.recipe.model import Model
 

@@ -17,7 +17,7 @@ from sysmlc.frontends.sysml import FRONTEND
 from sysmlc.frontends.xmi import FRONTEND as XMI
 from sysmlc.ir import Graph, Kind, parse_text
 from sysmlc.ir.compare import compare
-from sysmlc.logic.expressions.expression import ExpressionError, print_expression
+from sysmlc.ir.expressions import ExpressionError, print_expression
 from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.passes import pipeline
 from sysmlc.sources import Source

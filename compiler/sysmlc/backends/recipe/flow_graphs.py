@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping
 
-from sysmlc.logic.expressions.expression import (
+from sysmlc.ir.expressions import (
     Binary,
     Call,
     Expression,

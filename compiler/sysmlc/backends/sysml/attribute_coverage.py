@@ -7,8 +7,8 @@ from sysmlc.backends.sysml.plan import Member
 from sysmlc.backends.sysml.profiles import is_standard
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir.expressions import ExpressionError, print_expression
 from sysmlc.ir.query.activities import is_joined, pin_subkind
-from sysmlc.logic.expressions.expression import ExpressionError, print_expression
 from sysmlc.logic.expressions.parsing import parse_expression
 
 _FLOWS = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)

@@ -12,7 +12,7 @@ from sysmlc.backends.sysml.plan import Member
 from sysmlc.backends.sysml.printing import Line, quote_name
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import Edge, Element, Kind
-from sysmlc.logic.expressions.expression import (
+from sysmlc.ir.expressions import (
     Assignment,
     Call,
     Expression,

@@ -12,10 +12,10 @@ from sysmlc.backends.sysml.printing import quote_name, quote_string
 from sysmlc.backends.sysml.references import find_by_model_name, format_reference, look_up
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
+from sysmlc.ir import expressions as syntax
+from sysmlc.ir.expressions import POSTFIX, PRECEDENCE, UNARY
 from sysmlc.ir.query import bounds, generals, type_of
 from sysmlc.ir.query.classifiers import unit_of
-from sysmlc.logic.expressions import expression as syntax
-from sysmlc.logic.expressions.expression import POSTFIX, PRECEDENCE, UNARY
 from sysmlc.logic.expressions.parsing import parse_expression
 
 _WITHOUT_VALUE = frozenset({"transition", "succession", "flow", "comment", "dependency", "start"})

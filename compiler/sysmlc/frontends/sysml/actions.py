@@ -9,9 +9,9 @@ from sysmlc.frontends.sysml.kinds import ACTIVITIES
 from sysmlc.frontends.sysml.successions import defer_implied_start, lower_steps
 from sysmlc.frontends.sysml.triggers import lower_trigger
 from sysmlc.ir import AttrValue, Edge, Element, Kind, as_items
+from sysmlc.ir.expressions import print_statement
 from sysmlc.language.metaclasses import is_a
 from sysmlc.language.tree import Node
-from sysmlc.logic.expressions.expression import print_statement
 
 if TYPE_CHECKING:
     from sysmlc.frontends.sysml.lowering import Lowering

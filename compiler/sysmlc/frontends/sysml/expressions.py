@@ -4,9 +4,7 @@ from collections.abc import Sequence
 from functools import reduce
 
 from sysmlc.frontends.sysml import nodes
-from sysmlc.language import notation
-from sysmlc.language.tree import Node, Reference
-from sysmlc.logic.expressions.expression import (
+from sysmlc.ir.expressions import (
     Assignment,
     Binary,
     Call,
@@ -23,6 +21,8 @@ from sysmlc.logic.expressions.expression import (
     print_effect,
     print_expression,
 )
+from sysmlc.language import notation
+from sysmlc.language.tree import Node, Reference
 
 _BINARY = {
     "implies": "implies",
@@ -72,7 +72,7 @@ def _print(expression: Expression) -> str | None:
 
 
 def read_expression(node: Node) -> Expression | None:
-    """Return the expression as a value of ``logic.expressions``; None if it has none."""
+    """Return the expression as a syntax tree; None if it has none."""
     try:
         return _read(node)
     except (NotExpressibleError, RecursionError):

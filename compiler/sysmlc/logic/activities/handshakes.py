@@ -11,13 +11,13 @@ from functools import cache
 from msgspec.structs import replace
 
 from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.expressions import last_name
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.concurrency import ConcurrencyRelation
 from sysmlc.logic.activities.step_formulas import StepFormulas
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.activities.token_nodes import ACTIVITY_REGION, Duration, Handshake
 from sysmlc.logic.contract import Class, Conjunct
-from sysmlc.logic.expressions.expression import last_name
 from sysmlc.logic.identifiers import Names, identifier
 
 _PERFORMING = (Edge.ENTRY, Edge.DO, Edge.EXIT, Edge.EFFECT)

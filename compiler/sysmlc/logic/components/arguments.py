@@ -12,6 +12,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.ir import Element, Kind
+from sysmlc.ir.expressions import ExpressionError, name_of
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
 from sysmlc.logic.activities.token_nodes import Store
@@ -33,7 +34,6 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.expressions.context import find_literal
 from sysmlc.logic.expressions.elaboration import ElaborationError, Symbol, elaborate_value
-from sysmlc.logic.expressions.expression import ExpressionError, name_of
 from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.feature_writes import WriterIndex, find_bound_name
 from sysmlc.logic.formula import Formula

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from functools import cached_property, partial
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.ir.expressions import ExpressionError, name_of
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.action_names import make_path
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
@@ -22,7 +23,6 @@ from sysmlc.logic.components.signals import check_signal_names
 from sysmlc.logic.composition.structure import find_drawn_activity
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Owner, Source, Variable
 from sysmlc.logic.expressions.context import context_of
-from sysmlc.logic.expressions.expression import ExpressionError, name_of
 from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.feature_writes import WriterIndex
 from sysmlc.logic.formula import Formula

@@ -12,6 +12,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.ir.expressions import ExpressionError, Send, name_of
 from sysmlc.logic import formula as f
 from sysmlc.logic.components.objects import ComponentError, ComponentObject
 from sysmlc.logic.composition.members import Block, Member
@@ -35,7 +36,6 @@ from sysmlc.logic.contract import (
     Source,
     Variable,
 )
-from sysmlc.logic.expressions.expression import ExpressionError, Send, name_of
 from sysmlc.logic.expressions.parsing import parse_effect
 from sysmlc.logic.formula import Const
 from sysmlc.logic.identifiers import identifier

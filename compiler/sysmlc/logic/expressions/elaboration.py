@@ -6,10 +6,7 @@ from enum import StrEnum
 
 from msgspec import Struct
 
-from sysmlc.logic import domains
-from sysmlc.logic import formula as f
-from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, IntegerDomain
-from sysmlc.logic.expressions.expression import (
+from sysmlc.ir.expressions import (
     Binary,
     Conditional,
     Expression,
@@ -23,6 +20,9 @@ from sysmlc.logic.expressions.expression import (
     name_of,
     print_expression,
 )
+from sysmlc.logic import domains
+from sysmlc.logic import formula as f
+from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, IntegerDomain
 from sysmlc.logic.formula import Const, Formula, Op
 
 

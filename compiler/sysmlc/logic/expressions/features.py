@@ -6,6 +6,15 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.ir import AttrValue, Element, Graph, Kind, query
+from sysmlc.ir.expressions import (
+    Expression,
+    ExpressionError,
+    Name,
+    last_name,
+    name_of,
+    print_expression,
+)
+from sysmlc.ir.expressions import Literal as LiteralExpression
 from sysmlc.logic.contract import (
     BooleanDomain,
     Domain,
@@ -16,15 +25,6 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.domains import contains, describe
 from sysmlc.logic.expressions.elaboration import ElaborationError, Fault
-from sysmlc.logic.expressions.expression import (
-    Expression,
-    ExpressionError,
-    Name,
-    last_name,
-    name_of,
-    print_expression,
-)
-from sysmlc.logic.expressions.expression import Literal as LiteralExpression
 from sysmlc.logic.expressions.named_elements import literals_of
 from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.expressions.ranges import (

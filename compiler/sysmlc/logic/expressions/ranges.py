@@ -6,7 +6,7 @@ from operator import add, mul, sub
 from typing import NamedTuple
 
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, query
-from sysmlc.logic.expressions.expression import (
+from sysmlc.ir.expressions import (
     Binary,
     Expression,
     ExpressionError,
@@ -16,7 +16,7 @@ from sysmlc.logic.expressions.expression import (
     dotted_name,
     name_of,
 )
-from sysmlc.logic.expressions.expression import Literal as LiteralExpression
+from sysmlc.ir.expressions import Literal as LiteralExpression
 from sysmlc.logic.expressions.parsing import parse_expression
 
 UNSIGNED = frozenset(["natural", "positive", "unlimitednatural"])

@@ -7,20 +7,7 @@ from msgspec.structs import replace
 
 from sysmlc.diagnostics import Rule, Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph
-from sysmlc.logic import formula as f
-from sysmlc.logic.contract import BooleanDomain, Domain, Owner, Variable
-from sysmlc.logic.expressions.context import Context, find_literal, make_symbol, report_range
-from sysmlc.logic.expressions.elaboration import (
-    ELSEWHERE_ADVICE,
-    EMPTY_ADVICE,
-    FINITE_ADVICE,
-    ElaborationError,
-    Fault,
-    Symbol,
-    elaborate_condition,
-    elaborate_value,
-)
-from sysmlc.logic.expressions.expression import (
+from sysmlc.ir.expressions import (
     Assignment,
     Expression,
     ExpressionError,
@@ -33,6 +20,19 @@ from sysmlc.logic.expressions.expression import (
     print_expression,
     print_statement,
     walk_expression,
+)
+from sysmlc.logic import formula as f
+from sysmlc.logic.contract import BooleanDomain, Domain, Owner, Variable
+from sysmlc.logic.expressions.context import Context, find_literal, make_symbol, report_range
+from sysmlc.logic.expressions.elaboration import (
+    ELSEWHERE_ADVICE,
+    EMPTY_ADVICE,
+    FINITE_ADVICE,
+    ElaborationError,
+    Fault,
+    Symbol,
+    elaborate_condition,
+    elaborate_value,
 )
 from sysmlc.logic.expressions.features import Feature, check_assignable
 from sysmlc.logic.expressions.named_elements import describe_feature_elsewhere

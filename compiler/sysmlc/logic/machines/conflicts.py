@@ -13,12 +13,12 @@ from itertools import combinations
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Graph
+from sysmlc.ir.expressions import Expression, name_of, walk_expression
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Domain
 from sysmlc.logic.evaluate import compile_evaluation
 from sysmlc.logic.expressions.elaboration import Scope, elaborate_condition
-from sysmlc.logic.expressions.expression import Expression, name_of, walk_expression
 from sysmlc.logic.expressions.parsing import are_complementary
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines.machine import (

@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
-from sysmlc.logic.expressions.expression import Expression, dotted_name, print_expression
+from sysmlc.ir.expressions import Expression, dotted_name, print_expression
 from sysmlc.logic.formula import TRUE, Const, Formula, rename_variables
 from sysmlc.logic.machines.machine import (
     AfterTicks,

@@ -8,15 +8,15 @@ import re
 from collections.abc import Collection, Iterator
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.logic.expressions.context import Context, find_literal, make_symbol
-from sysmlc.logic.expressions.elaboration import ElaborationError, Symbol, elaborate_value
-from sysmlc.logic.expressions.expression import (
+from sysmlc.ir.expressions import (
     Assignment,
     ExpressionError,
     last_name,
     name_of,
     walk_expression,
 )
+from sysmlc.logic.expressions.context import Context, find_literal, make_symbol
+from sysmlc.logic.expressions.elaboration import ElaborationError, Symbol, elaborate_value
 from sysmlc.logic.expressions.features import check_assignable
 from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.feature_writes import WriterIndex, read_assignments, takes_one_step

@@ -9,10 +9,10 @@ from collections.abc import Collection, Iterable, Iterator
 from msgspec import Struct, field
 from msgspec.structs import replace
 
+from sysmlc.ir.expressions import Expression
+from sysmlc.ir.expressions import Literal as LiteralExpression
 from sysmlc.logic.contract import BooleanDomain, Owner, Variable
 from sysmlc.logic.expressions.elaboration import Scope
-from sysmlc.logic.expressions.expression import Expression
-from sysmlc.logic.expressions.expression import Literal as LiteralExpression
 from sysmlc.logic.formula import Literal
 
 NO_EVENT = "none"

@@ -9,8 +9,7 @@ from collections.abc import Callable, Mapping
 from msgspec import Struct, field
 from msgspec.structs import replace
 
-from sysmlc.logic.contract import IntegerDomain
-from sysmlc.logic.expressions.expression import (
+from sysmlc.ir.expressions import (
     Binary,
     Conditional,
     Expression,
@@ -20,7 +19,8 @@ from sysmlc.logic.expressions.expression import (
     last_name,
     name_of,
 )
-from sysmlc.logic.expressions.expression import Literal as LiteralExpression
+from sysmlc.ir.expressions import Literal as LiteralExpression
+from sysmlc.logic.contract import IntegerDomain
 from sysmlc.logic.formula import Const, Literal, Var
 from sysmlc.logic.machines.machine import (
     HISTORIES,

@@ -12,11 +12,11 @@ from msgspec.structs import replace
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.expressions import Binary, Expression, Unary
+from sysmlc.ir.expressions import Literal as Written
 from sysmlc.logic.contract import (
     BooleanDomain,
 )
-from sysmlc.logic.expressions.expression import Binary, Expression, Unary
-from sysmlc.logic.expressions.expression import Literal as Written
 from sysmlc.logic.identifiers import make_unique
 from sysmlc.logic.machines.actions import (
     ReadingContext,

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 from msgspec.structs import replace
 
 from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.expressions import Expression
 from sysmlc.logic.contract import BooleanDomain, EnumerationDomain, Owner
-from sysmlc.logic.expressions.expression import Expression
 from sysmlc.logic.identifiers import identifier, make_unique
 from sysmlc.logic.machines.actions import ReadingContext, read_behaviours
 from sysmlc.logic.machines.machine import (

@@ -8,6 +8,7 @@ from msgspec.structs import replace
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, Kind
+from sysmlc.ir.expressions import ExpressionError
 from sysmlc.logic import formula as f
 from sysmlc.logic.components.component import Component
 from sysmlc.logic.components.derivation import (
@@ -19,7 +20,6 @@ from sysmlc.logic.components.objects import ComponentError
 from sysmlc.logic.contract import Conjunct, Contract, Domain, name_variables
 from sysmlc.logic.expressions.context import report_range
 from sysmlc.logic.expressions.elaboration import ElaborationError, Fault, elaborate_condition
-from sysmlc.logic.expressions.expression import ExpressionError
 from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.feature_writes import WriterIndex
 from sysmlc.logic.formal_texts import describe_error, has_pattern_word, read_formal

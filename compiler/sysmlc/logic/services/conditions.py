@@ -6,6 +6,7 @@ from msgspec import Struct
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.ir.expressions import Binary, Expression, ExpressionError
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Domain
 from sysmlc.logic.expressions.context import (
@@ -21,7 +22,6 @@ from sysmlc.logic.expressions.elaboration import (
     Symbol,
     elaborate_condition,
 )
-from sysmlc.logic.expressions.expression import Binary, Expression, ExpressionError
 from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.formal_texts import is_formal

@@ -10,11 +10,11 @@ from msgspec import Struct
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, query
+from sysmlc.ir.expressions import Expression
 from sysmlc.logic.activities.saturation import Possibility, find_saturating_writes
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.expressions.context import describe_missing_range
 from sysmlc.logic.expressions.elaboration import ElaborationError, Fault
-from sysmlc.logic.expressions.expression import Expression
 from sysmlc.logic.expressions.features import Feature, check_assignable
 from sysmlc.logic.expressions.named_elements import find_named_values
 from sysmlc.logic.feature_writes import FeatureWrite, WriterIndex, find_label, iter_writes

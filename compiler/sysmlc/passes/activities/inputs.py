@@ -9,6 +9,12 @@ from msgspec.structs import replace
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.expressions import (
+    Expression,
+    ExpressionError,
+    name_of,
+    walk_expression,
+)
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import (
     BooleanDomain,
@@ -29,12 +35,6 @@ from sysmlc.logic.expressions.elaboration import (
     Symbol,
     elaborate_condition,
     elaborate_value,
-)
-from sysmlc.logic.expressions.expression import (
-    Expression,
-    ExpressionError,
-    name_of,
-    walk_expression,
 )
 from sysmlc.logic.expressions.features import Feature, check_assignable
 from sysmlc.logic.expressions.named_elements import describe_feature_elsewhere

@@ -8,8 +8,8 @@ from functools import cached_property
 from msgspec import Struct
 
 from sysmlc.ir import Edge, Element, Kind, query
+from sysmlc.ir.expressions import Expression, Literal
 from sysmlc.ir.query.classifiers import name_value_unit
-from sysmlc.logic.expressions.expression import Expression, Literal
 from sysmlc.logic.feature_writes import find_bound_name
 from sysmlc.passes.recipe.context import Context, is_inlined
 from sysmlc.passes.recipe.expressions import (

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from fractions import Fraction
 
 from sysmlc.ir import Element, Kind, query
+from sysmlc.ir import expressions as source
 from sysmlc.ir.query.classifiers import name_value_unit, unit_of
-from sysmlc.logic.expressions import expression as source
 from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
 from sysmlc.logic.machines.transitions import parse_milliseconds
 from sysmlc.passes.recipe.context import Context

@@ -7,7 +7,7 @@ from itertools import pairwise
 from msgspec.structs import replace
 
 from sysmlc.ir import Element, Kind, query
-from sysmlc.logic.expressions.expression import Binary, Expression, Literal, Unary
+from sysmlc.ir.expressions import Binary, Expression, Literal, Unary
 from sysmlc.passes.recipe.context import (
     Call,
     Context,

@@ -11,7 +11,7 @@ from typing import Protocol, TypeVar
 from msgspec.structs import replace
 
 from sysmlc.ir import Edge, Element, Kind, query
-from sysmlc.logic.expressions.expression import Expression
+from sysmlc.ir.expressions import Expression
 from sysmlc.passes.recipe.context import Context, segment_word
 from sysmlc.passes.recipe.data_flow import DataFlow
 from sysmlc.passes.recipe.expressions import find_member, literal_default, read_default, value_type
