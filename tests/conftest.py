@@ -1,7 +1,8 @@
 """Golden files: ``golden`` compares texts with a folder, ``--update-golden`` writes the folder.
 
-Where the corpus is available (SYSMLC_CORPUS) and in continuous integration (CI), a test that needs
-the corpus or PlantUML may not be skipped: a skip is reported as a failure.
+Tests of real models carry the mark ``corpus`` and are skipped unless SYSMLC_CORPUS names a folder.
+In continuous integration (CI), a test that needs PlantUML may not be skipped, and with
+SYSMLC_CORPUS no test of real models either: such a skip is reported as a failure.
 """
 
 import difflib
@@ -127,8 +128,7 @@ def golden(request):
 
 
 def pytest_runtest_setup(item):
-    is_on_corpus = "corpus" in item.fixturenames or item.get_closest_marker("corpus")
-    if is_on_corpus and not os.environ.get("SYSMLC_CORPUS"):
+    if item.get_closest_marker("corpus") and not os.environ.get("SYSMLC_CORPUS"):
         pytest.skip("SYSMLC_CORPUS is not set")
     if item.get_closest_marker("nusmv") and not (shutil.which("NuSMV") or shutil.which("nuXmv")):
         pytest.skip("NuSMV and nuXmv are not installed")
@@ -160,18 +160,31 @@ def pytest_runtest_makereport(item, call):
 @pytest.hookimpl(wrapper=True)
 def pytest_make_collect_report(collector):
     report = yield
-    if report.skipped and os.environ.get("SYSMLC_CORPUS"):
+    if report.skipped and runs_in_ci_with_corpus():
         report.outcome = "failed"
         report.longrepr = f"{collector.nodeid} may not be skipped here: {report.longrepr}"
     return report
+
+
+def runs_in_ci_with_corpus() -> bool:
+    """Whether the tests run in continuous integration with the corpus."""
+    return bool(os.environ.get("CI") and os.environ.get("SYSMLC_CORPUS"))
 
 
 def must_run(item) -> bool:
     """Whether the environment requires the test, so that a skip of it is a failure."""
     if item.get_closest_marker("nusmv"):
         return False
-    required_by = {"corpus": ("SYSMLC_CORPUS",), "plantuml": ("CI", "SYSMLC_CORPUS")}
-    return any(
-        item.get_closest_marker(mark) and any(os.environ.get(name) for name in names)
-        for mark, names in required_by.items()
-    )
+    if item.get_closest_marker("corpus"):
+        return runs_in_ci_with_corpus()
+    return bool(item.get_closest_marker("plantuml") and os.environ.get("CI"))
+
+
+def pytest_terminal_summary(terminalreporter):
+    """Report in one line that tests of real models were skipped."""
+    skips = terminalreporter.stats.get("skipped", [])
+    count = sum("corpus" in report.keywords for report in skips)
+    if count and not os.environ.get("SYSMLC_CORPUS"):
+        terminalreporter.line(
+            f"tests of real models were skipped ({count}): SYSMLC_CORPUS is not set"
+        )

@@ -1,7 +1,5 @@
 """Examples and random models in Papyrus's dialect conform to the metamodel of UML."""
 
-import os
-from pathlib import Path
 from random import Random
 
 import pytest
@@ -14,11 +12,8 @@ pytestmark = pytest.mark.corpus
 
 
 @pytest.fixture(scope="module")
-def metamodel():
-    corpus = os.environ.get("SYSMLC_CORPUS")
-    if not corpus:
-        pytest.skip("SYSMLC_CORPUS is not set")
-    return Metamodel(Path(corpus) / "xmi" / "metamodel" / "uml.ecore")
+def metamodel(corpus):
+    return Metamodel(corpus / "xmi" / "metamodel" / "uml.ecore")
 
 
 @pytest.mark.parametrize("model", EXAMPLES, ids=lambda path: path.parent.name)

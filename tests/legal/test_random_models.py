@@ -1,7 +1,5 @@
 """Random models that the standards allow have no error, and only warnings that are true."""
 
-import os
-from pathlib import Path
 from random import Random
 
 import pytest
@@ -66,14 +64,6 @@ def test_all_topics_are_drawn():
     random = Random(0)
     drawn = [random.sample(TOPICS, random.randint(1, 4)) for _ in range(120)]
     assert {topic for topics in drawn for topic in topics} == set(TOPICS)
-
-
-@pytest.fixture(scope="module")
-def corpus():
-    folder = os.environ.get("SYSMLC_CORPUS")
-    if not folder:
-        pytest.skip("SYSMLC_CORPUS is not set")
-    return Path(folder)
 
 
 @pytest.mark.corpus

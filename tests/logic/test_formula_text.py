@@ -89,9 +89,7 @@ def read_domain(json_type):
 
 @pytest.mark.corpus
 def test_the_formulas_of_din_8580_are_printed_without_loss():
-    corpus = os.environ.get("SYSMLC_CORPUS")
-    if not corpus:
-        pytest.skip("SYSMLC_CORPUS is not set")
+    corpus = os.environ["SYSMLC_CORPUS"]
     files = sorted(Path(corpus, "gr1", "din8580").glob("*.json"))
     assert len(files) == 33
     for file in files:

@@ -274,7 +274,7 @@ steps:
 MODELS = list_models()
 
 
-@pytest.mark.skipif(not MODELS, reason="SYSMLC_CORPUS names no folder")
+@pytest.mark.corpus
 @pytest.mark.parametrize("model", MODELS, ids=lambda model: model.path.stem)
 def test_every_step_of_the_player_is_a_step_of_the_derived_relation(model):
     assert_steps_agree(model.path, model.component)

@@ -195,9 +195,7 @@ PAIRS = {
 @pytest.mark.corpus
 @pytest.mark.parametrize("pair", PAIRS, ids=" ".join)
 def test_actions_of_din_8580_refine_their_variants_or_not(pair):
-    corpus = os.environ.get("SYSMLC_CORPUS")
-    if not corpus:
-        pytest.skip("SYSMLC_CORPUS is not set")
+    corpus = os.environ["SYSMLC_CORPUS"]
     folder = Path(corpus) / "gr1" / "din8580"
     (concrete,), (abstract,) = (
         read((folder / f"{name}.json").read_text(), name, Sink()) for name in pair

@@ -108,7 +108,6 @@ def test_the_examples_of_the_rules(rule):
 
 
 @pytest.mark.corpus
-@pytest.mark.skipif(not CORPUS, reason="SYSMLC_CORPUS names no folder")
 @pytest.mark.parametrize(
     ("name", "bound"), [("hol_9x2_move_T4", 4), ("hol_16x2_move_T5", 5), ("hol_16x1_smart", 7)]
 )

@@ -29,10 +29,7 @@ LARGE = {
 }
 """Contracts with the most states of their machines. The thesis reports no result for the first
 within six hours."""
-pytestmark = [
-    pytest.mark.corpus,
-    pytest.mark.skipif(not CORPUS, reason="SYSMLC_CORPUS names no folder"),
-]
+pytestmark = pytest.mark.corpus
 
 
 def synthesise_controllers(name):

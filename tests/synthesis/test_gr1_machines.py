@@ -31,10 +31,7 @@ MAX_SIZES = {
     "robots/hol_16x1_move": (17, 0),
 }
 """States and registers."""
-pytestmark = [
-    pytest.mark.corpus,
-    pytest.mark.skipif(not CORPUS, reason="SYSMLC_CORPUS names no folder"),
-]
+pytestmark = pytest.mark.corpus
 
 
 @pytest.mark.parametrize("name", MAX_SIZES)

@@ -92,7 +92,6 @@ def test_the_diagnostic_lists_the_core():
 
 
 @pytest.mark.corpus
-@pytest.mark.skipif(not CORPUS, reason="SYSMLC_CORPUS names no folder")
 def test_every_unrealizable_contract_of_din_8580_has_a_core():
     sizes = {}
     for path in sorted(Path(CORPUS, "gr1", "din8580").glob("*.json")):
