@@ -23,7 +23,7 @@ _REAL = (
     "dev/mtp_wago_ecockpit.aml",
 )
 
-LXML = 8.0
+LXML = 10.0
 """Budget from AutomationML to the resolved graph: multiple of the time of ``lxml.etree.parse``."""
 
 MEMORY = 14.0

@@ -26,7 +26,7 @@ _REAL = (
 )
 _SUFFIX = {"papyrus": ".uml", "magicdraw": ".xml"}
 
-LXML = 8.0
+LXML = 11.0
 """Budget from XMI to the resolved graph: multiple of the time of ``lxml.etree.parse``."""
 
 MEMORY = 10.0
