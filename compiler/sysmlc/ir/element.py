@@ -6,7 +6,10 @@ from hashlib import sha1
 from sysmlc.ir.kinds import Kind
 
 AttrValue = str | int | float | bool | None | tuple["AttrValue", ...]
-"""Value of an attribute: a JSON value, with tuples for lists."""
+"""Value of an attribute: a JSON value, with tuples for lists.
+
+The text of an expression may be a ``ParsedText`` (``ir.expressions``), which has its syntax tree.
+"""
 
 
 def list_items(value: AttrValue) -> tuple[AttrValue, ...]:

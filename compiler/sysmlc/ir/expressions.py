@@ -5,6 +5,7 @@ tree: offsets are not compared.
 """
 
 from dataclasses import dataclass, field
+from typing import Generic, Self, TypeVar
 
 from msgspec import Struct
 
@@ -133,6 +134,72 @@ class Invocation:
 
 
 Statement = Assignment | Send | Invocation
+
+
+# -- values of attributes ----------------------------------------------------------------------
+
+
+_Tree = TypeVar("_Tree")
+
+
+class ParsedText(str, Generic[_Tree]):
+    """A text as the value of an attribute, with its syntax tree.
+
+    The value is compared, printed and stored like any text. Only ``str`` and ``strip`` return it
+    with its tree.
+    """
+
+    __slots__ = ("tree",)
+    tree: _Tree
+
+    def __new__(cls, text: str, tree: _Tree) -> Self:
+        value = super().__new__(cls, text)
+        value.tree = tree
+        return value
+
+    def __str__(self) -> str:
+        return self
+
+    def strip(self, chars: str | None = None, /) -> str:
+        text = super().strip(chars)
+        return type(self)(text, self.tree) if chars is None else text
+
+    def __reduce__(self) -> tuple[type[Self], tuple[str, _Tree]]:
+        return type(self), (self[:], self.tree)
+
+
+class ExpressionText(ParsedText[Expression]):
+    """The text of an expression."""
+
+    __slots__ = ()
+
+
+class EffectText(ParsedText[tuple[Statement, ...]]):
+    """The text of an effect."""
+
+    __slots__ = ()
+
+
+_MAX_NESTING = 150
+"""Deepest nesting of expressions; a tuple of arguments counts as one level."""
+
+
+def is_nested_too_deeply(tree: Expression | tuple[Statement, ...]) -> bool:
+    """Whether the tree is so deep that functions cannot recurse over it."""
+    level: list[object] = [tree]
+    for _ in range(_MAX_NESTING):
+        children = [part for parent in level for part in _list_parts(parent)]
+        level = [part for part in children if not isinstance(part, str | int | float | None)]
+        if not level:
+            return False
+    return True
+
+
+def _list_parts(value: object) -> list[object]:
+    if isinstance(value, tuple | list):
+        return list(value)
+    return [getattr(value, name) for name in getattr(type(value), "__match_args__", ())]
+
 
 # -- printing ----------------------------------------------------------------------------------
 

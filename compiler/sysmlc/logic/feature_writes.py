@@ -22,7 +22,7 @@ from sysmlc.ir.expressions import (
     print_expression,
 )
 from sysmlc.logic.expressions.named_elements import VALUE_KINDS, find_named_values
-from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
+from sysmlc.logic.expressions.parsing import statements_of, tree_of
 
 _ASSIGNED_NAME = re.compile(r"([^\W\d]\w*)\s*:=")
 """The last name of each assigned path, in a body without quoted names."""
@@ -117,7 +117,7 @@ def find_bound_name(graph: Graph, action: Element, pin: Element) -> str | None:
 def _parse_name(text: str) -> str | None:
     """Return the path of names in a text; None if the text is another expression."""
     try:
-        return name_of(parse_expression(text))
+        return name_of(tree_of(text))
     except ExpressionError:
         return None
 
@@ -130,7 +130,7 @@ def _iter_assignments(action: Element) -> Iterator[FeatureWrite]:
     if not isinstance(body, str) or ":=" not in body:
         return
     try:
-        statements = parse_effect(body)
+        statements = statements_of(body)
     except ExpressionError:
         return
     for statement in statements:
@@ -150,7 +150,7 @@ def read_assignments(action: Element) -> tuple[Assignment, ...]:
     if not isinstance(body, str) or ":=" not in body:
         return ()
     try:
-        statements = parse_effect(body)
+        statements = statements_of(body)
     except ExpressionError:
         return ()
     assignments = tuple(item for item in statements if isinstance(item, Assignment))
@@ -172,7 +172,7 @@ def _read_written_value(graph: Graph, action: Element) -> Expression | None:
         return None
     text = _read_literal(graph, value_pin)
     try:
-        return None if text is None else parse_expression(text)
+        return None if text is None else tree_of(text)
     except ExpressionError:
         return None
 
@@ -273,7 +273,7 @@ class WriterIndex:
             yield from _WORD.findall(body)
         elif ":=" in body:
             try:
-                statements = parse_effect(body)
+                statements = statements_of(body)
             except ExpressionError:
                 yield from _WORD.findall(body)
                 return

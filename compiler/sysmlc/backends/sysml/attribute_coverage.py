@@ -9,7 +9,7 @@ from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.ir.expressions import ExpressionError, print_expression
 from sysmlc.ir.query.activities import is_joined, pin_subkind
-from sysmlc.logic.expressions.parsing import parse_expression
+from sysmlc.logic.expressions.parsing import tree_of
 
 _FLOWS = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
 _LISTED_KINDS = (Kind.DOCUMENT, Kind.METADATA, Kind.ALIAS, Kind.IMPORT)
@@ -228,7 +228,7 @@ def _has_unexpressed_body(_writer: Writer, member: Member | None, element: Eleme
     if not text:
         return True
     try:
-        is_same = print_expression(parse_expression(text)) == text
+        is_same = print_expression(tree_of(text)) == text
     except ExpressionError:
         return member is None
     return not is_same or "language" in element.attrs

@@ -21,7 +21,7 @@ from sysmlc.ir.expressions import (
     Send,
     Statement,
 )
-from sysmlc.logic.expressions.parsing import parse_effect
+from sysmlc.logic.expressions.parsing import statements_of
 
 _RUN_BY_CLASSIFIER = {"action": "perform", "state": "exhibit"}
 _SUBACTIONS = (Edge.ENTRY, Edge.DO, Edge.EXIT, Edge.EFFECT)
@@ -121,7 +121,7 @@ def format_statements(writer: Writer, scope: Member | None, element: Element) ->
     if not isinstance(text, str) or "bodies" in element.attrs:
         return None
     try:
-        statements = [_format_statement(writer, scope, tree) for tree in parse_effect(text)]
+        statements = [_format_statement(writer, scope, tree) for tree in statements_of(text)]
     except (ExpressionError, UnknownNameError, RecursionError):
         return None
     return statements or None

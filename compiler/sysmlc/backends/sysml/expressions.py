@@ -16,7 +16,7 @@ from sysmlc.ir import expressions as syntax
 from sysmlc.ir.expressions import POSTFIX, PRECEDENCE, UNARY
 from sysmlc.ir.query import bounds, generals, type_of
 from sysmlc.ir.query.classifiers import unit_of
-from sysmlc.logic.expressions.parsing import parse_expression
+from sysmlc.logic.expressions.parsing import tree_of
 
 _WITHOUT_VALUE = frozenset({"transition", "succession", "flow", "comment", "dependency", "start"})
 """Keywords of members that no expression denotes."""
@@ -42,7 +42,7 @@ class UnknownNameError(ValueError):
 def format_expression(writer: Writer, scope: Member | None, text: str) -> str | None:
     """Return the text as an expression of SysML v2; None if it is invalid or names are unknown."""
     try:
-        return print_expression(writer, scope, parse_expression(text))
+        return print_expression(writer, scope, tree_of(text))
     except (syntax.ExpressionError, UnknownNameError, RecursionError):
         return None
 
@@ -55,7 +55,7 @@ def print_expression(writer: Writer, scope: Member | None, tree: syntax.Expressi
 def is_condition(writer: Writer, scope: Member | None, text: str) -> bool:
     """Whether a text is an expression whose value may be Boolean."""
     try:
-        return _may_be_boolean(writer, scope, parse_expression(text))
+        return _may_be_boolean(writer, scope, tree_of(text))
     except (syntax.ExpressionError, UnknownNameError, RecursionError):
         return False
 

@@ -9,7 +9,6 @@ from sysmlc.frontends.sysml.kinds import ACTIVITIES
 from sysmlc.frontends.sysml.successions import defer_implied_start, lower_steps
 from sysmlc.frontends.sysml.triggers import lower_trigger
 from sysmlc.ir import AttrValue, Edge, Element, Kind, as_items
-from sysmlc.ir.expressions import print_statement
 from sysmlc.language.metaclasses import is_a
 from sysmlc.language.tree import Node
 
@@ -225,8 +224,7 @@ def lower_accept(lowering: "Lowering", node: Node, owner: Element) -> Element:
 
 def lower_assignment(lowering: "Lowering", node: Node, owner: Element) -> Element:
     """Lower an assignment to an opaque action whose body is its text."""
-    statement = expressions.read_statement(node)
-    body = "" if statement is None else print_statement(statement)
+    body = expressions.write_effect([node])
     action = _add_action(lowering, node, owner, "opaque")
     document = lowering.document_of(node)
     if body:

@@ -9,7 +9,9 @@ from sysmlc.ir.expressions import (
     Binary,
     Call,
     Conditional,
+    EffectText,
     Expression,
+    ExpressionText,
     Index,
     Invocation,
     Literal,
@@ -18,6 +20,7 @@ from sysmlc.ir.expressions import (
     Send,
     Statement,
     Unary,
+    is_nested_too_deeply,
     print_effect,
     print_expression,
 )
@@ -64,11 +67,15 @@ def write_expression(node: Node, source: str = "") -> str:
 
 
 def _print(expression: Expression) -> str | None:
-    """Return the text of an expression; None if it is nested too deeply to be printed."""
+    """Return the text of an expression with its tree, which a deeply nested one does not have.
+
+    The result is None if the expression is nested too deeply to be printed.
+    """
     try:
-        return print_expression(expression)
+        text = print_expression(expression)
     except RecursionError:
         return None
+    return text if is_nested_too_deeply(expression) else ExpressionText(text, expression)
 
 
 def read_expression(node: Node) -> Expression | None:
@@ -231,10 +238,12 @@ _EXPRESSION_READERS = {
 
 def write_effect(actions: Sequence[Node]) -> str | None:
     """Return consecutive actions as the text of one effect; None if one is not expressible."""
-    statements = [read_statement(action) for action in actions]
-    if not statements or None in statements:
+    readings = map(read_statement, actions)
+    statements = tuple(statement for statement in readings if statement is not None)
+    if not statements or len(statements) < len(actions):
         return None
-    return print_effect(tuple(statement for statement in statements if statement is not None))
+    text = print_effect(statements)
+    return text if is_nested_too_deeply(statements) else EffectText(text, statements)
 
 
 def read_statement(node: Node) -> Statement | None:

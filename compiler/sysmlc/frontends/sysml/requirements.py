@@ -11,6 +11,7 @@ from sysmlc.frontends.sysml.definitions import (
 )
 from sysmlc.frontends.sysml.features import lower_property
 from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.ir.expressions import ExpressionText, Unary
 from sysmlc.language.library import SHIPPED
 from sysmlc.language.tree import Node, Reference
 
@@ -71,8 +72,10 @@ def _is_unasserted(lowering: "Lowering", node: Node) -> bool:
 
 def _set_body(lowering: "Lowering", node: Node, constraint: Element, result: Node) -> None:
     text = values.expression_text(result, lowering)
-    is_negated = node.attributes.get("isNegated")
-    lowering.set_attributes(constraint, body=f"not ({text})" if is_negated else text)
+    body = f"not ({text})" if node.attributes.get("isNegated") else text
+    if isinstance(text, ExpressionText) and body is not text:
+        body = ExpressionText(body, Unary("not", text.tree))
+    lowering.set_attributes(constraint, body=body)
 
 
 def lower_result(lowering: "Lowering", node: Node, owner: Element) -> None:

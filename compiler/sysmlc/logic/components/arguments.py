@@ -34,7 +34,7 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.expressions.context import find_literal
 from sysmlc.logic.expressions.elaboration import ElaborationError, Symbol, elaborate_value
-from sysmlc.logic.expressions.parsing import parse_expression
+from sysmlc.logic.expressions.parsing import tree_of
 from sysmlc.logic.feature_writes import WriterIndex, find_bound_name
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines.symbolic_path import split_by_range
@@ -185,7 +185,7 @@ class Arguments:
         assert call is not None
         assert parent is not None
         path = find_bound_name(self._tree.graph, call, pin)
-        name = None if path is None else name_of(parse_expression(path))
+        name = None if path is None else name_of(tree_of(path))
         if name is None:
             return None
         variable = self._find_own(parent, name)
@@ -294,7 +294,7 @@ class Arguments:
             return find_literal(tree.context(tree.root), name)
 
         try:
-            result = elaborate_value(parse_expression(text), find_symbol, variable.domain)
+            result = elaborate_value(tree_of(text), find_symbol, variable.domain)
         except (ElaborationError, ExpressionError, ComponentError):
             return None
         fitted: Cases = []

@@ -23,7 +23,7 @@ from sysmlc.logic.components.signals import check_signal_names
 from sysmlc.logic.composition.structure import find_drawn_activity
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Owner, Source, Variable
 from sysmlc.logic.expressions.context import context_of
-from sysmlc.logic.expressions.parsing import parse_expression
+from sysmlc.logic.expressions.parsing import tree_of
 from sysmlc.logic.feature_writes import WriterIndex
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.identifiers import Names, identifier
@@ -291,7 +291,7 @@ class Component:
             performer = self.tree.find_performer(object_, called[0])
             return None if performer is None else (performer, called[0])
         try:
-            path = name_of(parse_expression(str(behaviour.attrs.get("body", "")))) or ""
+            path = name_of(tree_of(str(behaviour.attrs.get("body", "")))) or ""
         except ExpressionError:
             return None
         return self.tree.find_named_activity(object_, path)

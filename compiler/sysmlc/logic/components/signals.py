@@ -36,7 +36,7 @@ from sysmlc.logic.contract import (
     Source,
     Variable,
 )
-from sysmlc.logic.expressions.parsing import parse_effect
+from sysmlc.logic.expressions.parsing import statements_of
 from sysmlc.logic.formula import Const
 from sysmlc.logic.identifiers import identifier
 from sysmlc.logic.machines.machine import NO_EVENT
@@ -221,7 +221,7 @@ def _iter_sendings(element: Element) -> Iterator[Send]:
     if element.kind is not Kind.ACTIVITY or not isinstance(body, str) or "send" not in body:
         return
     try:
-        statements = parse_effect(body)
+        statements = statements_of(body)
     except ExpressionError:
         return
     yield from (statement for statement in statements if isinstance(statement, Send))

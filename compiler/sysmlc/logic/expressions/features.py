@@ -26,7 +26,7 @@ from sysmlc.logic.contract import (
 from sysmlc.logic.domains import contains, describe
 from sysmlc.logic.expressions.elaboration import ElaborationError, Fault
 from sysmlc.logic.expressions.named_elements import literals_of
-from sysmlc.logic.expressions.parsing import parse_expression
+from sysmlc.logic.expressions.parsing import tree_of
 from sysmlc.logic.expressions.ranges import (
     Access,
     Bounds,
@@ -216,7 +216,7 @@ def _parse_default(element: Element) -> Expression | None:
     if not isinstance(text, str) or "default_language" not in element.attrs:
         return None
     try:
-        return parse_expression(text)
+        return tree_of(text)
     except ExpressionError:
         return None
 

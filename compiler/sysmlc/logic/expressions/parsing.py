@@ -10,8 +10,10 @@ from sysmlc.ir.expressions import (
     Binary,
     Call,
     Conditional,
+    EffectText,
     Expression,
     ExpressionError,
+    ExpressionText,
     Index,
     Invocation,
     Literal,
@@ -20,19 +22,31 @@ from sysmlc.ir.expressions import (
     Send,
     Statement,
     Unary,
+    is_nested_too_deeply,
 )
 from sysmlc.support import resources
 
 if TYPE_CHECKING:
     from lark import Lark, Token, Tree
 
-_MAX_NESTING = 150
-"""Deepest nesting of expressions; a tuple of arguments counts as one level."""
 _CACHE_SIZE = 4096
 """Texts whose trees are cached: every pass parses the same guards and ranges."""
 _SPELLING = {"&&": "and", "&": "and", "||": "or", "|": "or", "!": "not", "=": "==", "<>": "!="}
 _ESCAPE = {"n": "\n"}
 _SHOWN_TOKEN = re.compile(r"\w{1,40}|[^\w\s]")
+
+
+def tree_of(value: str) -> Expression:
+    """Return the syntax tree of an attribute's value. Raises ExpressionError.
+
+    A value whose tree the front end has not attached is parsed.
+    """
+    return value.tree if isinstance(value, ExpressionText) else parse_expression(value)
+
+
+def statements_of(value: str) -> tuple[Statement, ...]:
+    """Return the statements of an attribute's value. Raises ExpressionError."""
+    return value.tree if isinstance(value, EffectText) else parse_effect(value)
 
 
 @lru_cache(_CACHE_SIZE)
@@ -61,8 +75,7 @@ def _parse(text: str, start_rule: str) -> Any:  # noqa: ANN401 - the type depend
         raise ExpressionError(_explain(text, offset), offset) from None
     except RecursionError:
         raise ExpressionError("the expression is nested too deeply", 0) from None
-    # Callers recurse over the tree. A shorter text cannot be nested so deeply.
-    if len(text) > _MAX_NESTING and _is_deep(value):
+    if is_nested_too_deeply(value):
         raise ExpressionError("the expression is nested too deeply", 0)
     return value
 
@@ -89,23 +102,6 @@ def _make_parser() -> "Lark":
         propagate_positions=True,
         maybe_placeholders=False,
     )
-
-
-def _is_deep(expression: object) -> bool:
-    """Whether more than ``_MAX_NESTING`` expressions are nested in one another."""
-    level = [expression]
-    for _ in range(_MAX_NESTING):
-        children = [part for parent in level for part in _list_parts(parent)]
-        level = [part for part in children if not isinstance(part, str | int | float | None)]
-        if not level:
-            return False
-    return True
-
-
-def _list_parts(value: object) -> list[object]:
-    if isinstance(value, tuple | list):
-        return list(value)
-    return [getattr(value, name) for name in getattr(type(value), "__match_args__", ())]
 
 
 class _TreeBuilder:

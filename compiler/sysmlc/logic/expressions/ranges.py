@@ -17,7 +17,7 @@ from sysmlc.ir.expressions import (
     name_of,
 )
 from sysmlc.ir.expressions import Literal as LiteralExpression
-from sysmlc.logic.expressions.parsing import parse_expression
+from sysmlc.logic.expressions.parsing import tree_of
 
 UNSIGNED = frozenset(["natural", "positive", "unlimitednatural"])
 """Types of Integers without negative values, in lower case."""
@@ -151,7 +151,7 @@ def _iter_bodies(
         if is_plain and word not in body and "'" not in body:
             continue
         try:
-            yield names, parse_expression(body)
+            yield names, tree_of(body)
         except ExpressionError:
             continue
 

@@ -36,7 +36,7 @@ from sysmlc.logic.expressions.elaboration import (
 )
 from sysmlc.logic.expressions.features import Feature, check_assignable
 from sysmlc.logic.expressions.named_elements import describe_feature_elsewhere
-from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
+from sysmlc.logic.expressions.parsing import statements_of, tree_of
 from sysmlc.logic.feature_writes import SHARED, Sharing, find_label, read_assignments
 from sysmlc.logic.identifiers import Names
 from sysmlc.logic.machines.instant_activities import find_instant_steps, find_target
@@ -189,7 +189,7 @@ def read_condition(reading: ReadingContext, text: str, what: str, element: Eleme
     if not text:
         return _replace_empty(reading, what, element)
     try:
-        expression = parse_expression(text)
+        expression = tree_of(text)
         elaborate_condition(expression, reading.find_symbol)
     except ExpressionError as error:
         return _replace_by_input(reading, text, what, element, error)
@@ -305,7 +305,7 @@ def _read_behaviour(reading: ReadingContext, behaviour: Element, edge: Edge) -> 
         output = reading.output_for(f"behaviour {behaviour.id}", name, behaviour.id)
         return [Raise(output, behaviour.id), *_read_steps(reading, behaviour)]
     try:
-        statements = parse_effect(body)
+        statements = statements_of(body)
     except ExpressionError:
         reason = "it is not an assignment, call or send"
         return [_read_opaque_effect(reading, body, behaviour, reason)]

@@ -18,7 +18,7 @@ from sysmlc.ir.expressions import (
 from sysmlc.logic.expressions.context import Context, find_literal, make_symbol
 from sysmlc.logic.expressions.elaboration import ElaborationError, Symbol, elaborate_value
 from sysmlc.logic.expressions.features import check_assignable
-from sysmlc.logic.expressions.parsing import parse_expression
+from sysmlc.logic.expressions.parsing import tree_of
 from sysmlc.logic.feature_writes import WriterIndex, read_assignments, takes_one_step
 
 _INSTANT = (Edge.ENTRY, Edge.EXIT, Edge.EFFECT)
@@ -84,7 +84,7 @@ def _find_named_activity(graph: Graph, behaviour: Element, classifier: Element) 
     The result is None if several of their members have the name, or a member of the machine has it.
     """
     try:
-        name = name_of(parse_expression(str(behaviour.attrs.get("body", ""))))
+        name = name_of(tree_of(str(behaviour.attrs.get("body", ""))))
     except ExpressionError:
         return None
     family = (classifier, *query.generals(graph, classifier))

@@ -20,7 +20,7 @@ from sysmlc.logic.components.objects import ComponentError
 from sysmlc.logic.contract import Conjunct, Contract, Domain, name_variables
 from sysmlc.logic.expressions.context import report_range
 from sysmlc.logic.expressions.elaboration import ElaborationError, Fault, elaborate_condition
-from sysmlc.logic.expressions.parsing import parse_expression
+from sysmlc.logic.expressions.parsing import tree_of
 from sysmlc.logic.feature_writes import WriterIndex
 from sysmlc.logic.formal_texts import describe_error, has_pattern_word, read_formal
 from sysmlc.logic.formula import Formula
@@ -319,7 +319,7 @@ def _read_condition(
     scope: Scope, statement: Statement, informal: _InformalStatements
 ) -> Formula | None:
     try:
-        expression = parse_expression(str(statement.constraint.attrs["body"]))
+        expression = tree_of(str(statement.constraint.attrs["body"]))
         return elaborate_condition(expression, scope.find_symbol)
     except (ExpressionError, ElaborationError, ComponentError) as error:
         informal.add(statement, _explain(scope, error))

@@ -23,7 +23,7 @@ from sysmlc.logic.expressions.elaboration import (
     elaborate_condition,
 )
 from sysmlc.logic.expressions.features import Feature
-from sysmlc.logic.expressions.parsing import parse_expression
+from sysmlc.logic.expressions.parsing import tree_of
 from sysmlc.logic.formal_texts import is_formal
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.simplification import simplify_constant
@@ -183,7 +183,7 @@ def _read_condition(
 
 
 def _read_formula(context: Context, constraint: Element) -> Formula:
-    expression = _split_chain(parse_expression(str(constraint.attrs["body"])))
+    expression = _split_chain(tree_of(str(constraint.attrs["body"])))
     formula = elaborate_condition(expression, lambda name: _find_symbol(context, name))
     domains: dict[str, Domain] = {
         feature.variable: feature.domain

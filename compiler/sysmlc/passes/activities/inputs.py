@@ -38,7 +38,7 @@ from sysmlc.logic.expressions.elaboration import (
 )
 from sysmlc.logic.expressions.features import Feature, check_assignable
 from sysmlc.logic.expressions.named_elements import describe_feature_elsewhere
-from sysmlc.logic.expressions.parsing import parse_expression
+from sysmlc.logic.expressions.parsing import tree_of
 from sysmlc.logic.formula import Formula, var, variables
 from sysmlc.logic.identifiers import Names, identifier, make_unique
 from sysmlc.logic.machines.actions import OUT_OF_DOMAIN
@@ -153,7 +153,7 @@ class Scope:
         """
         find_symbol = self._find_unbounded if has_any_numbers else self._find_symbol
         try:
-            expression = parse_expression(text)
+            expression = tree_of(text)
             formula = elaborate_condition(expression, find_symbol)
         except ExpressionError as error:
             raise UnreadableError(str(error)) from None
@@ -176,7 +176,7 @@ class Scope:
         """Whether the text is a condition if the name *unknown* is a Boolean."""
         trial = {**self._declared, unknown: var(unknown)}
         try:
-            elaborate_condition(parse_expression(text), lambda name: self._find_symbol(name, trial))
+            elaborate_condition(tree_of(text), lambda name: self._find_symbol(name, trial))
         except ElaborationError as error:
             # Another unknown name is replaced in the next round of `Inputs.read_condition`.
             return error.fault is Fault.UNKNOWN and error.name != unknown

@@ -9,7 +9,7 @@ from fractions import Fraction
 from sysmlc.ir import Element, Kind, query
 from sysmlc.ir import expressions as source
 from sysmlc.ir.query.classifiers import name_value_unit, unit_of
-from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
+from sysmlc.logic.expressions.parsing import statements_of, tree_of
 from sysmlc.logic.machines.transitions import parse_milliseconds
 from sysmlc.passes.recipe.context import Context
 from sysmlc.passes.recipe.profile import shorten
@@ -30,7 +30,7 @@ _OPERATORS = {"%": "mod", "xor": "!="}
 def read_expression(text: str) -> source.Expression:
     """Return the expression of a text, or an opaque one if the text has no valid syntax."""
     try:
-        return _translate_expression(parse_expression(text))
+        return _translate_expression(tree_of(text))
     except source.ExpressionError:
         return make_opaque(text)
 
@@ -87,7 +87,7 @@ def _make_call(function: str, *args: source.Expression) -> source.Expression:
 def read_assignments(text: str) -> list[tuple[str, source.Expression]] | None:
     """Return the variables and values of an effect; None unless it consists of assignments."""
     try:
-        statements = parse_effect(text)
+        statements = statements_of(text)
     except source.ExpressionError:
         return None
     pairs: list[tuple[str, source.Expression]] = []
