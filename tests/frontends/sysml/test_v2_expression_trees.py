@@ -1,0 +1,50 @@
+"""Texts of expressions have the syntax trees that the front end has read."""
+
+from reading_v2 import read
+
+from sysmlc.ir.expressions import EffectText, ExpressionText, ParsedText
+from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
+
+MODEL = """
+package Plant {
+    private import ScalarValues::*;
+    enum def Mode { enum auto; enum hand; }
+    attribute limit : Integer = 9;
+    attribute def Go { attribute amount : Integer; }
+    part def Tank {
+        attribute level : Integer = -2 + 3 * limit;
+        attribute open : Boolean = false;
+        attribute mode : Mode = Mode::auto;
+        assert not constraint { level - 1 < 0 }
+        action fill { assign level := level + 1; then assign open := not open; }
+        state run {
+            entry; then idle;
+            state idle { entry action { assign open := true; } }
+            state full;
+            transition first idle accept Go if level >= limit or mode == Mode::hand then full;
+            transition first full accept when (if open ? level else 0) > 3 do send Go(2) to self
+                then idle;
+        }
+    }
+}
+"""
+
+
+def test_each_tree_is_that_of_the_text():
+    graph = read(MODEL).graph
+    values = [v for e in graph for v in e.attrs.values() if isinstance(v, ParsedText)]
+    for value in values:
+        parse = parse_effect if isinstance(value, EffectText) else parse_expression
+        assert parse(value) == value.tree
+    assert "level >= limit or mode == Mode::hand" in values
+    assert "(if open ? level else 0) > 3" in values
+    assert "not (level - 1 < 0)" in values
+    assert "level := level + 1; open := not open" in values
+    assert "send Go(2) to self" in values
+
+
+def test_an_expression_that_is_nested_too_deeply_has_no_tree():
+    graph = read("part def P { attribute a = b" + " + b" * 200 + "; attribute b; }").graph
+    defaults = [element.attrs["default"] for element in graph if "default" in element.attrs]
+    assert defaults
+    assert not any(isinstance(value, ExpressionText) for value in defaults)
