@@ -91,6 +91,7 @@ def machines(draw):
     """Draw a graph and its state machine."""
     build = Builder()
     machine, signals = add_context(build)
+    build.add_behaviour(machine, Edge.ENTRY, draw(st.sampled_from(EFFECTS)))
     for _ in range(draw(st.sampled_from([1, 1, 1, 2]))):
         region = build.add(Kind.REGION, machine, "r")
         vertices = _add_vertices(draw, build, region, depth=0)
@@ -130,6 +131,8 @@ def _add_orthogonal_state(draw, build, region):
 def _add_submachine(draw, build, machine, signals):
     """Add a state machine with an entry point and an exit point."""
     submachine = build.add(Kind.STATE_MACHINE, build.graph.owner(machine), "Called")
+    for edge in (Edge.ENTRY, Edge.EXIT):
+        build.add_behaviour(submachine, edge, draw(st.sampled_from(EFFECTS)))
     region = build.add(Kind.REGION, submachine, "r")
     vertices = _add_vertices(draw, build, region, depth=1)
     _add_transitions(draw, build, region, vertices, signals)

@@ -63,6 +63,8 @@ class Block(Struct, frozen=True):
     """The activities that states perform when they are entered; they take time."""
     exit: dict[str, str] = {}
     """The activities that states perform before they are left; they take time."""
+    start: str = ""
+    """The feature that the machine sets to true before it enters its first state."""
 
 
 def make_block(random: Random) -> Block:
@@ -96,7 +98,8 @@ def make_block(random: Random) -> Block:
     performed = {name: activities[name] for name in names if name in used}
     # A state with an exit that takes time is left straight to other states.
     moves = tuple(dict.fromkeys(replace(m, choice=None) if m.source in exit else m for m in moves))
-    return Block(performed, do, moves, own, states, signatures, entry, exit)
+    start = random.choice(("", *FEATURES))
+    return Block(performed, do, moves, own, states, signatures, entry, exit, start)
 
 
 def _takes_time(steps: tuple[Step, ...]) -> bool:
@@ -187,7 +190,8 @@ def _write_lines(block: Block) -> list[str]:
         parameters = "in attribute p : Boolean; out attribute r : Boolean := false;"
         lines += [f"{own}action {name} {{", *([parameters] if name in block.signatures else [])]
         lines += [*_write_steps(steps), "}"]
-    lines += ["exhibit state M {", "entry; then S0;"]
+    first_action = f"entry assign {block.start} := true" if block.start else "entry"
+    lines += ["exhibit state M {", f"{first_action}; then S0;"]
     for state in block.states:
         entry = f" entry {block.entry[state]};" if state in block.entry else ""
         do = f" do {block.do[state]};" if state in block.do else ""
@@ -476,7 +480,8 @@ class State(Struct, frozen=True):
 def first_state(block: Block) -> State:
     """Return the state in the first step."""
     own = start(block, block.own) if block.own else None
-    return _settle(block, _enter(block, "S0", (False, False), own))
+    values = tuple(name == block.start for name in FEATURES)
+    return _settle(block, _enter(block, "S0", values, own))
 
 
 def _enter(block: Block, name: str, values: tuple[bool, bool], own: Performance | None) -> State:

@@ -30,6 +30,7 @@ from sysmlc.logic.identifiers import Names, identifier
 from sysmlc.logic.machines.instant_activities import find_instant_steps, may_name
 from sysmlc.logic.machines.machine import Machine, Vertex, element_id
 from sysmlc.logic.machines.reader import MachineOptions, find_context_classifier
+from sysmlc.logic.machines.supported_constructs import list_behaviours
 
 _LONG_LIMITS = {
     Edge.ENTRY: " beside substates or a time-out",
@@ -145,7 +146,7 @@ class Component:
     def _list_long(self, object_: ComponentObject, machine: Machine, role: Edge) -> Iterator[str]:
         """Yield the ids of the states whose entries, or exits, take time and are described."""
         for state in machine.list_states():
-            behaviours = self.graph.targets(self.graph[element_id(state.id)], role)
+            behaviours = list_behaviours(self.graph, self.graph[element_id(state.id)], role)
             performed = [self._find_performed(object_, behaviour) for behaviour in behaviours]
             if len(performed) != 1 or performed[0] is None or not self._takes_time(performed[0][1]):
                 continue
@@ -169,7 +170,7 @@ class Component:
         The state is active meanwhile, and none of its transitions is enabled (the Library: entry
         and exit are inside of the performance of the state).
         """
-        (behaviour,) = self.graph.targets(self.graph[element_id(state.id)], role)
+        (behaviour,) = list_behaviours(self.graph, self.graph[element_id(state.id)], role)
         performed = self._find_performed(machine.owner, behaviour)
         assert performed is not None
         object_, activity = performed
@@ -235,7 +236,7 @@ class Component:
             for edge in (Edge.ENTRY, Edge.EXIT, Edge.EFFECT):
                 if (element.id, edge) in described:
                     continue
-                for behaviour in self.graph.targets(element, edge):
+                for behaviour in list_behaviours(self.graph, element, edge):
                     if self._is_within_step(machine, behaviour):
                         continue
                     performed = self._find_performed(machine.owner, behaviour)

@@ -35,6 +35,7 @@ from sysmlc.logic.machines.moves import (
     is_chosen_formula,
 )
 from sysmlc.logic.machines.reader import MachineOptions, read_machine
+from sysmlc.logic.machines.supported_constructs import list_behaviours
 from sysmlc.logic.machines.symbolic_path import Path
 
 EVENT = "event"
@@ -248,7 +249,7 @@ class PlacedMachine(Struct, frozen=True):
         """Yield the states with do behaviours."""
         for state in self.machine.list_states():
             if state.do:
-                yield state, list(tree.graph.targets(tree.graph[element_id(state.id)], Edge.DO))
+                yield state, list_behaviours(tree.graph, tree.graph[element_id(state.id)], Edge.DO)
 
 
 def find_machines(tree: ObjectTree, object_: ComponentObject) -> list[Element]:
@@ -394,6 +395,7 @@ def _find_slot(
 def _list_written_ids(graph: Graph, machine: Machine) -> Iterator[str]:
     """Yield the ids of the texts of which the machine has all assignments."""
     groups = [group for state in machine.vertices.values() for group in (state.entry, state.exit)]
+    groups.append(machine.entry)
     for transition in machine.list_transitions():
         groups += (segment.effect for segment in (transition, *transition.join_partners))
     counts: dict[str, set[int]] = {}

@@ -41,6 +41,7 @@ from sysmlc.logic.feature_writes import SHARED, Sharing, find_label, read_assign
 from sysmlc.logic.identifiers import Names
 from sysmlc.logic.machines.instant_activities import find_instant_steps, find_target
 from sysmlc.logic.machines.machine import Action, Assign, Raise
+from sysmlc.logic.machines.supported_constructs import list_behaviours
 from sysmlc.support.suggestions import find_similar
 
 NOT_UNDERSTOOD = rule(
@@ -293,7 +294,7 @@ def _replace_by_input(
 def read_behaviours(reading: ReadingContext, element: Element, edge: Edge) -> tuple[Action, ...]:
     """Return the actions of the behaviours at the targets of *edge*, in order."""
     actions: list[Action] = []
-    for behaviour in reading.graph.targets(element, edge):
+    for behaviour in list_behaviours(reading.graph, element, edge):
         actions += _read_behaviour(reading, behaviour, edge)
     return tuple(actions)
 

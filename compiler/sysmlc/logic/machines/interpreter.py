@@ -14,6 +14,7 @@ visible in the next step:
   orthogonal regions react independently, each reading the values before the step.
 - Do behaviours assign values before transitions are taken. The guard of a completion transition
   reads these values in the step in which the do behaviour of its source ends.
+- The machine's own entry behaviour runs before its first states are entered.
 - Taking a transition runs exit behaviours (innermost first), effects and entry behaviours
   (outermost first) in sequence, for each transition on the path: a state is left if the path
   leads out of it, and entered if it leads in. Regions of entered states that the path does not
@@ -55,6 +56,7 @@ from sysmlc.logic.machines.reaction import (
     find_active_vertices,
     is_active,
     last_literal,
+    run_actions,
     start_open_regions,
     start_region,
     take_transition,
@@ -84,7 +86,7 @@ def initial_steps(machine: Machine, inputs: Mapping[str, Literal]) -> list[Valua
 def list_first_reactions(machine: Machine, values: Mapping[str, Literal]) -> list[Reaction]:
     """Return the ways to enter the initial states; *values* are those of the properties."""
     inactive = {region.variable: INACTIVE for region in machine.regions.values()}
-    runs = [Reaction({**inactive, **values})]
+    runs = [run_actions(machine, Reaction({**inactive, **values}), machine.entry)]
     for region in machine.top:
         started = [
             after for reaction in runs for after in start_region(machine, reaction, None, region)

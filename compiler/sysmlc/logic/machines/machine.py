@@ -200,6 +200,8 @@ class Machine(Struct, frozen=True):
     reads: dict[str, tuple[str, ...]] = field(default_factory=dict)
     """The properties without a range that the values of each property read; those that conditions
     read, by "". A formula names them only where its value is not the same in the whole range."""
+    entry: tuple[Action, ...] = ()
+    """What the machine does before it enters its first states."""
 
     def find_variable(self, name: str) -> Variable:
         """Return the variable called *name*."""

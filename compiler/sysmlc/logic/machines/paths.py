@@ -72,7 +72,8 @@ class PathExplorer(Struct, frozen=True):
 
     def explore_start(self, values: Mapping[str, Formula]) -> list[Path]:
         """Return the feasible paths into the initial states; properties start with *values*."""
-        paths = [Path(values=values, config=self._inactive_regions())]
+        start = Path(values=values, config=self._inactive_regions())
+        paths = self._run_actions(start, self.machine.entry)
         for region in self.machine.top:
             paths = self._start_open_regions(
                 [after for path in paths for after in self._start_region(path, region)]

@@ -166,7 +166,7 @@ def _follow(
     if region and not machine.has_concurrent_exits(source.id):
         run = _leave_region(machine, run, region)
     for segment in (transition, *transition.join_partners):
-        run = _run_actions(machine, run, segment.effect)
+        run = run_actions(machine, run, segment.effect)
     if not region:
         return [run]
     return _arrive(
@@ -200,7 +200,7 @@ def _leave_region(machine: Machine, run: Reaction, region: str) -> Reaction:
     for vertex in find_active_vertices(machine, run.store, region):
         for inner in vertex.regions:
             run = _leave_region(machine, run, inner)
-        run = _run_actions(machine, run, vertex.exit)
+        run = run_actions(machine, run, vertex.exit)
         opened = tuple(id for id in run.opened if id != vertex.id)
         run = replace(run, left_states=run.left_states | {vertex.id}, opened=opened)
     return run.with_value(machine.regions[region].variable, INACTIVE)
@@ -225,7 +225,7 @@ def _enter_outer_states(machine: Machine, run: Reaction, region: str, target: st
 
 def _enter_state(machine: Machine, run: Reaction, state: Vertex) -> Reaction:
     run = run.with_value(machine.regions[state.region].variable, state.literal)
-    return replace(_run_actions(machine, run, state.entry), opened=(*run.opened, state.id))
+    return replace(run_actions(machine, run, state.entry), opened=(*run.opened, state.id))
 
 
 def start_open_regions(
@@ -293,7 +293,7 @@ def _reenter(
     return run
 
 
-def _run_actions(machine: Machine, run: Reaction, actions: tuple[Action, ...]) -> Reaction:
+def run_actions(machine: Machine, run: Reaction, actions: tuple[Action, ...]) -> Reaction:
     for action in actions:
         match action:
             case Raise(output):

@@ -8,12 +8,12 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.ir import Element, Graph, query
+from sysmlc.ir import Edge, Element, Graph, query
 from sysmlc.logic.contract import EnumerationDomain, IntegerDomain, Owner, Variable
 from sysmlc.logic.expressions.context import context_of
 from sysmlc.logic.feature_writes import Sharing, WriterIndex
 from sysmlc.logic.identifiers import Names
-from sysmlc.logic.machines.actions import ReadingContext
+from sysmlc.logic.machines.actions import ReadingContext, read_behaviours
 from sysmlc.logic.machines.conflicts import (
     GuardComparison,
     TooManyValuationsError,
@@ -93,6 +93,7 @@ def read_machine(
     classifier = classifier or find_context_classifier(graph, machine)
     sharing = Sharing(graph, machine, writers, classifier)
     draft = _start_draft(graph, sharing, sink, options or MachineOptions())
+    draft.entry = read_behaviours(draft.reading, machine, Edge.ENTRY)
     top = read_regions(draft, machine, "", machine)
     add_history_memories(draft)
     read_transitions(draft)
@@ -222,6 +223,7 @@ def _assemble(draft: MachineDraft, top: tuple[str, ...]) -> Machine:
             target: tuple(name for name in names if name in assumed)
             for target, names in reading.reads.items()
         },
+        entry=draft.entry,
     )
     names = name_regions(reading.graph, machine)
     regions = {

@@ -98,6 +98,16 @@ def find_submachine(graph: Graph, state: Element) -> Element | None:
     )
 
 
+def list_behaviours(graph: Graph, element: Element, edge: Edge) -> list[Element]:
+    """Return the entry, do or exit behaviours, or effects, of a machine, state or transition.
+
+    The behaviours of a submachine go before those of the state that uses it.
+    """
+    submachine = find_submachine(graph, element)
+    inner = [] if submachine is None else graph.targets(submachine, edge)
+    return [*inner, *graph.targets(element, edge)]
+
+
 def _describe_recursion(graph: Graph, state: Element) -> str:
     """Describe a submachine state whose submachine contains the state; "" for other elements."""
     submachine = find_submachine(graph, state)

@@ -11,13 +11,18 @@ from sysmlc.logic.identifiers import identifier, make_unique
 from sysmlc.logic.machines.actions import ReadingContext, read_behaviours
 from sysmlc.logic.machines.machine import (
     INACTIVE,
+    Action,
     Region,
     Transition,
     Vertex,
     element_id,
     submachine_id,
 )
-from sysmlc.logic.machines.supported_constructs import find_initial, find_submachine
+from sysmlc.logic.machines.supported_constructs import (
+    find_initial,
+    find_submachine,
+    list_behaviours,
+)
 
 
 @dataclass(slots=True)
@@ -36,6 +41,7 @@ class MachineDraft:
     events: dict[str, str] = field(default_factory=dict)
     bounds: dict[str, int] = field(default_factory=dict)
     memories: dict[str, Expression] = field(default_factory=dict)
+    entry: tuple[Action, ...] = ()
     within: str = ""
     """The id of the state whose submachine is being read; empty outside submachines."""
     aliases: dict[str, list[str]] = field(default_factory=dict)
@@ -173,9 +179,10 @@ def _read_submachine(
 
 def _read_do_activity(draft: MachineDraft, state: Element) -> str:
     """Return the output that is true while the do behaviour of *state* runs, or an empty text."""
-    behaviour = draft.reading.graph.target(state, Edge.DO)
-    if behaviour is None:
+    behaviours = list_behaviours(draft.reading.graph, state, Edge.DO)
+    if not behaviours:
         return ""
+    behaviour = behaviours[0]
     name = behaviour.name or str(behaviour.attrs.get("body", "")) or state.name
     key, domain = f"do {draft.id_of(state)}", BooleanDomain()
     return draft.reading.variable_for(key, f"do_{name}", Owner.SYSTEM, domain, behaviour.id)

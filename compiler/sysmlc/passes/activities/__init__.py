@@ -221,7 +221,7 @@ def _is_drawn_elsewhere(activity: Element) -> bool:
 
 
 def _has_assignments_as_text(graph: Graph, activity: Element) -> bool:
-    """Whether an activity is a text of assignments, and no part of a transition or state.
+    """Whether an activity is a text of assignments, and no part of the step of a state machine.
 
     Entries, exits and effects with such texts belong to the contract of their state machine. The do
     behaviour of a state runs on its own.
@@ -229,7 +229,9 @@ def _has_assignments_as_text(graph: Graph, activity: Element) -> bool:
     if activity.attrs.get("external") or not takes_one_step(activity):
         return False
     owner = graph.owner(activity)
-    is_inside_machine = owner is not None and owner.kind in (Kind.STATE, Kind.TRANSITION)
+    is_inside_machine = owner is not None and (
+        owner.kind in (Kind.STATE, Kind.TRANSITION) or activity in graph.targets(owner, Edge.ENTRY)
+    )
     return not is_inside_machine or bool(graph.sources(activity, Edge.DO))
 
 
