@@ -392,7 +392,11 @@ class Sharing(Struct, frozen=True, dict=True):
         return self.writers or WriterIndex(self.graph)
 
     def find_other_writer(self, feature: Element) -> Element | None:
-        """Return a behaviour outside the machine that writes *feature*."""
-        if self.writers is None:
-            return None
-        return self.writers.find_other_writer(feature, self.machine)
+        """Return a behaviour that writes *feature* outside the machine, or that its states do."""
+        for writer in () if self.writers is None else self.writers.iter_writers(feature):
+            scopes = (writer, *self.graph.ancestors(writer))
+            if self.machine not in scopes or any(
+                self.graph.sources(scope, Edge.DO) for scope in scopes
+            ):
+                return writer
+        return None
