@@ -56,6 +56,38 @@ def test_the_first_entry_decides_a_feature_without_initial_value(decide):
     assert decide(block, "y", "!y") == ["broken", "broken"]
 
 
+OWN_ENTRY = "exhibit state s {{ entry {} then S; state S {}; accept Go then T; state T; }}"
+
+
+@pytest.mark.parametrize(
+    ("block", "formulas", "verdicts"),
+    [
+        ("assign x := true;", ["G x", "!x"], ["holds", "broken"]),
+        ("assign x := not x;", ["G x", "!x"], ["holds", "broken"]),
+        ("action set { assign x := true; assign y := x; }", ["G x", "G y"], ["holds", "holds"]),
+        ("init;", ["G x", "G !y"], ["holds", "holds"]),
+    ],
+    ids=["assignment", "reads-the-default", "chain", "action-of-the-block"],
+)
+def test_the_entry_of_a_machine_runs_before_its_first_state(decide, block, formulas, verdicts):
+    init = "action init { first start; then assign x := true; then done; }"
+    assert decide(FLAGS + init + OWN_ENTRY.format(block, ""), *formulas) == verdicts
+
+
+def test_the_entry_of_a_machine_goes_before_that_of_its_first_state(decide):
+    block = FLAGS + OWN_ENTRY.format("assign x := true;", "{ entry assign y := x; }")
+    assert decide(block, "G x", "G y") == ["holds", "holds"]
+
+
+def test_a_state_performs_the_actions_of_the_machine_that_it_uses(decide):
+    actions = "entry assign x := true; then I; do work; exit assign y := true;"
+    definition = f"state def D {{ {actions} state I; }}"
+    work = "action work { action turn; }"
+    block = FLAGS + work + definition + OWN_ENTRY.format(";", ": D")
+    formulas = ("G x", "G (y <-> state=T)", "running(work)", "G (state=T -> !running(work))")
+    assert decide(block, *formulas) == ["holds", "holds", "holds", "holds"]
+
+
 def test_a_state_may_have_the_name_of_an_operator(decide):
     block = """attribute done : Boolean := false;
         exhibit state s { entry; then X; state X; accept Go do assign done := true then 'true';

@@ -392,11 +392,15 @@ class Sharing(Struct, frozen=True, dict=True):
         return self.writers or WriterIndex(self.graph)
 
     def find_other_writer(self, feature: Element) -> Element | None:
-        """Return a behaviour that writes *feature* outside the machine, or that its states do."""
+        """Return a behaviour that writes *feature* and is no part of the steps of the machine.
+
+        These are behaviours outside the machine, do behaviours, and the exit of the machine itself.
+        """
+        exits = self.graph.targets(self.machine, Edge.EXIT)
         for writer in () if self.writers is None else self.writers.iter_writers(feature):
             scopes = (writer, *self.graph.ancestors(writer))
             if self.machine not in scopes or any(
-                self.graph.sources(scope, Edge.DO) for scope in scopes
+                scope in exits or self.graph.sources(scope, Edge.DO) for scope in scopes
             ):
                 return writer
         return None

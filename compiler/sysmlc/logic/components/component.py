@@ -233,6 +233,8 @@ class Component:
             (element_id(root.state.id), root.role) for root in self.roots if root.state is not None
         }
         for element in machine.iter_elements(self.graph):
+            if element.kind is Kind.STATE_MACHINE and element is not machine.element:
+                continue  # Its states perform its behaviours.
             for edge in (Edge.ENTRY, Edge.EXIT, Edge.EFFECT):
                 if (element.id, edge) in described:
                     continue
@@ -344,7 +346,7 @@ class Component:
         if (object_.path, activity.id) not in self.performances.performed:
             return True
         inside = {copy.activity.id for copy in self.performances.copies.values()}
-        inside |= {machine.element.id for machine in self.machines}
+        inside |= {e.id for machine in self.machines for e in machine.iter_elements(self.graph)}
         return any(
             inside.isdisjoint(element.id for element in (user, *self.graph.ancestors(user)))
             for user in self._iter_users(activity)

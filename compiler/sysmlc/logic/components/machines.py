@@ -237,8 +237,10 @@ class PlacedMachine(Struct, frozen=True):
         return self.rename(f.either(*passes))
 
     def iter_elements(self, graph: Graph) -> Iterator[Element]:
-        """Yield the states and transitions of the machine, those of its submachines included."""
+        """Yield the machine, its submachines, and the states and transitions of both."""
         yield from graph.subtree(self.element)
+        regions = (graph[element_id(id)] for id in self.machine.regions)
+        yield from (owner for owner in map(graph.owner, regions) if owner is not None)
         for id in self.machine.vertices:
             yield graph[element_id(id)]
         for transition in self.machine.list_transitions():

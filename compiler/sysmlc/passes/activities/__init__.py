@@ -230,7 +230,9 @@ def _has_assignments_as_text(graph: Graph, activity: Element) -> bool:
         return False
     owner = graph.owner(activity)
     is_inside_machine = owner is not None and (
-        owner.kind in (Kind.STATE, Kind.TRANSITION) or activity in graph.targets(owner, Edge.ENTRY)
+        owner.kind in (Kind.STATE, Kind.TRANSITION)
+        or activity in graph.targets(owner, Edge.ENTRY)
+        or activity in graph.targets(owner, Edge.EXIT)
     )
     return not is_inside_machine or bool(graph.sources(activity, Edge.DO))
 
