@@ -1,4 +1,4 @@
-"""Compilations in a loop: the memory of one is free before the next one starts."""
+"""Compilations in a loop: nothing refers to earlier ones, and their memory is soon free."""
 
 import subprocess
 import sys
@@ -22,8 +22,12 @@ model, count, backends = sys.argv[1], int(sys.argv[2]), sys.argv[3:]
 for number in range(count):
     compile_model(model, emit=backends)
     if number == 4:
-        first_objects, first_megabytes = count_objects(), read_megabytes()
-print(count_objects() - first_objects, read_megabytes() - first_megabytes)
+        first_megabytes = read_megabytes()
+        gc.collect()
+        first_objects = count_objects()
+megabytes = read_megabytes() - first_megabytes
+gc.collect()
+print(count_objects() - first_objects, megabytes)
 """
 CELLS = "".join(
     f"""\

@@ -92,9 +92,8 @@ def read_observed_steps(component, facts):
 
 def list_observations(runs, states, facts):
     """Yield the sets of facts that are true in some of the states."""
-    hidden = [bit for bit in runs.bits if bit not in runs.system.symbols.all_bits(tuple(facts))]
-    rest = runs.manager.exist(hidden, states)
     bits = runs.system.symbols.all_bits(tuple(facts))
+    rest = runs.manager.exist([bit for bit in runs.bits if bit not in bits], states)
     while rest != runs.manager.false:
         assignment = runs.manager.pick(rest, bits)
         values = runs.system.symbols.decode(assignment)
@@ -111,10 +110,26 @@ def describe(runs, observation, facts):
     return node
 
 
+def observe_with(atoms):
+    """Return a function from a valuation to the facts that are true in it, which caches them."""
+    observations = {}
+
+    def observe(valuation):
+        key = frozenset(valuation.items())
+        if key not in observations:
+            observations[key] = frozenset(
+                fact for fact in atoms if evaluate.is_true(atoms[fact], valuation)
+            )
+        return observations[key]
+
+    return observe
+
+
 def play_observed_steps(player, facts):
     """Return the pairs of observations of successive steps of the player."""
     atoms = list_atoms(player.parts, facts)
     atoms |= list_features(player.variables)
+    observe = observe_with(atoms)
     inputs = [variable for variable in player.variables if variable.owner is Owner.ENVIRONMENT]
     runs = {
         variable.name: node.run
@@ -132,9 +147,6 @@ def play_observed_steps(player, facts):
             for variable in inputs
         )
         return [valuation | dict(zip(rest, row, strict=True)) for row in product(*choices)]
-
-    def observe(valuation):
-        return frozenset(fact for fact in atoms if evaluate.is_true(atoms[fact], valuation))
 
     worklist = player.initial(rest)
     seen = {frozenset(valuation.items()) for valuation in worklist}
@@ -175,15 +187,12 @@ def compare(seed, tmp_path, *, has_part=False):
 
 def play_signals(player, facts):
     """Return the pairs of observations of a player that decides some of the events itself."""
-    atoms = list_atoms(player.parts, facts)
+    observe = observe_with(atoms := list_atoms(player.parts, facts))
     inputs = [variable for variable in player.variables if variable.owner is Owner.ENVIRONMENT]
     rows = [
         dict(zip((variable.name for variable in inputs), row, strict=True))
         for row in product(*(values(variable.domain) for variable in inputs))
     ]
-
-    def observe(valuation):
-        return frozenset(fact for fact in atoms if evaluate.is_true(atoms[fact], valuation))
 
     worklist = [valuation for row in rows for valuation in player.initial(row)]
     seen = {frozenset(valuation.items()) for valuation in worklist}

@@ -38,6 +38,7 @@ class Library:
         self._sources = {source.name: source for source in sources}
         self._parsed: dict[str, Document] = {}
         self._loaded: set[str] = set()
+        self._searched: set[str] = set()
         self._stems: dict[str, list[str]] = {}
         for path in self._sources:
             self._stems.setdefault(_stem(path), []).append(path)
@@ -92,11 +93,12 @@ class Library:
         A model may have a package of the same name as one of the library, and names in the library
         then lead to that package.
         """
-        self._loaded.clear()
-        for document in self._parsed.values():
-            for node in document.root.walk():
+        for path in self._searched:
+            for node in self._parsed[path].root.walk():
                 for relation in node.relations:
                     relation.reference.clear_targets()
+        self._loaded.clear()
+        self._searched.clear()
 
     def _parse(self, path: str) -> Document:
         document = self._parsed.get(path)
@@ -105,6 +107,7 @@ class Library:
             text = source.data.decode("utf-8-sig", "replace")
             document = parse(text, path, _SUFFIXES[_suffix(path)], Sink(), source)
             self._parsed[path] = document
+        self._searched.add(path)
         return document
 
     def _find_roots(self, paths: Iterable[str], name: str) -> list[Node]:

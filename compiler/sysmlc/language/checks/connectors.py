@@ -140,6 +140,7 @@ def check_exchanged_ends(model: Model, node: Node) -> Iterator[Finding]:
         f"'{name_of(model, feature)}' is connected as '{name_of(model, defined)}'"
         for end in ends
         for feature in _list_referenced(end)
+        if feature.kind in _PORT_USAGES
         for defined in _list_redefined(model, end)
         # An end redefines by its position. With the name of the other end, it is meant as that one.
         if end.name in (None, "", defined.name) and _is_reversed(model, feature, defined)
