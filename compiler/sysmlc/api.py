@@ -74,8 +74,8 @@ def compile_model(
     return compile_request(request)
 
 
-_MAX_NEW_BLOCKS = 50_000
-"""Blocks of memory, some 5 MB, that compilations may leave before garbage is collected."""
+_MAX_GROWTH = 1.25
+"""Factor by which memory may grow before garbage is collected."""
 _blocks = 0
 """Blocks of memory after the last collection."""
 
@@ -88,7 +88,7 @@ def _free_earlier_compilations() -> None:
     takes longer than the compilation.
     """
     global _blocks
-    if sys.getallocatedblocks() - _blocks > _MAX_NEW_BLOCKS:
+    if sys.getallocatedblocks() > _MAX_GROWTH * _blocks:
         gc.collect()
         _blocks = sys.getallocatedblocks()
 
