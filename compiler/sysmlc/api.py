@@ -83,9 +83,9 @@ _blocks = 0
 def _free_earlier_compilations() -> None:
     """Collect garbage if memory has grown.
 
-    The nodes of syntax trees form cycles, and the collector is paused while models are read, so each
-    compilation of the ICE laboratory in a loop left up to 14 MB. For a small model, a collection
-    takes longer than the compilation.
+    The nodes of syntax trees form cycles, and the collector is paused while models are read: each
+    compilation of the ICE laboratory in a loop left up to 14 MB. A collection takes longer than the
+    compilation of a small model.
     """
     global _blocks
     if sys.getallocatedblocks() > _MAX_GROWTH * _blocks:

@@ -237,7 +237,7 @@ def test_random_signals_have_the_steps_of_both_interpreters(seed, tmp_path):
 
 @pytest.mark.long
 def test_many_random_signals_have_the_steps_of_both_interpreters(tmp_path):
-    for seed in range(100, 150):
+    for seed in range(100, 125):
         compare_signals(seed, tmp_path)
 
 
@@ -252,13 +252,13 @@ def test_random_blocks_with_a_part_have_the_steps_of_both_interpreters(seed, tmp
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("first", range(100, 200, 20))
+@pytest.mark.parametrize("first", range(100, 160, 20))
 def test_many_random_blocks_have_the_steps_of_both_interpreters(first, tmp_path):
     assert sum(compare(seed, tmp_path) for seed in range(first, first + 20)) >= 15
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("first", range(200, 300, 20))
+@pytest.mark.parametrize("first", range(200, 260, 20))
 def test_many_blocks_with_a_part_have_the_steps_of_both_interpreters(first, tmp_path):
     seeds = range(first, first + 20)
     assert sum(compare(seed, tmp_path, has_part=True) for seed in seeds) >= 15
