@@ -6,11 +6,13 @@ _XMI = """\
 <xmi:XMI xmi:version="20131001" xmlns:xmi="http://www.omg.org/spec/XMI/20131001"
     xmlns:uml="http://www.eclipse.org/uml2/5.0.0/UML"
     xmlns:Activities="http://www.eclipse.org/papyrus/sysml/1.6/SysML/Activities"
+    xmlns:Allocations="http://www.eclipse.org/papyrus/sysml/1.6/SysML/Allocations"
     xmlns:Blocks="http://www.eclipse.org/papyrus/sysml/1.6/SysML/Blocks"
     xmlns:ConstraintBlocks="http://www.eclipse.org/papyrus/sysml/1.6/SysML/ConstraintBlocks"
     xmlns:PortsAndFlows="http://www.eclipse.org/papyrus/sysml/1.6/SysML/PortsAndFlows"
     xmlns:Requirements="http://www.eclipse.org/papyrus/sysml/1.6/SysML/Requirements"
-    xmlns:plant="http://example.org/plant">
+    xmlns:plant="http://example.org/plant"
+    xmlns:sysmlc="urn:sysmlc:profile:1">
   <uml:Model xmi:id="model" name="Model">
 {elements}
   </uml:Model>
@@ -38,7 +40,9 @@ _MTIP = """\
 </packet>
 """
 _APPLICATION = re.compile(
-    r"^<(?:Activities|Blocks|ConstraintBlocks|PortsAndFlows|Requirements|plant):.*/>$", re.MULTILINE
+    r"^<(?:Activities|Allocations|Blocks|ConstraintBlocks|PortsAndFlows|Requirements|plant|sysmlc)"
+    r":.*/>$",
+    re.MULTILINE,
 )
 _FILE_NAMES = {
     "CAEXFile": "model.aml",

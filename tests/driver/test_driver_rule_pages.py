@@ -52,7 +52,8 @@ NOT_COMPILED = {
     **dict.fromkeys(
         ("SM595", "SM596", "SM597", "SM598", "SM599"), "'sysmlc contracts check' composes"
     ),
-    "SM702": "the diagram is very large",
+    "SM628": "there are two files",
+    "SM702": "diagrams of authors are requested",
     "SM703": "diagrams of authors are requested",
     "SM758": "the same file stands for text and interchange",
 }

@@ -2,10 +2,9 @@
 
 import pytest
 
+from sysmlc import compile_model
 from sysmlc.diagnostics import Sink, catalogue
-from sysmlc.ir.text import parse_text
 from sysmlc.logic.contract import Contract
-from sysmlc.passes import pipeline
 from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.contract_checks import BREAKS, check_contracts
 from sysmlc.synthesis.decision import Options
@@ -13,10 +12,15 @@ from sysmlc.synthesis.decision import Options
 CODES = ("SM560", "SM561", "SM562")
 
 
-def check_model(text):
-    graph, sink = parse_text(text), Sink()
-    pipeline.run(graph, sink, verify_each=True)
-    sink = Sink()
+@pytest.fixture
+def check_model(tmp_path):
+    """Return the function that checks the contracts of a model in SysML v2."""
+    return lambda text: check_text(tmp_path / "plant.sysml", text)
+
+
+def check_text(path, text):
+    path.write_text(text, "utf-8")
+    graph, sink = compile_model(path).graph, Sink()
     contracts = graph.derived(Contract)
     results = check_contracts(
         contracts, contracts, lambda origin: graph.subject(graph[origin]), sink, Options()
@@ -25,7 +29,7 @@ def check_model(text):
 
 
 @pytest.mark.parametrize("code", CODES)
-def test_rule_reports_its_wrong_model_and_not_its_right_one(code):
+def test_rule_reports_its_wrong_model_and_not_its_right_one(code, check_model):
     rule = catalogue()[code]
     assert code in [diagnostic.rule.code for diagnostic in check_model(rule.read_page().wrong)[1]]
     assert code not in [
@@ -33,7 +37,7 @@ def test_rule_reports_its_wrong_model_and_not_its_right_one(code):
     ]
 
 
-def test_a_violated_requirement_is_reported_with_a_run():
+def test_a_violated_requirement_is_reported_with_a_run(check_model):
     results, _ = check_model(BREAKS.read_page().right)
     assert results["Plant::Gate"].is_implemented is True
     results, diagnostics = check_model(BREAKS.read_page().wrong)
@@ -41,15 +45,16 @@ def test_a_violated_requirement_is_reported_with_a_run():
     assert results["Plant::Gate.requirements"].is_implemented is None
     (violation,) = [diagnostic for diagnostic in diagnostics if diagnostic.rule is BREAKS]
     assert violation.message == (
-        "the behaviour of 'Plant::Gate' violates 'state=B -> state'=B' ('Stays on' demands it)"
+        "the behaviour of 'Plant::Gate' violates 'state=open -> state'=open' "
+        "('StaysOpen' demands it)"
     )
-    assert violation.subject.name == "Plant::Stays on::<Constraint>"
-    assert violation.notes[0] == "step 1: event=start, state=A"
-    assert violation.notes[1] == "step 2: event=stop, state=B"
-    assert "state=A" in violation.notes[2]
+    assert violation.subject.name == "Plant::StaysOpen::<Constraint>"
+    assert violation.notes[0] == "step 1: event=Start, state=shut"
+    assert violation.notes[1] == "step 2: event=Stop, state=open"
+    assert "state=shut" in violation.notes[2]
 
 
-def test_checks_that_reach_a_limit_are_reported(monkeypatch):
+def test_checks_that_reach_a_limit_are_reported(monkeypatch, check_model):
     def give_up(*_, **__):
         raise LimitError("of CPU time", "1 s")
 

@@ -162,8 +162,8 @@ def test_a_part_without_a_contract_is_opened():
 def test_rules_report_their_wrong_model_and_not_their_right_one(code):
     rule = catalogue()[code]
     for text, expected in ((rule.read_page().wrong, True), (rule.read_page().right, False)):
-        sink = Sink()
-        graph = parse_text(text)
+        reading = read(text)
+        graph, sink = reading.graph, reading.sink
         pipeline.run(graph, sink, verify_each=True)
         is_composed = len(list(compose_blocks(graph, graph.derived(Contract), sink))) == 1
         assert (code in [diagnostic.rule.code for diagnostic in sink]) is expected

@@ -5,7 +5,6 @@ from reading_v2 import read
 
 from sysmlc.diagnostics import Sink, catalogue
 from sysmlc.ir import Graph
-from sysmlc.ir.text import parse_text
 from sysmlc.logic.contract import Contract, Owner
 from sysmlc.passes import pipeline
 
@@ -147,9 +146,9 @@ def test_the_finding_is_where_the_reason_is(old, new, place):
 def test_the_rule_of_machines_reports_its_wrong_model_and_not_its_right_one():
     rule = catalogue()["SM546"]
     for text, expected in ((rule.read_page().wrong, True), (rule.read_page().right, False)):
-        graph, sink = parse_text(text), Sink()
-        pipeline.run(graph, sink, verify_each=True)
-        assert ("SM546" in [diagnostic.rule.code for diagnostic in sink]) is expected
+        reading = read(text)
+        pipeline.run(reading.graph, reading.sink, verify_each=True)
+        assert ("SM546" in [diagnostic.rule.code for diagnostic in reading.sink]) is expected
 
 
 @pytest.mark.parametrize(
