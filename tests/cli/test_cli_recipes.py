@@ -104,6 +104,18 @@ def test_an_output_bound_to_another_expression_is_reported(tmp_path, value):
 
 CUT = """
     attribute <cyc> cycle : ISQ::DurationUnit;
+    attribute <tick> tickUnit : ISQ::DurationUnit {{
+        :>> unitConversion : MeasurementReferences::ConversionByConvention {{
+            :>> referenceUnit = SI::s;
+            :>> conversionFactor = 1/4;
+        }}
+    }}
+    attribute <round> roundUnit : ISQ::DurationUnit {{
+        :>> unitConversion : MeasurementReferences::ConversionByConvention {{
+            :>> referenceUnit = tick;
+            :>> conversionFactor = 1.2;
+        }}
+    }}
     attribute cutTime : ISQ::DurationValue = 9 [SI::s];
     action def Cut :> MachineService;
     dependency from Cut to Mill {{ @Capability {{ {capability} }} }}
@@ -143,6 +155,9 @@ def test_times_are_milliseconds_and_power_is_watts(tmp_path):
         ('"9 s"', 9000),
         ('"9.5 seconds"', 9500),
         ('"250ms"', 250),
+        ("3 [tick]", 750),
+        ("5 [round]", 1500),
+        ("9007199254740992", 9007199254740992),
     ],
 )
 def test_a_duration_may_have_any_unit_of_time(tmp_path, value, milliseconds):
@@ -168,7 +183,7 @@ def test_a_unit_of_another_quantity_withholds_the_recipe(tmp_path, capability, m
 @pytest.mark.parametrize(
     ("value", "code", "end"),
     [
-        ("3 [cycle]", "SM644", "is '3 cyc': unit 'cyc' is unknown, and the value is ignored"),
+        ("3 [cycle]", "SM644", "the size of unit 'cyc' is unknown, and the value is ignored"),
         ('"1,5 s"', "SM622", "must be a whole number of milliseconds, 0 or more; it is ignored"),
         ("-3 [SI::s]", "SM622", "must be a whole number of milliseconds, 0 or more; it is ignored"),
         ('"0.5 ms"', "SM622", "must be a whole number of milliseconds, 0 or more; it is ignored"),
@@ -178,6 +193,55 @@ def test_a_duration_that_is_no_time_is_reported_and_ignored(tmp_path, value, cod
     _, provider, findings = compile_cut(tmp_path, f"duration = {value};")
     assert "duration" not in provider
     assert findings[code].endswith(end)
+
+
+LARGEST = "9007199254740992 ms, the largest number that recipes store exactly"
+
+
+@pytest.mark.parametrize(
+    ("capability", "code", "end"),
+    [
+        ("duration = 9007199254740993;", "SM652", f"'9007199254740993', more than {LARGEST}"),
+        ("duration = 9007199254741 [SI::s];", "SM652", f"'9007199254741 s', more than {LARGEST}"),
+        ("maxPower = 1E16;", "SM652", LARGEST.replace(" ms", " W")),
+        (
+            "minPower = 10; maxPower = 3;",
+            "SM653",
+            "' is 10 W, more than 'maxPower', which is 3 W",
+        ),
+        (
+            "minPower = 2 [SI::kW]; maxPower = 1999;",
+            "SM653",
+            "more than 'maxPower', which is 1999 W",
+        ),
+    ],
+)
+def test_numbers_without_an_exact_or_sensible_value_withhold_the_recipe(
+    tmp_path, capability, code, end
+):
+    recipe, _, findings = compile_cut(tmp_path, capability)
+    assert (recipe, list(findings)) == (None, [code])
+    assert findings[code].endswith(end)
+
+
+@pytest.mark.parametrize(
+    ("usage", "limits"),
+    [
+        ("MakePart { attribute :>> maxDuration = 40; }", [40, 50]),
+        ('MakePart { attribute :>> pre = "true"; }', [50, 50]),
+        ("Special;", [70, 50]),
+        ("Special { :>> maxDuration = 60; }", [60, 50]),
+    ],
+)
+def test_a_usage_or_a_special_task_states_its_own_values(tmp_path, usage, limits):
+    task = "attribute :>> maxDuration = 50;"
+    body = CUT.format(capability="duration = 9;", task=task, then="")
+    special = """action def Special :> MakePart { attribute :>> maxDuration = 70; }
+        dependency from Special to Mill { @Capability; }"""
+    steps = f"first start then one; action one : {usage} then two; action two : MakePart;"
+    recipe, findings = compile_shop(tmp_path, body + special, recipe=steps)
+    tasks = recipe["recipes"][0]["tasks"]
+    assert ([task["maxDuration"] for task in tasks], findings) == (limits, {})
 
 
 def test_a_metre_is_not_a_minute(tmp_path):

@@ -101,6 +101,7 @@ def _lower_call(lowering: "Lowering", node: Node, owner: Element, subkind: str) 
     called = _find_called(node)
     default_subkind = "opaque" if called is None else "call-behavior"
     action = _add_action(lowering, node, owner, subkind or default_subkind)
+    annotations.apply_task_values(lowering, node, action)
     for member in nodes.body_of(node):
         if _is_nameless_reference(member) and "direction" not in member.attributes:
             for reference in nodes.list_references(member, "FeatureTyping", "Subsetting"):

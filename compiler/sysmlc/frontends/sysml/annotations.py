@@ -5,6 +5,7 @@ SysML v2 has no construct; the back end ``sysml`` writes it.
 """
 
 from collections.abc import Callable, Collection, Iterator
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import nodes, preserved_facts, quantities, values
@@ -201,8 +202,8 @@ def _set_tag(lowering: "Lowering", application: Element, attribute: str, value: 
     element = lowering.element_of(nodes.find_target(value, "Membership"))
     tagged: AttrValue
     if constant is not None:
-        unit = quantities.unit_symbol(lowering, value)
-        tagged = _write_tag(lowering, constant, f" {unit}" if unit else "")
+        unit, factor = quantities.read_unit(lowering, value)
+        tagged = _write_tag(lowering, constant, f" {unit}" if unit else "", factor)
     elif element is not None:
         tagged = element.id
     else:
@@ -210,15 +211,21 @@ def _set_tag(lowering: "Lowering", application: Element, attribute: str, value: 
     lowering.graph.set(application, **{attribute: tagged})
 
 
-def _write_tag(lowering: "Lowering", value: AttrValue, unit: str = "") -> AttrValue:
+def _write_tag(
+    lowering: "Lowering", value: AttrValue, unit: str = "", factor: Fraction = Fraction(1)
+) -> AttrValue:
     """Return a tagged value as text; the qualified name of an element becomes its id.
 
-    The unit of a quantity follows its number (``9 s``), as models in SysML v1 write it.
+    The unit of a quantity follows its number (``9 s``), as models in SysML v1 write it. *factor*
+    converts the number to the unit.
     """
     if isinstance(value, tuple):
-        return tuple(_write_tag(lowering, item, unit) for item in value)
+        return tuple(_write_tag(lowering, item, unit, factor) for item in value)
     if isinstance(value, bool):
         return "true" if value else "false"
+    if isinstance(value, int | float) and factor != 1:
+        number = Fraction(str(value)) * factor
+        value = number.numerator if number.denominator == 1 else float(number)
     text = f"{value}{unit}"
     return lowering.id_of(text) or text if "::" in text else text
 
@@ -250,33 +257,55 @@ def metadata_value(node: Node, name: str, key: str) -> AttrValue:
 
 
 def apply_levels(lowering: "Lowering", node: Node, element: Element) -> None:
-    """Apply the stereotype of each recipe level that a definition directly specialises.
+    """Apply the stereotype of each recipe level that a definition specialises.
 
-    The members that redefine attributes of the level give its tagged values.
+    It does so directly, or redefines an attribute of the level. The members that redefine
+    attributes of the level give its tagged values.
     """
-    for reference in nodes.list_references(node, *_LEVEL_GENERALS):
-        level = reference.target
-        if level is None or not is_recipe_level(level):
-            continue
-        name = level.name or ""
-        application = lowering.add_derived(
-            node, Kind.APPLICATION, name, element, stereotype=name, namespace=PROFILE
-        )
-        lowering.graph.connect(Edge.SUBJECT, application, element)
-        for member, key in _iter_level_members(node):
-            value = nodes.value_of(member)
+    generals = (reference.target for reference in nodes.list_references(node, *_LEVEL_GENERALS))
+    levels = [general.name or "" for general in generals if general and is_recipe_level(general)]
+    values = list(_iter_level_values(node))
+    for level in dict.fromkeys([*levels, *(level for level, _, _ in values)]):
+        _apply_level(lowering, node, element, level, values)
+
+
+def apply_task_values(lowering: "Lowering", node: Node, action: Element) -> None:
+    """Apply the stereotype of a task to a usage that redefines attributes of a task."""
+    values = [value for value in _iter_level_values(node) if value[0] == "Task"]
+    if values:
+        _apply_level(lowering, node, action, "Task", values)
+
+
+_LevelValue = tuple[str, str, Node]
+"""A level, an attribute of the level, and the member that redefines the attribute."""
+
+
+def _apply_level(
+    lowering: "Lowering", node: Node, element: Element, level: str, values: list[_LevelValue]
+) -> None:
+    application = lowering.add_derived(
+        node, Kind.APPLICATION, level, element, stereotype=level, namespace=PROFILE
+    )
+    lowering.graph.connect(Edge.SUBJECT, application, element)
+    for owner, key, member in values:
+        value = nodes.value_of(member)
+        if owner == level:
             lowering.skipped.add(id(member))
-            if value is not None:
-                _defer_tag(lowering, application, key, value)
+        if owner == level and value is not None:
+            _defer_tag(lowering, application, key, value)
 
 
-def _iter_level_members(node: Node) -> Iterator[tuple[Node, str]]:
-    """Yield the members that redefine an attribute of a level, with its name."""
+def _iter_level_values(node: Node) -> Iterator[_LevelValue]:
+    """Yield the members that redefine an attribute of a level, directly or not."""
     for member in node.members:
-        attribute = nodes.find_target(member, "Redefinition")
-        level = None if attribute is None else attribute.owner
-        if attribute is not None and level is not None and is_recipe_level(level):
-            yield member, attribute.name or ""
+        attributes = [member]
+        for attribute in attributes:
+            redefined = nodes.find_target(attribute, "Redefinition")
+            if redefined is not None and redefined not in attributes:
+                attributes.append(redefined)
+        level = attributes[-1].owner
+        if len(attributes) > 1 and level is not None and is_recipe_level(level):
+            yield level.name or "", attributes[-1].name or "", member
 
 
 def is_recipe_level(node: Node) -> bool:

@@ -1,6 +1,7 @@
 """Units and kinds of values: ``500 [kg]``, and ``=``, ``:=`` or ``default`` before it."""
 
 from collections.abc import Sequence
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import expressions, nodes
@@ -8,6 +9,7 @@ from sysmlc.ir import AttrValue, Edge, Element
 from sysmlc.ir.query.classifiers import strip_qualifiers, unit_of
 from sysmlc.language.text.lexer import quote_name
 from sysmlc.language.tree import Node
+from sysmlc.support.units import find_unit
 
 if TYPE_CHECKING:
     from sysmlc.frontends.sysml.lowering import Lowering
@@ -20,6 +22,8 @@ _KINDS = {
     "default :=": "default initial",
 }
 """Kinds of values by the words before their expression."""
+_MAX_CONVERSIONS = 8
+"""Units in a chain of conversions, which a model may close to a cycle."""
 _UNIT_OPERATORS = ("*", "/", "**", "^")
 _USUAL_KINDS = {"default": "default", "value": "bound"}
 """Kinds of the values of SysML v1, by attribute; they are not stated."""
@@ -47,10 +51,50 @@ def set_unit(lowering: "Lowering", element: Element, key: str, expression: Node)
         lowering.graph.set(element, **{f"{key}_unit": names[0]})
 
 
-def unit_symbol(lowering: "Lowering", expression: Node) -> str:
-    """Return the symbol of the unit of a quantity, ``s`` for ``9 [SI::s]``; '' without one."""
+def read_unit(lowering: "Lowering", expression: Node) -> tuple[str, Fraction]:
+    """Return the symbol of a usual unit of a quantity, and the factor from its own unit to that.
+
+    The symbol is empty for a number without a unit. A unit without a usual one stays itself.
+    """
     unit = next(filter(None, _list_units(expression)), None)
-    return "" if unit is None else strip_qualifiers(_write_unit(lowering, unit))
+    if unit is None:
+        return "", Fraction(1)
+    symbol = own_symbol = strip_qualifiers(_write_unit(lowering, unit))
+    factor = Fraction(1)
+    for _ in range(_MAX_CONVERSIONS):
+        conversion = None if find_unit(symbol) else _read_conversion(unit)
+        if conversion is None:
+            break
+        factor, unit = factor * conversion[0], conversion[1]
+        symbol = strip_qualifiers(_write_unit(lowering, unit))
+    return (symbol, factor) if find_unit(symbol) else (own_symbol, Fraction(1))
+
+
+def _read_conversion(unit: Node) -> tuple[Fraction, Node] | None:
+    """Return the number of the unit's reference units that it is, and this reference unit."""
+    target = _unit_element(unit)
+    members = [] if target is None else nodes.body_of(target)
+    conversions = (member for member in members if nodes.name_of(member) == "unitConversion")
+    facts = {
+        nodes.name_of(member): value
+        for conversion in conversions
+        for member in nodes.body_of(conversion)
+        if (value := nodes.value_of(member)) is not None
+    }
+    if "conversionFactor" not in facts or "referenceUnit" not in facts:
+        return None
+    factor = _read_factor(facts["conversionFactor"])
+    return (factor, facts["referenceUnit"]) if factor else None
+
+
+def _read_factor(expression: Node) -> Fraction | None:
+    """Return a positive number, or a quotient of such numbers; None for other expressions."""
+    if expression.attributes.get("operator") == "/":
+        dividend, divisor = map(_read_factor, nodes.list_arguments(expression))
+        return dividend / divisor if dividend and divisor else None
+    value = expression.attributes.get("value")
+    is_number = isinstance(value, int | float) and not isinstance(value, bool) and value > 0
+    return Fraction(str(value)) if is_number else None
 
 
 def has_unit(expression: Node) -> bool:

@@ -236,9 +236,20 @@ WORDINGS = {
         "'{tag}' of {stereotype} on '{element}' is '{value}', but {problem}", "{advice}"
     ),
     "SM644": Wording(
-        "'{tag}' of {stereotype} on '{element}' is '{value}': unit '{unit}' is unknown, and the "
-        "value is ignored",
-        "write the value in a usual unit, such as 9 [SI::s] or 2 [SI::kW]",
+        "'{tag}' of {stereotype} on '{element}' is '{value}': the size of unit '{unit}' is "
+        "unknown, and the value is ignored",
+        "write the value in a usual unit, such as 9 [SI::s] or 2 [SI::kW], or give the unit a "
+        "unitConversion whose conversionFactor is a number",
+    ),
+    "SM652": Wording(
+        "'{tag}' of {stereotype} on '{element}' is '{value}', more than {limit}{unit}, the largest "
+        "number that recipes store exactly",
+        "correct the value, or leave it out if there is no limit",
+    ),
+    "SM653": Wording(
+        "'{low}' of {stereotype} on '{element}' is {minimum}, more than '{high}', which is "
+        "{maximum}",
+        "exchange the two values, or correct one of them",
     ),
     "SM649": Wording("", "correct maxIterations of @Loop, or the guards"),
     "SM650": Wording("", "correct the duration of @Capability of the task or of a service"),

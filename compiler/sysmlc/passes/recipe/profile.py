@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
 
 from msgspec import Struct
+from msgspec.structs import replace
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.ir.query.classifiers import name_value_unit, unit_of
@@ -120,6 +121,9 @@ UNITS = {
 }
 """Unit in which the recipe has the number of a tag; a number without a unit is in this unit."""
 
+MAX_NUMBER = 2**53
+"""The largest whole number up to which readers of JSON represent all whole numbers exactly."""
+
 _NUMERIC_TAGS = (*UNITS, "priority", "maxIterations", "quantity", "available", "buffer")
 
 
@@ -134,6 +138,10 @@ class Tags(Struct, frozen=True):
     """Units that the value types of tags state; a unit in a tagged value takes precedence."""
     material_unit: str = ""
     """Unit in which the recipe has amounts of the material to which the tags belong."""
+
+    def override(self, tags: "Tags") -> "Tags":
+        """Return these tagged values, with those of *tags* in the place of their own."""
+        return replace(self, attrs={**self.attrs, **tags.attrs}, units={**self.units, **tags.units})
 
     def text(self, name: str) -> str:
         """Return the first text of a tag, or the empty string."""
@@ -166,13 +174,23 @@ class Tags(Struct, frozen=True):
 
     def amount(self, name: str) -> int | float | None:
         """Return a number that is not negative, in the unit of the recipe, or None."""
+        number = self._read_number(name)
+        return number if number is not None and 0 <= number <= MAX_NUMBER else None
+
+    def is_too_large(self, name: str) -> bool:
+        """Whether a number has more digits than the recipe can represent."""
+        number = self._read_number(name)
+        return number is not None and number > MAX_NUMBER
+
+    def _read_number(self, name: str) -> int | float | None:
+        """Return a number in the unit of the recipe, or None."""
         text, stated, target = self.text(name), self.unit(name), self.target_unit(name)
         quantity = split_quantity(text)
         number = read_number(text) if quantity is None else shorten(quantity[0])
         if number is not None and stated and stated != target:
             converted = convert(Fraction(str(number)), stated, target)
             number = None if converted is None else shorten(converted)
-        return number if number is not None and number >= 0 else None
+        return number
 
     def integer(self, name: str) -> int | None:
         """Return a whole number that is not negative, in the unit of the recipe, or None."""
@@ -242,6 +260,10 @@ def shorten(number: Fraction) -> int | float:
 
 def read_number(text: str) -> int | float | None:
     """Return the number of a text, or None; whole numbers become integers."""
+    try:
+        return int(text)
+    except ValueError:
+        pass
     try:
         value = float(text)
     except ValueError:

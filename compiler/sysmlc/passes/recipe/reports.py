@@ -12,7 +12,7 @@ from sysmlc.passes.recipe.context import Context
 from sysmlc.passes.recipe.data_flow import DataFlow, find_bound_feature
 from sysmlc.passes.recipe.graphs import refine
 from sysmlc.passes.recipe.machines import find_material_unit
-from sysmlc.passes.recipe.profile import Tags, read_tags
+from sysmlc.passes.recipe.profile import MAX_NUMBER, Tags, read_tags
 from sysmlc.passes.recipe.tasks import find_material, list_steps
 from sysmlc.recipe.model import Model
 from sysmlc.support.units import convert, find_unit
@@ -36,9 +36,24 @@ UNKNOWN_UNIT = rule(
     "SM644",
     "recipe-unit-unknown",
     Severity.WARNING,
-    "'{tag}' of «{stereotype}» on '{element}' is '{value}': unit '{unit}' is unknown, "
+    "'{tag}' of «{stereotype}» on '{element}' is '{value}': the size of unit '{unit}' is unknown, "
     "and the value is ignored",
     help="write the value in a usual unit, such as ms, s, min, h, W, kW, g, kg or L",
+)
+TOO_LARGE = rule(
+    "SM652",
+    "recipe-number-too-large",
+    Severity.ERROR,
+    "'{tag}' of «{stereotype}» on '{element}' is '{value}', more than {limit}{unit}, the largest "
+    "number that recipes store exactly",
+    help="correct the value, or leave it out if there is no limit",
+)
+REVERSED_BOUNDS = rule(
+    "SM653",
+    "recipe-bounds-reversed",
+    Severity.ERROR,
+    "'{low}' of «{stereotype}» on '{element}' is {minimum}, more than '{high}', which is {maximum}",
+    help="exchange the two values, or correct one of them",
 )
 
 _Expectation = tuple[str, Callable[[Tags, str], object]]
@@ -95,6 +110,20 @@ def _check_application(
         is_resource = "MachineFunction" in stereotypes and name == "use"
         if tags.text(name) and not is_resource:
             is_right &= _check_tag(context, application, tags, name, expectation, sink)
+    for low, high in (("minDuration", "maxDuration"), ("minPower", "maxPower")):
+        minimum, maximum = tags.amount(low), tags.amount(high)
+        if minimum is not None and maximum is not None and minimum > maximum:
+            sink.report(
+                REVERSED_BOUNDS,
+                context.graph.subject(owner),
+                low=low,
+                high=high,
+                stereotype=str(application.attrs.get("stereotype", "")),
+                element=context.name(owner),
+                minimum=f"{minimum} {tags.target_unit(low)}",
+                maximum=f"{maximum} {tags.target_unit(high)}",
+            )
+            is_right = False
     return is_right
 
 
@@ -123,6 +152,8 @@ def _check_tag(
     elif unit and convert(Fraction(1), unit, target) is None:
         problem, advice = _describe_misfit(unit, target)
         sink.report(UNIT_MISFIT, subject, **facts, problem=problem, advice=advice)
+    elif expectation in _NUMBERS and tags.is_too_large(name):
+        sink.report(TOO_LARGE, subject, **facts, limit=MAX_NUMBER, unit=f" {target}".rstrip())
     elif read_value(tags, name) is None:
         sink.report(UNREADABLE_TAG, subject, **facts, expected=expected)
     else:

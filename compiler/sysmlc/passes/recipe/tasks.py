@@ -48,8 +48,9 @@ def list_steps(context: Context, recipe: Element) -> list[Step]:
 def build_task(context: Context, recipe: Element, step: Step, data: DataFlow) -> Task:
     """Return the task for a task node."""
     holder = step.definition or step.node
-    source = step.node if context.find_application(step.node, "Task") else holder
-    tags = context.tags(source, "Task")
+    tags = context.tags(holder, "Task")
+    if holder is not step.node:
+        tags = tags.override(context.tags(step.node, "Task"))
     return Task(
         context.name(step.node),
         step.node.name or holder.name,
