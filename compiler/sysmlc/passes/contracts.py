@@ -32,7 +32,7 @@ from sysmlc.logic.reduction.contract_reduction import add_history_bits, is_reduc
 from sysmlc.logic.requirements import derivation as requirements
 from sysmlc.logic.requirements.derivation import add_features
 from sysmlc.logic.requirements.scope import Scope, scope_of
-from sysmlc.logic.requirements.statements import component_of, definition_of, list_component_names
+from sysmlc.logic.requirements.statements import component_of, list_component_names
 from sysmlc.logic.services import derivation as services
 from sysmlc.logic.syntax import FormulaError
 from sysmlc.passes.unread_restrictions import report_unread_restrictions
@@ -241,7 +241,7 @@ class _Performers:
 
 def _list_definitions(graph: Graph, usage: Element) -> list[Element]:
     """Return the usage, its definition or method, and the generals of the definition."""
-    action = definition_of(graph, usage)
+    action = query.definition_of(graph, usage)
     return [usage, *dict.fromkeys((action, *query.generals(graph, action)))]
 
 
@@ -330,7 +330,7 @@ def _find_scope(graph: Graph, contract: Contract, assumed_range: tuple[int, int]
     origin = graph[contract.origin]
     if origin.kind not in _ACTIONS:
         return None
-    context = context_of(graph, definition_of(graph, origin), assumed_range)
+    context = context_of(graph, query.definition_of(graph, origin), assumed_range)
     scope = scope_of(context, contract.variables)
     return replace(scope, component_names=list_component_names(graph, origin))
 

@@ -124,6 +124,12 @@ def direction_of(parameter: Element) -> str:
     return str(parameter.attrs.get("direction", "in"))
 
 
+def definition_of(graph: Graph, subject: Element) -> Element:
+    """Return the element whose features formulas may name: the method of an operation, if any."""
+    method = graph.target(subject, Edge.METHOD) if subject.kind is Kind.OPERATION else None
+    return method or subject
+
+
 def classifier_behavior(graph: Graph, classifier: Element) -> Element | None:
     """Return the classifier behaviour, else the nearest inherited one, else None."""
     for item in (classifier, *generals(graph, classifier)):

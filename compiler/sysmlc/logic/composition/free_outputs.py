@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from msgspec import Struct
 from msgspec.structs import replace
 
-from sysmlc.ir import Element, query
+from sysmlc.ir import Element, Kind, query
 from sysmlc.logic import formula as f
 from sysmlc.logic.composition.members import Block, Member, Slot
 from sysmlc.logic.composition.structure import ITSELF
@@ -28,7 +28,6 @@ from sysmlc.logic.expressions.context import context_of
 from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.feature_writes import WriterIndex
 from sysmlc.logic.printing import print_literal
-from sysmlc.logic.requirements.scope import find_owner
 
 
 class _Output(Struct, frozen=True):
@@ -92,6 +91,16 @@ def _iter_outputs(block: Block, group: Sequence[Slot], writers: WriterIndex) -> 
             block, block.usages[path].type_, feature, writers
         ):
             yield _Output((path, name), feature, member)
+
+
+def find_owner(feature: Feature) -> Owner:
+    """Return the environment for inputs, else the system.
+
+    A parameter without a direction is an input, which is the default of UML.
+    """
+    default_direction = "in" if feature.element.kind is Kind.PARAMETER else "out"
+    is_input = (feature.direction or default_direction) == "in"
+    return Owner.ENVIRONMENT if is_input else Owner.SYSTEM
 
 
 def _is_assigned_outside(

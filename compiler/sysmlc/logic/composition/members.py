@@ -22,7 +22,6 @@ from sysmlc.logic.composition.structure import (
 from sysmlc.logic.contract import Contract, Owner
 from sysmlc.logic.expressions.context import variables_of
 from sysmlc.logic.machines.reader import find_context_classifier
-from sysmlc.logic.requirements.statements import definition_of
 from sysmlc.support.disjoint_sets import DisjointSets
 
 _ACTIONS = (Kind.OPERATION, Kind.ACTIVITY)
@@ -152,7 +151,7 @@ def _make_member(
         classifier = find_context_classifier(block.graph, origin)
         variables = variables_of(block.graph, classifier, origin)
     elif origin.kind is Kind.OPERATION:
-        variables = variables_of(block.graph, definition_of(block.graph, origin))
+        variables = variables_of(block.graph, query.definition_of(block.graph, origin))
     variable_names = {variable.name for variable in contract.variables}
     features = {
         name: variable for name, variable in variables.items() if variable in variable_names
@@ -168,7 +167,7 @@ def _make_member(
 def _share_block_features(block: Block, owner: Element, path: str, member: Member) -> Member:
     """Return an action of *owner* as a member that reads features of *owner*, joined with these."""
     graph = block.graph
-    activity = definition_of(graph, graph[member.contract.origin])
+    activity = query.definition_of(graph, graph[member.contract.origin])
     if activity.kind is not Kind.ACTIVITY:
         return member
     family = (owner, *query.generals(graph, owner))

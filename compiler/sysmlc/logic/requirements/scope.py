@@ -6,9 +6,10 @@ from collections.abc import Iterable, Mapping
 from msgspec import Struct
 from msgspec.structs import replace
 
-from sysmlc.ir import Element, Graph, Kind
+from sysmlc.ir import Element, Graph, query
 from sysmlc.logic.components.names import ComponentNames, Meaning
 from sysmlc.logic.components.objects import ComponentError
+from sysmlc.logic.composition.free_outputs import find_owner
 from sysmlc.logic.contract import BooleanDomain, Contract, Domain, Owner, Variable
 from sysmlc.logic.domains import contains
 from sysmlc.logic.expressions.context import Context, context_of, find_literal
@@ -16,7 +17,6 @@ from sysmlc.logic.expressions.elaboration import Symbol
 from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Var, prime, var, variable_names
 from sysmlc.logic.requirements.statements import (
-    definition_of,
     find_redefining_operation,
     list_component_names,
 )
@@ -244,7 +244,7 @@ def make_scope(
     """
     context = context_of(
         graph,
-        definition_of(graph, subject),
+        query.definition_of(graph, subject),
         assumed_range,
         find_redefining_operation(graph, subject),
     )
@@ -264,13 +264,3 @@ def scope_of(context: Context, behaviour_variables: Iterable[Variable]) -> Scope
             feature_variables[feature.variable] = feature.make_variable(find_owner(feature))
     by_name = {variable.name: variable for variable in behaviour_variables}
     return Scope(context, feature_variables | by_name, constants)
-
-
-def find_owner(feature: Feature) -> Owner:
-    """Return the environment for inputs, else the system.
-
-    A parameter without a direction is an input, which is the default of UML.
-    """
-    default_direction = "in" if feature.element.kind is Kind.PARAMETER else "out"
-    is_input = (feature.direction or default_direction) == "in"
-    return Owner.ENVIRONMENT if is_input else Owner.SYSTEM

@@ -144,12 +144,6 @@ def _iter_specialisations(graph: Graph, type_: Element, visited: set[str]) -> It
         yield from _iter_specialisations(graph, special, visited)
 
 
-def definition_of(graph: Graph, subject: Element) -> Element:
-    """Return the element whose features formulas may name: the method of an operation, if any."""
-    method = graph.target(subject, Edge.METHOD) if subject.kind is Kind.OPERATION else None
-    return method or subject
-
-
 def component_of(graph: Graph, subject: Element) -> str:
     """Return the component name of a subject; that of an operation is ``<owner>.<operation>``."""
     owner = graph.owner(subject) if subject.kind is Kind.OPERATION else None
@@ -163,7 +157,7 @@ def list_component_names(graph: Graph, subject: Element) -> tuple[str, ...]:
 
     A structured requirement calls its subject by one of them.
     """
-    definition = definition_of(graph, subject)
+    definition = query.definition_of(graph, subject)
     elements = (subject, definition, *query.generals(graph, definition))
     return tuple(dict.fromkeys(element.name for element in elements if element.name))
 
