@@ -8,8 +8,11 @@ from functools import cache
 from importlib.metadata import Distribution, distribution
 from pathlib import Path
 
+from documentation import read_block
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
+
+from sysmlc import compile_model
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs/dependencies.md").read_text(encoding="utf-8")
@@ -125,13 +128,13 @@ def test_only_documented_distributions_run_code_at_every_start_of_python():
         assert f"`{file}`" in PAGE
 
 
-def test_ecore_works_without_future_fstrings(tmp_path):
-    program = (
-        "import sys; sys.modules['future_fstrings'] = None; sys.argv[0] = 'sysmlc'\n"
-        "from sysmlc.cli import main; sys.exit(main())"
-    )
-    model = str(ROOT / "examples/baygate-behaviour/baygate-behaviour.uml")
-    run = [sys.executable, "-c", program, model, "--emit", "ecore", "-o", str(tmp_path / "out")]
-    result = subprocess.run(run, capture_output=True, text=True)
-    assert result.returncode == 0, result.stderr
-    assert list((tmp_path / "out").rglob("*.xmi"))
+def test_the_documented_program_loads_the_graph_without_future_fstrings(tmp_path):
+    model = ROOT / "examples/lego-recipe/lego-recipe.uml"
+    (artefact,) = compile_model(model, emit=["ecore"]).artefacts
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / artefact.path).write_text(artefact.text, encoding="utf-8")
+    program = "import sys; sys.modules['future_fstrings'] = None\n"
+    program += read_block("docs/look-inside.md", "example: ecore")
+    run = [sys.executable, "-c", program]
+    result = subprocess.run(run, cwd=tmp_path, capture_output=True, text=True)
+    assert "handOver ['StackPassage']" in result.stdout.splitlines(), result.stderr
