@@ -41,14 +41,22 @@ def read_from_sysml(graph):
 WAYS = {"uml": read_from_uml, "sysml": read_from_sysml}
 
 
+@pytest.fixture(scope="module")
+def plants(corpus):
+    """Return the graph of each unit, and the facts of its AutomationML."""
+    graphs = {name: refine(load_unit(corpus, paths)) for name, paths in list_units(corpus).items()}
+    return {
+        name: (graph, list_facts(write_files(graph, "plant", Sink()).values()))
+        for name, graph in graphs.items()
+    }
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("way", WAYS)
-def test_internal_elements_survive_the_way_back(way, corpus):
+def test_internal_elements_survive_the_way_back(way, plants):
     """Names, IDs, classes, roles, attributes with values and units, interfaces and links."""
     changes, total = {}, 0
-    for name, paths in list_units(corpus).items():
-        graph = refine(load_unit(corpus, paths))
-        before = list_facts(write_files(graph, "plant", Sink()).values())
+    for name, (graph, before) in plants.items():
         after = list_facts(write_files(WAYS[way](graph), "plant", Sink()).values())
         total += sum(subject == "element" for _, subject, *_ in before.elements())
         lost, added = before - after, after - before

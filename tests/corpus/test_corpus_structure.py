@@ -146,17 +146,31 @@ def _reference_id(element) -> str:
     return strip_file(str(element.attrs.get("href") or element.id))
 
 
-@pytest.mark.parametrize("name", FILES)
-def test_conjugation_reverses_the_direction_of_the_type(refine_model, name):
+@pytest.mark.parametrize(
+    ("name", "count", "conjugated"),
+    [
+        ("papyrus/Arrowhead-5.0.uml", 2, 0),
+        ("magicdraw/App_test_JD_v2.mdzip", 6, 3),
+        ("magicdraw/Smart_street_light_2.mdzip", 21, 9),
+        ("magicdraw/Tank_control_2.mdzip", 8, 4),
+        ("magicdraw/Tank_control_2.xml", 8, 4),
+        ("magicdraw/TestProject2.mdzip", 17, 0),
+    ],
+)
+def test_conjugation_reverses_the_direction_of_the_type(refine_model, name, count, conjugated):
+    """In the files with ports whose type has flow properties of one direction."""
     graph = refine_model(name)
+    reversals = []
     for port in list_internal(graph, Kind.PORT):
         type_ = type_of(graph, port)
         properties = flow_properties(graph, type_) if type_ else ()
         directions = {str(flow_property.attrs["direction"]) for flow_property in properties}
         if len(directions) == 1 and port.role != "flow port":
             (direction,) = directions
-            expected = opposite(direction) if port.attrs.get("conjugated") else direction
+            reversals.append(bool(port.attrs.get("conjugated")))
+            expected = opposite(direction) if reversals[-1] else direction
             assert port.attrs["direction"] == expected, port
+    assert (len(reversals), sum(reversals)) == (count, conjugated)
 
 
 def test_requirements_have_the_id_and_text_of_the_file(corpus, refine_model):

@@ -50,8 +50,8 @@ def find_unnoticed(folder, count, seed):
     ("count", "seed"),
     [
         (30, 26),
-        pytest.param(1_000, 26, marks=pytest.mark.long),
-        pytest.param(1_000, 7, marks=pytest.mark.long),
+        pytest.param(500, 26, marks=pytest.mark.long),
+        pytest.param(500, 7, marks=pytest.mark.long),
     ],
 )
 def test_a_changed_token_is_noticed_or_reviewed(corpus, count, seed):

@@ -106,8 +106,8 @@ def test_a_rule_reports_its_wrong_example_and_not_its_right_one(rule, tmp_path):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("rule", COMPILED, ids=lambda rule: rule.code)
-def test_a_right_example_can_be_written_as_interchange(rule, tmp_path):
+@pytest.mark.parametrize("rule", COMPILED[::4], ids=lambda rule: rule.code)
+def test_right_examples_can_be_written_as_interchange(rule, tmp_path):
     page = rule.read_page()
     assert rule.code not in find_codes(rule, page.right, tmp_path, ["sysmlx"])
 

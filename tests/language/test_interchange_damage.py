@@ -1,11 +1,12 @@
 """Damaged interchange files, archives and texts have diagnostics and raise no exceptions."""
 
+import json
 import random
 import re
 
 import pytest
 from interchange_files import write_file, write_member, write_relationship
-from test_interchange_projects import write_archive
+from test_interchange_projects import ABOUT, write_archive, write_meta
 
 from sysmlc.diagnostics import Sink
 from sysmlc.language.formatter import format_text
@@ -79,13 +80,36 @@ def test_damaged_interchange_files_raise_no_exception(damage_model):
         write(document, [document], sink)
 
 
-def test_damaged_archives_raise_no_exception():
+def damage_bytes(data, dice):
+    """Return bytes of which up to six have another value."""
+    damaged = bytearray(data)
+    for _ in range(dice.randint(1, 6)):
+        damaged[dice.randrange(len(data))] = dice.randrange(256)
+    return bytes(damaged)
+
+
+def test_damaged_archives_are_refused():
     archive = write_archive().data
+    for seed in range(50):
+        dice, sink = random.Random(seed), Sink()
+        data = damage_bytes(archive, dice)[: dice.randint(20, len(archive))]
+        assert open_archive(Source("a.kpar", data), sink) is None
+        assert [found.rule.code for found in sink] != []
+
+
+def test_damaged_descriptions_in_archives_raise_no_exception():
+    """The archive itself is valid, so that its descriptions are read."""
+    project, meta = (json.dumps(value).encode() for value in (ABOUT, write_meta()))
+    reported = 0
     for seed in range(100):
-        dice, data = random.Random(seed), bytearray(archive)
-        for _ in range(dice.randint(1, 6)):
-            data[dice.randrange(len(data))] = dice.randrange(256)
-        open_archive(Source("a.kpar", bytes(data[: dice.randint(20, len(data))])), Sink())
+        dice, sink = random.Random(seed), Sink()
+        if seed % 2:
+            contents = {"project": damage_bytes(project, dice)}
+        else:
+            contents = {"meta": damage_bytes(meta, dice)}
+        assert open_archive(write_archive(**contents), sink) is not None
+        reported += bool(list(sink))
+    assert reported > 80
 
 
 def test_damaged_texts_are_formatted_canonically_or_rejected():

@@ -35,6 +35,13 @@ FLOORS = {
     "angle": floor(2, None, blocked=(0,)),
     "two rows": floor(3, None, rows=2, blocked=(4,)),
 }
+NEVER_STUCK = {
+    "one cell",
+    "two cells",
+    "corridor in two parts",
+    "corridor in two parts, two robots",
+}
+"""Floors on which each robot is offered a way to its target again and again."""
 new_manager = partial(Manager, "", Limits(), lambda *given: None)
 
 
@@ -51,21 +58,21 @@ def test_proofs_agree_with_enumerated_states(name):
     assert (proof.find_endless_travel() is not None) == listed.is_ever_away()
 
 
-@pytest.mark.parametrize("name", FLOORS)
+@pytest.mark.parametrize("name", [name for name in FLOORS if name not in NEVER_STUCK])
 def test_a_failing_run_is_possible_in_the_enumerated_states(name):
     study = FLOORS[name]
     failure, listed = make_proof(study).find_offer_failure(), ListedFloor(study)
-    if failure is not None:
-        steps = [read_listed_state(study, step) for step in failure.run.steps]
-        onward = [*steps[1:], steps[failure.run.loop]]
-        assert all(
-            following in listed.successors[current]
-            for current, following in zip(steps, onward, strict=True)
-        )
-        loop = steps[failure.run.loop :]
-        assert not any(listed.is_near(step, 0) for step in loop)
-        for robot in listed.robots:
-            assert any(listed.is_served(step, robot) for step in loop)
+    assert failure is not None
+    steps = [read_listed_state(study, step) for step in failure.run.steps]
+    onward = [*steps[1:], steps[failure.run.loop]]
+    assert all(
+        following in listed.successors[current]
+        for current, following in zip(steps, onward, strict=True)
+    )
+    loop = steps[failure.run.loop :]
+    assert not any(listed.is_near(step, 0) for step in loop)
+    for robot in listed.robots:
+        assert any(listed.is_served(step, robot) for step in loop)
 
 
 def read_listed_state(study, values):

@@ -37,11 +37,12 @@ def test_a_contract_of_the_corpus_has_the_same_conjuncts_as_ours(path):
 
 
 @pytest.mark.corpus
-@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "path", [path for path in FILES if path.stem not in COSTLY], ids=lambda path: path.stem
+)
 def test_verdicts_are_those_of_the_corpus(path):
-    if path.stem not in COSTLY:
-        expected = json.loads(path.read_text("utf-8"))["status"] == "realizable"
-        assert is_realizable(build_contract(path.stem)) is expected
+    expected = json.loads(path.read_text("utf-8"))["status"] == "realizable"
+    assert is_realizable(build_contract(path.stem)) is expected
 
 
 def test_collisions_are_avoided_only_if_a_cell_is_offered_to_one_robot():

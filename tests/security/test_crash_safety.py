@@ -169,8 +169,8 @@ def test_killed_builds_are_repaired(tmp_path):
 
 
 @pytest.mark.long
-def test_builds_killed_at_200_random_moments_are_repaired(tmp_path):
-    kill_repeatedly(tmp_path / "project", 200)
+def test_builds_killed_at_100_random_moments_are_repaired(tmp_path):
+    kill_repeatedly(tmp_path / "project", 100)
 
 
 def test_two_concurrent_builds_leave_the_outputs_of_one_of_them(tmp_path):
