@@ -1,7 +1,7 @@
 """Hostile repositories get diagnostics, and change nothing but their output folder.
 
 The number of a repository in a failure is its seed: ``make_repository(seed, models)`` makes it
-again. SYSMLC_REPOSITORIES=2000 tries 2,000 with real models; by default it is 120, one minute.
+again. SYSMLC_REPOSITORIES=2000 tries 2,000 with real models; by default it is 60, half a minute.
 """
 
 import os
@@ -15,7 +15,7 @@ from long_runs import quick_first
 BATCH = 100
 LARGEST = 150 * 1024
 FIRST_REAL = FIRST_SEED + 1_000
-REAL = int(os.environ.get("SYSMLC_REPOSITORIES", "120"))
+REAL = int(os.environ.get("SYSMLC_REPOSITORIES", "60"))
 
 
 def find_unanswered(fork_server, folder, seeds, models):

@@ -1,4 +1,4 @@
-"""Equal formulas get equal verdicts: 2,000 random contracts, and the same in other words.
+"""Equal formulas get equal verdicts: 1,000 random contracts, and the same in other words.
 
 Laws of temporal logic rewrite each formula: distribution of X and Y, duals, expansion of U, W, R
 and of the past. Spot decides the contracts without the past, too.
@@ -26,7 +26,7 @@ from sysmlc.synthesis.algebra.refinement import find_refinement_failures
 from sysmlc.synthesis.contract_checks import SUFFIX, check_contracts
 from sysmlc.synthesis.decision import Options, decide
 
-SUITE = 2000
+SUITE = 1000
 BATCH = 100
 INPUTS, OUTPUTS = "ab", "cd"
 DOMAINS = dict.fromkeys(INPUTS + OUTPUTS, BooleanDomain())
