@@ -30,7 +30,6 @@ REVIEWED_PAIRS = {
     ("SM310", "SM314"): "an item flow against the direction of a port, and without item",
     ("SM428", "SM434"): "a transition with an effect out of range, whose event can be lost",
     ("SM458", "SM468"): "a guard that is not understood, on a flow that leaves no decision",
-    ("SM481", "SM488"): "a constraint of a state that nothing asserts, and that no contract has",
 }
 """Rules whose findings at one place are about two facts, and which these are."""
 

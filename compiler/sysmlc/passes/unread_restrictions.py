@@ -14,7 +14,7 @@ from sysmlc.logic.formal_texts import is_formal
 RESTRICTION_NOT_READ = rule(
     "SM488",
     "restriction-not-in-contract",
-    Severity.INFO,
+    Severity.WARNING,
     "the {what} of '{element}' is not in the contract of '{component}'",
     help="state it as a guard, or as a formula or a requirement about the component",
 )
@@ -25,12 +25,14 @@ _FEATURES = (Kind.PROPERTY, Kind.PIN, Kind.PARAMETER)
 def report_unread_restrictions(graph: Graph, contracts: Iterable[Contract], sink: Sink) -> None:
     """Report the constraints of steps and states of the behaviours that have contracts.
 
-    Guards and formulas are part of the contract. Constraints of an activity itself belong to its
-    service, and those that name a feature of their owner give its range.
+    A constraint that nothing asserts restricts nothing (SysML 2.0, 7.20.1). Guards and formulas are
+    part of the contract. Constraints of an activity itself belong to its service, and those that
+    name a feature of their owner give its range.
     """
     components = {contract.origin: contract.component for contract in contracts}
     for constraint in graph.of_kind(Kind.CONSTRAINT):
-        if graph.sources(constraint, Edge.GUARD) or _is_formula(constraint):
+        is_asserted = constraint.attrs.get("asserted") is not False
+        if not is_asserted or graph.sources(constraint, Edge.GUARD) or _is_formula(constraint):
             continue
         for element, component in _find_restricted(graph, constraint, components):
             what = _WORDS.get(constraint.subkind, constraint.subkind)

@@ -417,3 +417,42 @@ def test_writes_name_each_other_only_where_they_can_meet():
         ]
 
     assert max(sizes(30)) < 1.1 * max(sizes(10))
+
+
+# -- what restricts a behaviour ------------------------------------------------------------------
+
+GATE = """package P {
+    private import ScalarValues::*;
+    item def Go;
+    port def Inlet { in item go : Go; }
+    part def Gate {
+        port left : Inlet; port right : Inlet; attribute n : Integer;
+        INSIDE
+        exhibit state s { entry; then A; state A MEMBERS
+            transition first A accept Go via left then B; state B; }
+    }
+}"""
+
+
+def compile_gate(members, inside=""):
+    """Return the guarantees of a gate, and the codes of the findings."""
+    graph, sink = compile_v2(GATE.replace("MEMBERS", members).replace("INSIDE", inside))
+    (contract,) = graph.derived(Contract)
+    formulas = [print_formula(guarantee.formula) for guarantee in contract.guarantees]
+    return formulas, [diagnostic.rule.code for diagnostic in sink]
+
+
+@pytest.mark.parametrize(
+    ("words", "codes"),
+    [("assert constraint", ["SM488"]), ("assert not constraint", ["SM488"]), ("constraint", [])],
+)
+def test_only_an_asserted_constraint_of_a_state_is_missing_in_the_contract(words, codes):
+    _, findings = compile_gate(f"{{ {words} {{ n > 3 }} }}")
+    assert [code for code in findings if code == "SM488"] == codes
+
+
+def test_a_port_at_which_a_submachine_waits_is_another_event():
+    inside = "state def D { entry; then C; state C; accept Go via right then E; state E; }"
+    formulas, _ = compile_gate(": D;", inside)
+    assert "A_state=C & event=Go_via_right -> A_state'=E" in formulas
+    assert "state=A & event=Go_via_left -> A_state'=inactive & state'=B" in formulas

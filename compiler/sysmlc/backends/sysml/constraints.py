@@ -37,7 +37,8 @@ def write_constraint(writer: Writer, member: Member) -> list[Line]:
         return [Line("", text=[result])]
     keyword = _KEYWORDS.get(element.subkind)
     keywords = [f"#{writer.refer_to_sysmlc(owner, keyword)}"] if keyword else []
-    words = _list_words(owner, keywords)
+    is_asserted = element.attrs.get("asserted") is not False
+    words = _list_words(owner, keywords, is_asserted)
     name = quote_name(member.name) if member.name else ""
     words = [*list_visibility(writer, element), *words, "constraint", name]
     body = write_annotations(writer, member) + writer.write_members(member)
@@ -47,14 +48,14 @@ def write_constraint(writer: Writer, member: Member) -> list[Line]:
     return [constraint, *_write_references(writer, member, element)]
 
 
-def _list_words(owner: Member | None, keywords: list[str]) -> list[str]:
-    """Return the words before ``constraint``: ``require`` in a requirement, else ``assert``."""
+def _list_words(owner: Member | None, keywords: list[str], is_asserted: bool) -> list[str]:
+    """Return the words before ``constraint``: ``require`` in a requirement, or else ``assert``."""
     if owner is None or owner.shape.keyword in ("package", "metadata def", "enum def"):
         words = keywords
     elif owner.shape.keyword == "requirement":
         words = ["require", *keywords]
     else:
-        words = [*keywords, "assert"]
+        words = [*keywords, "assert"] if is_asserted else keywords
     if owner is not None and owner.shape.usage_keyword == "port":
         # A port may own no composite features but ports (SysML 2.0, 8.3.12).
         return ["ref", *words]

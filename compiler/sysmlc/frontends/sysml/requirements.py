@@ -48,6 +48,7 @@ def lower_constraint(lowering: "Lowering", node: Node, owner: Element | None) ->
     if result is not None:
         lowering.defer_until_elements(lambda: _set_body(lowering, node, constraint, result))
         if _is_unasserted(lowering, node):
+            lowering.graph.set(constraint, asserted=False)
             construct = "a constraint that nothing asserts"
             lowering.mark_approximated(node, construct, "one that holds")
     for reference in nodes.list_references(node, "ReferenceSubsetting"):

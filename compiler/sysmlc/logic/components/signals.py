@@ -40,6 +40,7 @@ from sysmlc.logic.expressions.parsing import statements_of
 from sysmlc.logic.formula import Const
 from sysmlc.logic.identifiers import identifier
 from sysmlc.logic.machines.machine import NO_EVENT
+from sysmlc.logic.machines.supported_constructs import collect_submachines
 
 if TYPE_CHECKING:
     from sysmlc.logic.components.component import Component
@@ -284,7 +285,12 @@ def _find_ports(
 
 
 def _list_behaviours(component: "Component", object_: ComponentObject) -> list[Element]:
-    machines = [entry.element for entry in component.machines if entry.owner is object_]
+    machines = [
+        machine
+        for entry in component.machines
+        if entry.owner is object_
+        for machine in collect_submachines(component.graph, entry.element)
+    ]
     copies = component.performances.copies.values()
     return machines + [copy.activity for copy in copies if copy.caller.owner is object_]
 

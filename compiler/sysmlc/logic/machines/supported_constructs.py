@@ -52,9 +52,7 @@ _REDEFINABLE = frozenset([Kind.STATE_MACHINE, Kind.REGION, Kind.STATE, Kind.TRAN
 def is_supported(graph: Graph, machine: Element, sink: Sink) -> bool:
     """Whether a contract can be derived from the machine; report unsupported constructs."""
     elements = [
-        element
-        for owner in _collect_submachines(graph, machine)
-        for element in graph.subtree(owner)
+        element for owner in collect_submachines(graph, machine) for element in graph.subtree(owner)
     ]
     unsupported = [
         (element, description)
@@ -72,7 +70,7 @@ def is_supported(graph: Graph, machine: Element, sink: Sink) -> bool:
     return not unsupported and not broken
 
 
-def _collect_submachines(graph: Graph, machine: Element) -> list[Element]:
+def collect_submachines(graph: Graph, machine: Element) -> list[Element]:
     """Return the machine and the submachines of its states, transitively."""
     # The loop also visits the machines that its body appends. Each is appended once, so that a
     # submachine that contains itself does not loop; ``_describe_recursion`` reports it.

@@ -36,7 +36,7 @@ from sysmlc.logic.machines.machine import (
     element_id,
     submachine_id,
 )
-from sysmlc.logic.machines.supported_constructs import JOIN_BESIDE
+from sysmlc.logic.machines.supported_constructs import JOIN_BESIDE, collect_submachines
 from sysmlc.logic.machines.vertices import MachineDraft, list_outgoing
 from sysmlc.logic.machines.well_formedness import find_common_state
 
@@ -82,13 +82,16 @@ def _list_ports(draft: MachineDraft, type_: Element) -> dict[object, str]:
 
     The id None, without name, stands for the triggers that name no port.
     """
-    graph, machine = draft.reading.graph, draft.machine
-    triggers = [
-        trigger
-        for trigger in graph.sources(type_, Edge.TYPED_BY)
-        if trigger.kind is Kind.TRIGGER and machine in graph.ancestors(trigger)
-    ]
+    graph = draft.reading.graph
+    triggers = [t for t in graph.sources(type_, Edge.TYPED_BY) if t.kind is Kind.TRIGGER]
     ids = dict.fromkeys(trigger.attrs.get("port") for trigger in triggers)
+    if len(ids) > 1:
+        machines = collect_submachines(graph, draft.machine)
+        ids = dict.fromkeys(
+            trigger.attrs.get("port")
+            for trigger in triggers
+            if any(ancestor in machines for ancestor in graph.ancestors(trigger))
+        )
     ports = ((id, graph.get(str(id))) for id in ids)
     return {id: port.name if port is not None else "" for id, port in ports}
 

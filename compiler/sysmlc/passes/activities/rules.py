@@ -217,7 +217,7 @@ TOO_DEEP = rule(
 SELECTION = rule(
     "SM489",
     "selection-not-read",
-    Severity.INFO,
+    Severity.WARNING,
     "{node} has a {behaviour}, which the contract does not read: every object passes, with any "
     "value",
     help="do it in an action before, and decide by its result",
