@@ -16,6 +16,7 @@ from json_documents import (
     written_properties,
 )
 from rich_recipe import rich_recipe
+from rule_examples import read_graphs
 from sysmlc.driver import load_full_catalogue
 from sysmlc.ir import parse_text
 
@@ -101,11 +102,11 @@ def find_documents(corpus: Path, folder: Path) -> Iterator[Document]:
     yield from compile_documents(laboratory, folder / "ice", "--config", config)
     (folder / "commands").mkdir()
     yield from command_documents(folder / "commands")
-    texts = [rich_recipe()]
+    rules = load_full_catalogue()
+    # A machine with an id of a plant, whose elements no recipe uses.
+    texts = [rich_recipe(), *read_graphs(rules["SM628"])]
     texts += [
-        text
-        for rule in load_full_catalogue().values()
-        for text in (rule.read_page().wrong, rule.read_page().right)
+        text for rule in rules.values() for text in (rule.read_page().wrong, rule.read_page().right)
     ]
     # The rules about comments with JSON have examples with damaged comments.
     graphs = [text for text in texts if _is_graph(text) and "sysmlc-kept" not in text]

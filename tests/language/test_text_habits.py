@@ -14,6 +14,12 @@ HABITS = {
         "2:1 unexpected '#'; expected '//'",
         "a note to the end of the line begins with '//'",
     ),
+    "Python: note of a line that reads as metadata": (
+        "# the plant;",
+        "// the plant",
+        "2:3 unknown name 'the'",
+        "a note to the end of the line begins with '//'",
+    ),
     "SQL: note of a line": (
         "-- a comment",
         "// a comment",

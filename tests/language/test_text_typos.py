@@ -79,6 +79,11 @@ TYPOS = {
         "2:6 'state' is a keyword of SysML; expected a name",
         "single quotes",
     ),
+    "keyword as a name of a definition": (
+        "part def state;",
+        "2:10 'state' is a keyword of SysML; expected a name",
+        "single quotes",
+    ),
     "hyphen in a name": (
         "part def my-part;",
         "2:12 unexpected '-'; expected ';', '{', ':>' or 'specializes'",

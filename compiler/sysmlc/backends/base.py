@@ -13,6 +13,7 @@ from msgspec import Struct
 
 from sysmlc.diagnostics import Place, Rule, Sink
 from sysmlc.ir import Element, Graph
+from sysmlc.ir.compare.titles import spell_kind
 from sysmlc.support import resources
 from sysmlc.support.output import Output
 
@@ -108,6 +109,18 @@ class LossCounter:
     def list_losses(self) -> list[tuple[Rule, Element, dict[str, object]]]:
         """Return each loss with its first element and the facts of its message."""
         return [
-            (loss, first, {"count": count, **dict(pairs)})
+            (loss, first, {"count": count, **_put_into_words(pairs)})
             for (_, pairs), (loss, first, count) in self._counts.items()
         ]
+
+
+def _put_into_words(facts: Iterable[tuple[str, str]]) -> dict[str, str]:
+    """Return facts of a loss with kinds and attributes of the graph in words: ``object node``."""
+    return {
+        key: spell_kind(fact).replace("_", " ") if key in _GRAPH_FACTS else fact
+        for key, fact in facts
+    }
+
+
+_GRAPH_FACTS = frozenset({"kind", "owner", "target", "attribute"})
+"""Facts of losses that are kinds or attributes of the graph."""

@@ -81,7 +81,7 @@ def test_a_faulty_template_is_reported(tmp_path, text):
 def test_an_element_in_no_diagram_is_reported():
     _, diagnostics = emit(parse_text('Package p "Plant"\n  Unit u "second"\n'))
     assert [diagnostic.message for diagnostic in diagnostics] == [
-        "1 Unit of 'Plant' in no diagram: second"
+        "1 unit of 'Plant' in no diagram: second"
     ]
 
 
@@ -95,7 +95,7 @@ def test_a_connector_without_second_end_is_reported():
     text = BLOCK + '    Connector c "loose"\n'
     _, diagnostics = emit(parse_text(text))
     assert [diagnostic.message for diagnostic in diagnostics] == [
-        "1 Connector of 'Plant::Gate' in no diagram: loose"
+        "1 connector of 'Plant::Gate' in no diagram: loose"
     ]
 
 

@@ -105,7 +105,7 @@ def test_a_value_outside_of_the_model_is_reported_as_lost():
     lines, losses = write_accepted(OUTSIDE.replace("{value}", "outside"))
     assert ":>> owner;" in lines
     assert losses == [
-        "SM731 SysML v2 text cannot express 'references' from Slot to Class (1 omitted)"
+        "SM731 SysML v2 text cannot express 'references' from slot to class (1 omitted)"
     ]
 
 
@@ -133,7 +133,7 @@ def test_a_connector_to_an_end_outside_of_the_model_is_reported_as_lost():
     lines, losses = write_accepted(CONNECTOR)
     assert not any(line.startswith("bind") for line in lines)
     assert losses == [
-        "SM736 'end' of Connector leads to an element without a name in the text (1 omitted)"
+        "SM736 'end' of connector leads to an element without a name in the text (1 omitted)"
     ]
 
 

@@ -33,7 +33,7 @@ def test_the_wrong_example_breaks_the_rule_and_the_right_one_does_not(rule):
 def test_equal_losses_are_one_diagnostic_with_their_number():
     parameters = "".join(f'    TemplateParameter t{number} ""\n' for number in range(3))
     _, losses = write(refine('Package p "Plant"\n  Class a "A"\n' + parameters))
-    assert losses == ["SM730 SysML v2 text cannot express TemplateParameter (3 omitted)"]
+    assert losses == ["SM730 SysML v2 text cannot express template parameter (3 omitted)"]
 
 
 def test_a_verification_without_a_requirement_is_reported():

@@ -29,7 +29,7 @@ def test_the_wrong_example_breaks_the_rule_and_the_right_one_does_not(rule):
 def test_a_loss_is_counted_and_reported_once():
     facets = "".join(f'  Facet f{number} "F{number}"\n' for number in range(3))
     assert save(refine('Package p "Plant"\n' + facets))[1] == [
-        "SM720 UML cannot express Facet (3 omitted from the saved model)"
+        "SM720 UML cannot express facet (3 omitted from the saved model)"
     ]
 
 
@@ -151,7 +151,7 @@ def test_connectors_of_an_instance_are_saved_with_its_class():
     graph = refine(PLANT)
     _, messages = save(graph)
     assert (
-        "SM723 UML lets no Instance own Connector: saved with the nearest possible owner (1)"
+        "SM723 UML lets no instance own connector: saved with the nearest possible owner (1)"
         in messages
     )
     _, back, _ = round_trip(graph)
@@ -164,7 +164,7 @@ def test_connectors_of_an_instance_are_saved_with_its_class():
 def test_a_relation_without_dependency_gets_one():
     graph = refine(PLANT)
     text, messages = save(graph)
-    assert "SM724 'realizes' from Class is saved as Realization (1)" in messages
+    assert "SM724 'realizes' from class is saved as Realization (1)" in messages
     assert "pathmap://SYSMLC_LIBRARIES/Roles#Drive" in text
     (motor,) = [element for element in read(text.encode()) if element.name == "Motor"]
     assert motor.role == "block"

@@ -74,7 +74,7 @@ def test_the_comment_is_reported_once_with_its_facts(plant):
     sink = Sink()
     write_document(plant, sink)
     (loss,) = [diagnostic for diagnostic in sink if diagnostic.rule.code == "SM726"]
-    assert "UML cannot express Document (1)" in loss.notes
+    assert "UML cannot express document (1)" in loss.notes
     assert {diagnostic.rule.code for diagnostic in sink} <= {"SM723", "SM724", "SM726"}
 
 

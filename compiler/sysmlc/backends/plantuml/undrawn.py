@@ -6,13 +6,15 @@ from sysmlc.backends.plantuml.connections import is_within_association
 from sysmlc.backends.plantuml.sequence_labels import name_of_event
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.compare.titles import spell_kind
 from sysmlc.ir.query import interactions
+from sysmlc.support.counts import count
 
 NOT_DRAWN = rule(
     "SM701",
     "in-no-diagram",
     Severity.INFO,
-    "{count} {kind} of '{owner}' in no diagram: {names}",
+    "{count} of '{owner}' in no diagram: {names}",
     help="the element is still in the graph (--emit graph) and in the other outputs",
 )
 
@@ -132,8 +134,7 @@ def _report_group(
     sink.report(
         NOT_DRAWN,
         graph.subject(items[0]),
-        count=len(items),
-        kind=kind if len(items) == 1 else f"{kind} elements",
+        count=count(len(items), spell_kind(kind)),
         owner=graph.qualified_name(owner) if owner is not None else "the model",
         names=", ".join(names),
     )

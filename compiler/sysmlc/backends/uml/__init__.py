@@ -27,6 +27,7 @@ from sysmlc.backends.uml.rules import (
 from sysmlc.backends.uml.stereotypes import StereotypeWriter, write_profiles
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.compare.titles import spell_kind
 from sysmlc.support import resources
 from sysmlc.support.counts import count
 from sysmlc.support.output import Output, assign_file_names
@@ -167,9 +168,9 @@ def _add_node(context: Context, element: Element) -> None:
     _write_name(context, element, node)
     context.nodes[element.id] = node
     if element.kind in RECLASSIFIED_KINDS:
-        context.losses.record_approximation(element, f"kind {element.kind}", metaclass)
+        context.losses.record_approximation(element, f"kind {spell_kind(element.kind)}", metaclass)
     elif not is_complete:
-        original = f"{element.kind} ({element.subkind})"
+        original = f"{spell_kind(element.kind)} ({element.subkind})"
         context.losses.record_approximation(element, original, metaclass)
 
 

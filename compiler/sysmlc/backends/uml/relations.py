@@ -10,6 +10,7 @@ from sysmlc.backends.uml.node import Node
 from sysmlc.backends.uml.sysml_profile import is_implied, iter_applications
 from sysmlc.backends.uml.values import add_instance_value
 from sysmlc.ir import Edge, Element, Kind, as_items
+from sysmlc.ir.compare.titles import spell_kind
 
 _Targets = Sequence[Element]
 _Writer = Callable[[Context, Element, _Targets], None]
@@ -122,7 +123,8 @@ def _add_dependency(context: Context, element: Element, edge: Edge, target: Elem
     if context.losses.round_trip is not None:
         context.losses.round_trip.added.append(dependency.id)
         context.losses.round_trip.store_edge(edge, element, target)
-    context.losses.record_approximation(element, f"'{edge}' from {element.kind}", metaclass)
+    construct = f"'{edge}' from {spell_kind(element.kind)}"
+    context.losses.record_approximation(element, construct, metaclass)
     return dependency
 
 

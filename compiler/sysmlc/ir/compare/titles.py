@@ -195,6 +195,20 @@ def _shorten(text: str) -> str:
     return line if len(line) <= _LONGEST_TITLE else line[: _LONGEST_TITLE - 3] + "..."
 
 
+_KIND_WORDS = {
+    "Application": "stereotype application",
+    "Control": "control node",
+    "Fragment": "combined fragment",
+    "Structured": "structured action",
+}
+"""Words for kinds whose own name says too little."""
+
+
+def spell_kind(kind: str) -> str:
+    """Return a kind of elements in the words of modellers: ``object node``."""
+    return _KIND_WORDS.get(kind) or separate_words(kind)
+
+
 def separate_words(name: str) -> str:
     """Return a name in lower case with blanks (``final state``); an acronym is unchanged."""
     return name if name.isupper() else _WORD_BOUNDARY.sub(" ", name).lower()

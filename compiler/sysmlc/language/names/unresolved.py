@@ -10,7 +10,7 @@ from sysmlc.language.names.foreign_names import find_unit_name
 from sysmlc.language.names.generals import GENERALIZATION_KINDS
 from sysmlc.language.names.lookup import Lookup
 from sysmlc.language.names.model import Model
-from sysmlc.language.text.hints import find_type
+from sysmlc.language.text.hints import NOTE, find_type
 from sysmlc.language.tree import Document, Node, Reference, Relation, make_subject
 from sysmlc.support.suggestions import find_similar
 
@@ -52,6 +52,8 @@ _LITERALS = {"True": "true", "False": "false"} | dict.fromkeys(
     ("None", "NULL", "Null", "nil", "nullptr", "undefined"), "null"
 )
 """Literals of other languages."""
+_NOTE_SIGNS = ("# ", "#\t")
+"""Signs before a note of another language, ``# the plant;``, which reads as metadata."""
 _MAX_LISTED = 7
 """Names of the members of an element that are listed in place of a similar name."""
 _TYPES_OF_LIBRARY = ("ScalarValues", "ISQ")
@@ -387,6 +389,8 @@ def report_unresolved(
     is_quoted = reference.start >= 0 and document.text.startswith("'", reference.start)
     if advice == _UNKNOWN and is_quoted and relation.kind == "Membership":
         advice = f'{advice}; a string stands in double quotes: "{name}"'
+    elif advice == _UNKNOWN and document.text.endswith(_NOTE_SIGNS, 0, max(reference.start, 0)):
+        advice = NOTE
     sink.report(
         UNRESOLVED,
         subject,

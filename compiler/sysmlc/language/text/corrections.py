@@ -71,8 +71,7 @@ def _correct_first_tokens(
     """Yield corrections of notes, stereotypes and words of other languages before a declaration."""
     length = _count_note(tokens, start)
     if length:
-        advice = "a note to the end of the line begins with '//'"
-        yield Correction(start, length, (), "'//'", advice)
+        yield Correction(start, length, (), "'//'", hints.NOTE)
     following = [tokens[at] for at in range(start, min(start + 5, len(tokens.types)))]
     if following[:2] == ["<", "<"] and following[3:] == [">", ">"]:
         yield Correction(start, 5, (), "a declaration", hints.STEREOTYPE)
@@ -177,7 +176,7 @@ def _correct_keywords(
     if before == "def" and last != "def":
         advice = f"'def' stands after the kind: {last} def {following}"
         yield Correction(index - 1, 2, (last, "def"), f"'{last} def'", advice)
-    if before in ("def", last):
+    if before in ("def", last) and following[:1] not in (";", "{", ":>", ""):
         yield Correction(index, 1, (), "a name", "take it away")
     if (before, last) == ("flow", "port"):
         yield Correction(index - 1, 2, ("port",), "'port'", "every port is a 'port'")

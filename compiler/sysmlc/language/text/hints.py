@@ -113,6 +113,7 @@ ARROWS = ("-", "->", "=>", "~", ",")
 ARROW = "an order is written 'first a then b;', a transition 'transition first a then b;'"
 JOINED_BY_TO = "ends are joined by 'to': a to b"
 COMPARISON = "'==' compares two values, '=' binds one"
+NOTE = "a note to the end of the line begins with '//'"
 STEREOTYPE = (
     "a stereotype is metadata: #name before a declaration, or @name; in a body; what a "
     "'part def' declares is a block"
