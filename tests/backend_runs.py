@@ -2,11 +2,11 @@
 
 from pathlib import Path
 
+from refinement import run_all
 from sysmlc.backends.base import Backend, EmitOptions
 from sysmlc.diagnostics import Diagnostic, Sink
 from sysmlc.ir import Graph
 from sysmlc.ir.text import parse_text
-from sysmlc.passes import pipeline
 from sysmlc.support.output import Artefact, Output
 
 
@@ -27,6 +27,6 @@ def refine_and_emit(
     Return the graph, the outputs by path, and the diagnostics of passes and back end.
     """
     graph, sink = parse_text(text), Sink()
-    pipeline.run(graph, sink, verify_each=True)
+    run_all(graph, sink, verify_each=True)
     artefacts, diagnostics = emit(backend, graph, EmitOptions(templates))
     return graph, artefacts, [*sink, *diagnostics]

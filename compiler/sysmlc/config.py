@@ -421,7 +421,7 @@ def _make_config(file: Path, table: dict[str, Any]) -> Config:
 
 
 def _make_pass_options(table: dict[str, Any]) -> dict[str, dict[str, object]]:
-    """Return the options of passes; ``[recipe.levels]`` is an option of the pass ``recipe``."""
+    """Return the options of passes; ``[recipe.levels]`` is an option of the analysis ``recipe``."""
     options = {name: dict(fields) for name, fields in table.get("passes", {}).items()}
     levels = _read_levels(table.get("recipe", {}).get("levels", {}))
     if levels:

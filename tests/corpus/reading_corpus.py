@@ -9,10 +9,10 @@ from typing import Any
 
 from lxml import etree
 
+from refinement import run_steps
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.xmi import FRONTEND
 from sysmlc.ir import Graph
-from sysmlc.passes import pipeline
 from sysmlc.sources import Source, load
 
 XMI_SUFFIXES = (".uml", ".xmi", ".xml", ".mdxml", ".mdzip")
@@ -55,7 +55,7 @@ def lower(
     graph, sink = Graph(), Sink()
     frontend.read(list(sources), graph, sink, Coverage())
     if passes:
-        pipeline.build_pipeline(passes).run(graph, sink, verify_each=verify_each)
+        run_steps(passes, graph, sink, verify_each=verify_each)
     return graph, sink
 
 

@@ -261,9 +261,16 @@ def test_an_observer_sees_each_step_and_the_graph_after_each_pass(plant):
             self.graphs.append((step_name, len(graph)))
 
     observer = RecordingObserver()
-    compile_model(Request((plant,), passes=(CheckPorts(),), backends=(OutlineBackend(),)), observer)
-    assert observer.steps == ["0/3 read 1 ir", "1/3 pass ports", "2/3 emit outline"]
-    assert observer.graphs == [("read", 5), ("ports", 5)]
+    request = Request((plant,), passes=(CheckPorts(),), backends=(OutlineBackend(),))
+    compile_model(request, observer, analyses=["recipe"])
+    assert observer.steps == [
+        "0/5 read 1 ir",
+        "1/5 pass ports",
+        "2/5 analysis activities",
+        "3/5 analysis recipe",
+        "4/5 emit outline",
+    ]
+    assert observer.graphs == [("read", 5), ("ports", 5), ("activities", 5), ("recipe", 5)]
 
 
 # -- the same input gives the same bytes ---------------------------------------------------------

@@ -77,7 +77,7 @@ def test_a_sysml_v2_model_imports_no_readers_of_other_formats(tmp_path):
     model = tmp_path / "lamp.sysml"
     model.write_text(LAMP, encoding="utf-8")
     modules = list_imported_modules(model, tmp_path / "out")
-    assert {"sysmlc.frontends.sysml.states", "sysmlc.passes.contracts"} <= modules
+    assert {"sysmlc.frontends.sysml.states", "sysmlc.analyses.contracts"} <= modules
     assert sorted(modules.intersection(NOT_NEEDED_FOR_SYSML_V2)) == []
 
 

@@ -9,11 +9,12 @@ import pytest
 from msgspec import Struct
 
 import sysmlc
-from sysmlc import config
-from sysmlc.config import ConfigError
+from sysmlc import Request, config
+from sysmlc.config import ConfigError, read_config
 from sysmlc.driver import (
     BackendError,
     PlugInWarning,
+    compile_model,
     list_backend_names,
     load_backends,
     registry,
@@ -23,6 +24,7 @@ from sysmlc.logic.contract import Contract, IntegerDomain
 from sysmlc.passes import pipeline
 
 _PROJECT = Path(__file__).parents[2] / "pyproject.toml"
+_RECIPE = _PROJECT.parent / "examples" / "lego-recipe" / "lego-recipe.uml"
 
 
 def test_the_default_back_ends_run_if_none_is_named():
@@ -51,9 +53,14 @@ def load_passes_by_name(folder, text):
     return {loaded.name: loaded for loaded in registry.load_passes(options)}
 
 
-def test_options_are_fields_of_the_pass(tmp_path):
-    passes = load_passes_by_name(tmp_path, "[passes.activities]\nmax_markings = 7\n")
-    assert passes["activities"].max_markings == 7
+def load_analysis(folder, text, name):
+    (folder / "sysmlc.toml").write_text(text)
+    return registry.load_analysis(name, read_config(folder / "sysmlc.toml").passes)
+
+
+def test_options_are_fields_of_the_analysis(tmp_path):
+    text = "[passes.activities]\nmax_markings = 7\n"
+    assert load_analysis(tmp_path, text, "activities").max_markings == 7
 
 
 class StructPass(Struct, frozen=True):
@@ -86,8 +93,7 @@ def test_passes_are_structs_or_dataclasses(monkeypatch, original):
 
 
 def test_an_integer_is_accepted_as_a_number(tmp_path):
-    passes = load_passes_by_name(tmp_path, "[passes.recipe]\ntolerance = 1\n")
-    assert passes["recipe"].tolerance == 1
+    assert load_analysis(tmp_path, "[passes.recipe]\ntolerance = 1\n", "recipe").tolerance == 1
 
 
 MODEL_WITHOUT_RANGES = """
@@ -119,9 +125,22 @@ def test_the_assumed_range_of_contracts_applies_to_activities(tmp_path):
     assert domains["level"] == domains["count"] == IntegerDomain(0, 7)
 
 
-def test_recipe_levels_are_an_option_of_the_recipe_pass(tmp_path):
-    passes = load_passes_by_name(tmp_path, '[recipe.levels]\n"Plant::Assemble" = "task"\n')
-    assert passes["recipe"].levels == {"Plant::Assemble": "task"}
+def test_recipe_levels_are_an_option_of_the_analysis_recipe(tmp_path):
+    recipe = load_analysis(tmp_path, '[recipe.levels]\n"Plant::Assemble" = "task"\n', "recipe")
+    assert recipe.levels == {"Plant::Assemble": "task"}
+
+
+def test_token_graphs_use_the_assumed_range_of_contracts(tmp_path):
+    text = "[passes.contracts]\nassumed_high = 7\n"
+    assert load_analysis(tmp_path, text, "activities").assumed_range == (0, 7)
+
+
+@pytest.mark.parametrize("emit", [["recipe"], ["contracts"], ["platform"], ["plantuml"], ["ir"]])
+def test_a_back_end_names_all_analyses_that_it_reads(emit):
+    backends = tuple(registry.select_backends(emit))
+    request = Request((_RECIPE,), backends=backends)
+    compilation = compile_model(request, analyses=registry.list_needs(backends))
+    assert compilation.artefacts == compile_model(request).artefacts
 
 
 @pytest.mark.parametrize(
@@ -142,7 +161,7 @@ def test_a_wrong_option_is_refused_with_a_suggestion(tmp_path, text, sentence):
 def test_passes_run_in_the_order_that_they_declare():
     order = [loaded.name for loaded in registry.load_passes({})]
     assert order[:5] == ["resolve", "kept", "overlay", "inherit", "classify"]
-    assert order.index("activities") < order.index("contracts")
+    assert order.index("guards") < order.index("views")
 
 
 # -- plug-ins -------------------------------------------------------------------------------------

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
+from sysmlc.analyses.activities import Activities
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.element import AttrValue
@@ -22,7 +23,6 @@ from sysmlc.logic.activities.token_nodes import Handshake
 from sysmlc.logic.contract import Owner
 from sysmlc.logic.domains import values
 from sysmlc.logic.formula import Literal
-from sysmlc.passes.activities import Activities
 
 Block = tuple
 Valuation = dict[str, Literal]

@@ -13,11 +13,11 @@ from random_block_activities import (
 )
 
 from long_runs import examples
+from sysmlc.analyses.activities import Activities
 from sysmlc.logic import evaluate
 from sysmlc.logic.activities import interpreter
 from sysmlc.logic.activities.derivation import derive_contract
 from sysmlc.logic.contract import Class, Owner
-from sysmlc.passes.activities import Activities
 
 
 def list_violated(contract, trace):

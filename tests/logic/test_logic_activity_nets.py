@@ -7,6 +7,10 @@ from hypothesis import strategies as st
 from random_block_activities import Canvas, blocks, build_tokens, draw_activity, play, play_trace
 
 from long_runs import examples
+from sysmlc.analyses.activities import Activities, construction
+from sysmlc.analyses.activities.drawing import read_drawing
+from sysmlc.analyses.activities.exception_analysis import find_raising
+from sysmlc.analyses.activities.inputs import Inputs, Scope
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Kind
 from sysmlc.ir.text import parse_text, print_text
@@ -16,10 +20,6 @@ from sysmlc.logic.activities.derivation import derive_contract
 from sysmlc.logic.activities.petri_net import reduce_net
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.activities.token_nodes import ACTIVITY_REGION
-from sysmlc.passes.activities import Activities, construction
-from sysmlc.passes.activities.drawing import read_drawing
-from sysmlc.passes.activities.exception_analysis import find_raising
-from sysmlc.passes.activities.inputs import Inputs, Scope
 
 KINDS = ("opaque", "fork", "join", "merge", "decision", "flow-final", "final", "value")
 

@@ -17,6 +17,7 @@ from random_block_activities import (
 )
 
 from long_runs import examples
+from sysmlc.analyses.activities import Activities
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import print_text
 from sysmlc.logic import domains, evaluate
@@ -25,7 +26,6 @@ from sysmlc.logic.activities.derivation import derive_contract
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.activities.token_step import TokenStep
 from sysmlc.logic.contract import Class, Contract, Owner
-from sysmlc.passes.activities import Activities
 
 
 def build_tokens_if_safe(block, **options) -> TokenGraph | None:

@@ -5,10 +5,10 @@ from hypothesis import strategies as st
 from random_state_machines import machines
 
 from long_runs import examples
+from sysmlc.analyses import analysis
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Kind
 from sysmlc.logic.contract import Contract
-from sysmlc.passes import pipeline
 
 _EDGES = (Edge.FLOW_SOURCE, Edge.FLOW_TARGET, Edge.TRIGGER, Edge.TYPED_BY, Edge.EFFECT, Edge.ENTRY)
 _TEXTS = ("", "(", "x := ", "else", "nothing", "x", "x > 99", "1 / 0 == 0", "mode", "x.y.z")
@@ -48,7 +48,7 @@ def test_a_damaged_state_machine_has_a_diagnostic_or_a_contract(model, data):
     for _ in range(data.draw(st.integers(1, 3))):
         damage(data.draw, graph)
     sink = Sink()
-    pipeline.load("contracts").run(graph, sink)
+    analysis.load("contracts").run(graph, sink)
     has_region = machine.id in graph and any(
         element.kind is Kind.REGION for element in graph.owned(graph[machine.id])
     )

@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from pathlib import Path
 
+import refinement
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph
 from sysmlc.ir.text import parse_text, print_text
@@ -39,7 +40,7 @@ def run_structural_passes(graph: Graph, sink: Sink, until: str) -> None:
 def run_all(text: str) -> tuple[Graph, Sink]:
     """Run all passes; return the graph and the diagnostics."""
     graph, sink = parse_text(text), Sink()
-    pipeline.run(graph, sink, verify_each=True)
+    refinement.run_all(graph, sink, verify_each=True)
     return graph, sink
 
 

@@ -1,9 +1,9 @@
 """Run the pass ``recipe`` on a model in IR text."""
 
 import recipe_samples as samples
+from sysmlc.analyses.recipe import Recipe
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Graph, parse_text
-from sysmlc.passes.recipe import Recipe
 from sysmlc.recipe.model import FlowGraph, Model, Node
 
 

@@ -6,10 +6,10 @@ from token_graphs import derive_token_graph, derive_token_graphs, list_edges, na
 
 from activity_sketch import sketch
 from rule_examples import has_graphs, read_graphs
+from sysmlc.analyses.activities import Activities
 from sysmlc.diagnostics import Sink, catalogue
 from sysmlc.ir.text import parse_text, print_text
 from sysmlc.logic.activities.token_graph import TokenGraph
-from sysmlc.passes.activities import Activities
 
 LIMITS = {"SM455": {"max_markings": 3}, "SM479": {"max_depth": 1}}
 """Options with limits that the models of the rules about limits exceed."""

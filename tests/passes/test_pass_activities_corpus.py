@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from sysmlc.analyses import analysis
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.xmi import FRONTEND
 from sysmlc.ir import Element, Graph, Kind
@@ -49,7 +50,7 @@ def read_activities(corpus: Path, name: str) -> tuple[Graph, Sink]:
     for pass_name in ("resolve", "inherit", "classify", "ports", "flows"):
         pipeline.load(pass_name).run(graph, Sink())
     before = print_text(graph)
-    pipeline.load("activities").run(graph, sink)
+    analysis.load("activities").run(graph, sink)
     assert print_text(graph) == before
     return graph, sink
 

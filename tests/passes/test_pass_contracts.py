@@ -5,13 +5,13 @@ from pass_runs import derive_contracts, list_codes, print_conjuncts
 
 from machine_samples import arrow, choice, machine, machine_of, region, state
 from rule_examples import has_graphs, read_graphs
+from sysmlc.analyses import analysis
 from sysmlc.diagnostics import Sink, catalogue
 from sysmlc.ir.text import print_text
 from sysmlc.logic.contract import Class, Contract
 from sysmlc.logic.printing import print_formula
-from sysmlc.passes import pipeline
 
-pipeline.load("contracts")
+analysis.load("contracts")
 RULES = [
     rule
     for code, rule in catalogue().items()
@@ -333,7 +333,7 @@ def test_formulas_of_a_requirement_are_a_contract_of_their_own():
 def test_the_pass_leaves_the_elements_unchanged_and_is_idempotent():
     graph, contracts, _ = derive_contracts(GATE)
     before = print_text(graph)
-    pipeline.load("contracts").run(graph, Sink())
+    analysis.load("contracts").run(graph, Sink())
     assert list(graph.derived(Contract)) == contracts
     assert print_text(graph) == before
 

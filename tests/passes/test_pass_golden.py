@@ -18,6 +18,7 @@ from pass_runs import (
     run_until,
 )
 
+from sysmlc.analyses import analysis
 from sysmlc.backends.recipe.document import describe_model
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text, print_text
@@ -25,7 +26,6 @@ from sysmlc.ir.verify import verify
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
-from sysmlc.passes import pipeline
 from sysmlc.recipe.model import Model
 
 MODELS = read_models()
@@ -107,18 +107,18 @@ def read_model(name):
 
 
 @pytest.mark.parametrize("name", PRINTERS)
-def test_values_that_a_pass_derives(name, golden):
+def test_values_that_an_analysis_derives(name, golden):
     graph, sink = run_all(read_model(name))
     values = "".join(f"{line}\n" for line in PRINTERS[name](graph))
     diagnostics = "".join(f"{line}\n" for line in list_diagnostics(sink))
-    assert values, "the pass derived nothing"
+    assert values, "the analysis derived nothing"
     golden.check(f"passes/{name}-derived", {"after.txt": values, "found.txt": diagnostics})
     assert verify(graph) == []
 
 
 @pytest.mark.parametrize("name", PRINTERS)
-def test_each_deriving_pass_is_idempotent(name):
+def test_each_analysis_is_idempotent(name):
     graph, _ = run_all(read_model(name))
     once = print_text(graph), list(PRINTERS[name](graph))
-    pipeline.load(name).run(graph, Sink())
+    analysis.load(name).run(graph, Sink())
     assert (print_text(graph), list(PRINTERS[name](graph))) == once

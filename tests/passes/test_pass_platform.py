@@ -3,14 +3,14 @@
 import pytest
 from pass_runs import list_diagnostics
 
+from sysmlc.analyses import analysis
+from sysmlc.analyses.recipe import Recipe
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import parse_text
 from sysmlc.ir.text import print_text
-from sysmlc.passes import pipeline
-from sysmlc.passes.recipe import Recipe
 from sysmlc.recipe.plant import Platform
 
-PASS = pipeline.load("platform")
+PASS = analysis.load("platform")
 
 
 def run(text):

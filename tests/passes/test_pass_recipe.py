@@ -6,11 +6,11 @@ from recipe_runs import derive_model, print_application, run_recipe
 
 import recipe_samples as samples
 from rule_examples import has_graphs, read_graphs
+from sysmlc.analyses.recipe import Recipe
 from sysmlc.diagnostics import Severity, Sink
 from sysmlc.driver import load_full_catalogue
 from sysmlc.ir import parse_text, verify
 from sysmlc.ir.text import print_text
-from sysmlc.passes.recipe import Recipe
 from sysmlc.recipe.model import MaterialUse, Mode, Model, Range, Task
 
 RULES = [

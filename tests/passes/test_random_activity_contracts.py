@@ -15,6 +15,7 @@ from random_activities import (
 )
 
 from long_runs import quick_first
+from refinement import run_all
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text
 from sysmlc.logic import domains, evaluate
@@ -24,7 +25,6 @@ from sysmlc.logic.activities import interpreter as token_game
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.contract import Class, Owner
 from sysmlc.logic.formula import has_primes
-from sysmlc.passes import pipeline
 from sysmlc.synthesis.algebra.fair_systems import Universe
 from sysmlc.synthesis.bdd.manager import Manager
 
@@ -40,7 +40,7 @@ def iter_seeds(part):
 def derive_contract(drawing):
     """Return the contract, or None if the compiler reports that a second token may arrive."""
     graph, sink = parse_text(drawing.print_text()), Sink()
-    pipeline.run(graph, sink)
+    run_all(graph, sink)
     games = graph.derived(TokenGraph)
     assert games or {diagnostic.rule.code for diagnostic in sink} & {"SM454", "SM455"}
     return derive_repeated(games[0]) if games else None
@@ -203,7 +203,7 @@ def test_accept_actions_wait_as_soon_as_a_token_enters_their_region(part):
 def test_the_reference_interpreter_satisfies_the_contracts(part):
     for seed in iter_seeds(part):
         graph = parse_text(AssignmentGenerator(seed).draw().print_text())
-        pipeline.run(graph, Sink())
+        run_all(graph, Sink())
         for token_graph in graph.derived(TokenGraph):
             contract = derive_repeated(token_graph)
             run_interpreter(replace(token_graph, handshake=None), contract, random.Random(seed))

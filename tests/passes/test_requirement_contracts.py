@@ -4,11 +4,11 @@ import pytest
 from pass_runs import derive_contracts, list_codes, list_messages, print_conjuncts
 
 from rule_examples import read_graphs
+from sysmlc.analyses import analysis
 from sysmlc.diagnostics import catalogue
 from sysmlc.logic.contract import IntegerDomain
-from sysmlc.passes import pipeline
 
-pipeline.load("contracts")
+analysis.load("contracts")
 TANK = """\
 Package p "Plant"
   Class c "Tank" role="block"{tank}

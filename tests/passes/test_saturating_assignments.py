@@ -17,11 +17,11 @@ from drawn_token_game import (
 from random_activities import BODIES, GUARDS, WORKERS, AssignmentGenerator
 
 from long_runs import quick_first
+from refinement import run_all
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text
 from sysmlc.logic.activities import saturation
 from sysmlc.logic.activities.token_graph import TokenGraph
-from sysmlc.passes import pipeline
 
 ACTIVITIES_PER_PART = 250
 INCREMENT = "x := x + 1"
@@ -81,7 +81,7 @@ def iter_next_states(drawing, tokens, has_free_start):
 def read_reports(text):
     """Return the verdict that is reported for each action; None if x or y is an input."""
     graph, sink = parse_text(text), Sink()
-    pipeline.run(graph, sink)
+    run_all(graph, sink)
     for token_graph in graph.derived(TokenGraph):
         inputs = {variable.name for variable in token_graph.inputs}
         if "x" in token_graph.written_variables and "y" not in inputs:

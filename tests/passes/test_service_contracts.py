@@ -3,16 +3,16 @@
 import pytest
 from pass_runs import derive_contracts, list_codes, list_messages, print_conjuncts
 
+from sysmlc.analyses import analysis
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text
 from sysmlc.logic.contract import IntegerDomain
 from sysmlc.logic.services.conditions import iter_services
-from sysmlc.passes import pipeline
 from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.synthesis.games.game import make_game
 from sysmlc.synthesis.games.solver import solve
 
-pipeline.load("contracts")
+analysis.load("contracts")
 TANK = """\
 Package p "Plant"
   Class c "Tank" role="block"

@@ -3,7 +3,7 @@
 import pytest
 from pass_runs import list_messages, run_all
 
-from sysmlc.passes.activities.assignments import UNKNOWN_TARGET
+from sysmlc.analyses.activities.assignments import UNKNOWN_TARGET
 
 MODEL = """\
 Package p "Plant"

@@ -1,16 +1,18 @@
 """Derive the token graphs of a model in IR text."""
 
+from sysmlc.analyses.activities import Activities
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text
 from sysmlc.ir.verify import verify
 from sysmlc.logic.activities.token_graph import TokenGraph
-from sysmlc.passes.activities import Activities
+from sysmlc.passes.guards import Guards
 
 
 def derive_token_graphs(text: str, **options):
-    """Run the pass; return the token graphs and the diagnostics."""
+    """Read names as guards and run the analysis; return the token graphs and the diagnostics."""
     graph, sink = parse_text(text), Sink()
     assert verify(graph) == []
+    Guards().run(graph, sink)
     Activities(**options).run(graph, sink)
     return list(graph.derived(TokenGraph)), sink
 

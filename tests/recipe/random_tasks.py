@@ -9,14 +9,14 @@ from random import Random
 
 from msgspec.structs import replace
 
+from sysmlc.analyses.activities import Activities
+from sysmlc.analyses.recipe import Recipe
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import parse_text
 from sysmlc.logic import evaluate
 from sysmlc.logic.activities import interpreter
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.activities.token_nodes import Handshake
-from sysmlc.passes.activities import Activities
-from sysmlc.passes.recipe import Recipe
 from sysmlc.recipe.model import Model, Task
 
 _PROFILE = 'namespace="urn:sysmlc:profile:1"'

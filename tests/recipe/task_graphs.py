@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from sysmlc.passes.recipe.expressions import read_assignments, read_expression
+from sysmlc.analyses.recipe.expressions import read_assignments, read_expression
 from sysmlc.recipe.derivation import derive
 from sysmlc.recipe.flow import add_loop_nodes
 from sysmlc.recipe.model import (

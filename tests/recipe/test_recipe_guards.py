@@ -2,8 +2,8 @@
 
 import pytest
 
+from sysmlc.analyses.recipe.expressions import read_expression
 from sysmlc.diagnostics import Sink, Subject
-from sysmlc.passes.recipe.expressions import read_expression
 from sysmlc.recipe import validate
 from sysmlc.recipe.model import EnumType, FlowEdge, FlowGraph, Model, Node, Parameter, Recipe
 

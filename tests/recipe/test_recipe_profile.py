@@ -6,12 +6,12 @@ from pathlib import Path
 
 from lxml import etree
 
-import sysmlc.passes
+import sysmlc.analyses
 from sysmlc.support import resources
 
 XMI = "{http://www.omg.org/spec/XMI/20131001}"
 PROFILE = etree.parse(resources.path("metamodels", "sysmlc.profile.uml")).getroot()
-PASSES = Path(sysmlc.passes.__file__).parent
+ANALYSES = Path(sysmlc.analyses.__file__).parent
 
 
 def list_elements(type_: str) -> dict[str, etree._Element]:
@@ -70,7 +70,7 @@ def test_the_ecore_definition_has_the_same_features():
 
 
 def test_every_tag_that_the_pass_reads_is_in_the_profile():
-    code = "".join(path.read_text(encoding="utf-8") for path in PASSES.glob("recipe/*.py"))
+    code = "".join(path.read_text(encoding="utf-8") for path in ANALYSES.glob("recipe/*.py"))
     read = set(re.findall(r"tags\.\w+\(\"(\w+)\"", code))
     read |= set(re.findall(r"tags\.range\(\"\w+\", \"(\w+)\"", code))
     stereotypes = list_elements("uml:Stereotype").values()

@@ -3,9 +3,9 @@
 import pytest
 
 import recipe_samples as samples
+from sysmlc.analyses.recipe import Recipe
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import parse_text
-from sysmlc.passes.recipe import Recipe
 from sysmlc.recipe.model import Model, TimeLimit
 from sysmlc.recipe.recipe_times import decide_limit
 

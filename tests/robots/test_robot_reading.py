@@ -2,10 +2,10 @@
 
 import pytest
 
+from sysmlc.analyses.robots import Robots
 from sysmlc.diagnostics import Sink
 from sysmlc.driver import Request, compile_model
 from sysmlc.logic.contract import Contract
-from sysmlc.passes.robots import Robots
 from sysmlc.robots.study import Order, Study
 
 HALL = """

@@ -5,6 +5,7 @@ import re
 import pytest
 
 from machine_samples import arrow, machine
+from refinement import run_all
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.contracts import BACKEND
 from sysmlc.backends.reqtable import format_csv
@@ -15,7 +16,6 @@ from sysmlc.ir import Element, Kind
 from sysmlc.ir.text import parse_text
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.formats import write
-from sysmlc.passes import pipeline
 from sysmlc.support import plantuml_text as plantuml
 from sysmlc.support.escapes import escape_code, escape_markdown
 from sysmlc.support.output import Output
@@ -62,7 +62,7 @@ def test_backticks_in_code_spans_are_escaped():
 
 def emit_contracts(text):
     graph, output = parse_text(text), Output()
-    pipeline.run(graph, Sink())
+    run_all(graph, Sink())
     BACKEND.emit(graph, output, Sink(), EmitOptions())
     return {artefact.path.partition(".")[2][-7:]: artefact.text for artefact in output.artefacts()}
 

@@ -15,12 +15,12 @@ from nasty_names import build_model, draw_names
 
 from backend_runs import emit
 from long_runs import quick_first
+from refinement import run_all
 from sysmlc.diagnostics import Sink
 from sysmlc.driver.registry import list_backend_names, load_backends
 from sysmlc.ir.text import parse_text
 from sysmlc.language.text import parse
 from sysmlc.logic import formats
-from sysmlc.passes import pipeline
 from sysmlc.support.escapes import escape_invisible
 
 BATCHES = 9
@@ -31,7 +31,7 @@ C_MODES = ("gcc -std=c99 -Wpedantic", "gcc -std=gnu17", "g++ -x c++")
 def emit_batch(batch):
     """Return the graph of a model with new names, and the outputs of all back ends by path."""
     graph, artefacts = parse_text(build_model(draw_names(NAMES_OF_A_BATCH, batch))), {}
-    pipeline.run(graph, Sink())
+    run_all(graph, Sink())
     for backend in load_backends(list_backend_names()):
         artefacts |= emit(backend, graph)[0]
     return graph, artefacts

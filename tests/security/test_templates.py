@@ -7,6 +7,7 @@ import pytest
 
 from long_runs import quick_first
 from machine_samples import arrow, machine
+from refinement import run_all
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.contracts import BACKEND as CONTRACTS
 from sysmlc.backends.plantuml import BACKEND as PLANTUML
@@ -14,7 +15,6 @@ from sysmlc.backends.reqtable import BACKEND as REQTABLE
 from sysmlc.backends.templates import files, process
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import parse_text
-from sysmlc.passes import pipeline
 from sysmlc.support.output import Output
 
 PLANT = 'Package p "Plant"\n  Class gate "Gate" role="block"\n    Port gate.in "in"\n'
@@ -227,7 +227,7 @@ def test_other_back_ends_render_in_the_sandbox_too(tmp_path, backend, name):
         Output(),
         Sink(),
     )
-    pipeline.run(graph, Sink())
+    run_all(graph, Sink())
     backend.emit(graph, output, sink, EmitOptions(tmp_path))
     (message,) = [diagnostic.message for diagnostic in sink if diagnostic.is_error]
     assert f"{name}:1: access to attribute '__init__'" in message

@@ -4,9 +4,9 @@ from xml.etree import ElementTree
 
 import pytest
 
+from sysmlc.analyses.activities import Activities
 from sysmlc.diagnostics import Sink, catalogue
 from sysmlc.ir.text import parse_text
-from sysmlc.passes.activities import Activities
 from sysmlc.simulation import run_scenarios
 from sysmlc.sources import Source
 

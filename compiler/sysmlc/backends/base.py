@@ -58,6 +58,8 @@ class Backend(Protocol):
     name: str
     summary: str
     is_default: bool
+    needs: tuple[str, ...]
+    """Names of the analyses whose results ``emit`` reads (``Graph.derived``)."""
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add files to *output*, and report what the target cannot express."""

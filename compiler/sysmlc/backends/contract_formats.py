@@ -49,6 +49,7 @@ class ContractFormatBackend(Struct, frozen=True):
     comment: str = ""
     """Spelling of a comment with text ``{}``, for formats that describe the behaviour itself."""
     is_default: bool = False
+    needs: tuple[str, ...] = ("contracts",)
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add the files of each contract; report contracts that a format cannot express."""

@@ -47,11 +47,12 @@ _MAX_MILLIONS = 10
 
 
 class ContractsBackend(Struct, frozen=True):
-    """Writes the contracts that the pass ``contracts`` derived."""
+    """Writes the contracts of the analysis ``contracts``."""
 
     name: str = "contracts"
     summary: str = "assume/guarantee contracts as JSON, SPIN formula and explanation"
     is_default: bool = True
+    needs: tuple[str, ...] = ("contracts",)
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add three files for each contract, with the same trace."""

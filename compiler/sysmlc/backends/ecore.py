@@ -29,6 +29,7 @@ class EcoreBackend(Struct, frozen=True):
     name: str = "ecore"
     summary: str = "the refined graph as EMF XMI of metamodels/ir.ecore, graph.xmi"
     is_default: bool = False
+    needs: tuple[str, ...] = ()
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add ``graph.xmi``."""

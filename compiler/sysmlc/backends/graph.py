@@ -15,6 +15,7 @@ class GraphBackend(Struct, frozen=True):
     name: str = "graph"
     summary: str = "the refined graph as graph.json"
     is_default: bool = False
+    needs: tuple[str, ...] = ()
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add ``graph.json`` (metamodels/sysmlc-graph.schema.json)."""
@@ -43,6 +44,7 @@ class IrBackend(Struct, frozen=True):
     name: str = "ir"
     summary: str = "the refined graph in readable text, graph.ir"
     is_default: bool = False
+    needs: tuple[str, ...] = ()
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add ``graph.ir``."""

@@ -40,6 +40,7 @@ class MonitorBackend(Struct, frozen=True):
     name: str = "monitor"
     summary: str = "runtime monitors of contracts in C99 and Python"
     is_default: bool = False
+    needs: tuple[str, ...] = ("contracts",)
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add three files for each contract with something that a finite run can break."""

@@ -20,11 +20,12 @@ Json = dict[str, object]
 
 
 class PlatformBackend(Struct, frozen=True):
-    """Writes what the pass ``platform`` derived (metamodels/sysmlc-platform.schema.json)."""
+    """Writes the result of the analysis ``platform`` (metamodels/sysmlc-platform.schema.json)."""
 
     name: str = "platform"
     summary: str = "which element of the plant offers which service of the recipes, as JSON"
     is_default: bool = True
+    needs: tuple[str, ...] = ("platform",)
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add the file; its trace contains machines, services and elements of the plant."""

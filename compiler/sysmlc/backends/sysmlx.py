@@ -54,6 +54,7 @@ class SysmlxBackend(Struct, frozen=True):
     name: str = "sysmlx"
     summary: str = "the model as SysML v2 interchange (XMI), sysmlx/*.sysmlx"
     is_default: bool = False
+    needs: tuple[str, ...] = ("recipe",)
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add a file for each file of the model; report what the files cannot express."""

@@ -168,7 +168,8 @@ def compile_unit(
     from sysmlc.driver.project_findings import select_project_findings, without_project_findings
 
     unit = open_single_unit(files, config, settings)
-    compilation = _compile_opened(unit, settings, emit)
+    request = _set_backends(unit.request, emit, settings)
+    compilation = _compile(request, settings, unit.opened)
     project_findings = select_project_findings(config, [unit.opened], [compilation.diagnostics])
     return replace(
         compilation,
@@ -176,17 +177,10 @@ def compile_unit(
     )
 
 
-def _compile_opened(
-    unit: "Unit", settings: Settings, emit: tuple[str, ...] | None = None
-) -> "Compilation":
-    """Compile a unit with the back ends of *emit* (None for no back end)."""
-    return _compile(_set_backends(unit.request, emit, settings), settings, unit.opened)
-
-
 def read_as_written(unit: "Unit", settings: Settings) -> "Compilation":
     """Read a unit and resolve its references without refining the graph."""
     passes = tuple(step for step in unit.request.load_passes() if step.name in _READING_PASSES)
-    return _compile(replace(unit.request, passes=passes), settings, unit.opened)
+    return _compile(replace(unit.request, passes=passes), settings, unit.opened, analyses=())
 
 
 def compile_units(
@@ -237,10 +231,16 @@ def _reuse_outcome(cache: "Cache", unit: "Unit", settings: Settings, has_files: 
 
 
 def compute_outcome(unit: "Unit", settings: Settings, has_files: bool = True) -> "Outcome":
-    """Compile the unit and return the outcome, without the cache."""
-    from sysmlc.driver import summarize
+    """Compile the unit and return the outcome, without the cache.
 
-    return summarize(_compile_opened(unit, settings, unit.emit), has_files)
+    All analyses run if only the findings are wanted, else those that the back ends need.
+    """
+    from sysmlc.driver import summarize
+    from sysmlc.driver.registry import list_needs
+
+    request = _set_backends(unit.request, unit.emit, settings)
+    analyses = list_needs(request.backends) if has_files else None
+    return summarize(_compile(request, settings, unit.opened, analyses), has_files)
 
 
 def make_request(files: tuple[Path, ...], config: "Config", settings: Settings) -> "Request":
@@ -289,16 +289,23 @@ def _set_backends(
 
 
 def _compile(
-    request: "Request", settings: Settings, opened: "OpenedUnit | None" = None
+    request: "Request",
+    settings: Settings,
+    opened: "OpenedUnit | None" = None,
+    analyses: Iterable[str] | None = None,
 ) -> "Compilation":
+    """Compile a unit with these analyses, by default with all."""
+    from sysmlc.analyses import analysis
     from sysmlc.cli.progress import Progress
     from sysmlc.config import ConfigError
     from sysmlc.driver import compile_model
 
     progress = Progress(settings.verbose, settings.print_after)
     try:
-        _check_pass_names([step.name for step in request.load_passes()], settings.print_after)
-        return compile_model(request, progress, opened)
+        names = [*(step.name for step in request.load_passes()), *analysis.NAMES]
+        _check_pass_names(names, settings.print_after)
+        wanted = analysis.NAMES if analyses is None else analyses
+        return compile_model(request, progress, opened, wanted)
     except ConfigError as problem:
         from sysmlc.config import locate_key
 

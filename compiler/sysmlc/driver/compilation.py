@@ -1,6 +1,6 @@
-"""One compile: inputs -> graph -> passes -> back ends, as a value that is still in memory."""
+"""One compile in memory: inputs -> graph -> passes -> analyses -> back ends."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from traceback import format_exc
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from msgspec import Struct, field
 
+from sysmlc.analyses import analysis
 from sysmlc.backends.base import DERIVED, Backend, EmitOptions, InputFile
 from sysmlc.config import Config
 from sysmlc.diagnostics import Coverage, Diagnostic, Place, Sink, Subject
@@ -165,20 +166,26 @@ def load_drawings(request: Request, reading: Reading, root: Path, sink: Sink) ->
 
 
 def compile_model(
-    request: Request, observer: Observer | None = None, opened: OpenedUnit | None = None
+    request: Request,
+    observer: Observer | None = None,
+    opened: OpenedUnit | None = None,
+    analyses: Iterable[str] = analysis.NAMES,
 ) -> Compilation:
     """Compile one unit. The result has the diagnostics; nothing is written to disk.
 
-    Raises ConfigError for options that a pass does not have.
+    *analyses* names those whose results are wanted; the analyses that they need run as well. Raises
+    ConfigError for options that a pass does not have.
     """
-    run = _CompilationRun(request, observer or Observer(), opened or open_unit(request))
-    return run.compile()
+    observer, opened = observer or Observer(), opened or open_unit(request)
+    return _CompilationRun(request, observer, opened, analysis.expand(analyses)).compile()
 
 
 class _CompilationRun:
-    """The state of one compilation: read, validate, refine, emit."""
+    """The state of one compilation: read, validate, refine, analyse, emit."""
 
-    def __init__(self, request: Request, observer: Observer, opened: OpenedUnit) -> None:
+    def __init__(
+        self, request: Request, observer: Observer, opened: OpenedUnit, analyses: Sequence[str]
+    ) -> None:
         self._request = request
         self._observer = observer
         self._sink = opened.sink
@@ -187,6 +194,7 @@ class _CompilationRun:
         self._output = Output()
         self._frontends = opened.frontends
         self._passes = request.load_passes()
+        self._analyses = analyses
         self._root = opened.root
         self._reading = opened.reading
         self._drawings = opened.drawings
@@ -199,8 +207,9 @@ class _CompilationRun:
         is_broken = not self._read(reading)
         self._validate(reading)
         store_refinements(reading.overlays, self._graph)
-        # all() stops at the first pass with a fault: later passes rely on its result.
-        is_broken = not all(self._refine(step) for step in self._passes) or is_broken
+        # all() stops at the first step with a fault: later steps rely on its result.
+        is_broken = not all(map(self._refine, self._passes)) or is_broken
+        is_broken = is_broken or not all(map(self._analyse, self._analyses))
         artefacts = [] if is_broken else self._emit(inputs, reading)
         if self._request.strict_input:
             self._report_unsupported()
@@ -260,6 +269,14 @@ class _CompilationRun:
         )
         return self._check_graph(step.name) and succeeded
 
+    def _analyse(self, name: str) -> bool:
+        self._begin_step(f"analysis {name}")
+        if not analysis.has_result(name, self._graph):
+            return True
+        step = registry.load_analysis(name, self._request.config.passes)
+        succeeded = self._run_guarded(f"analysis {name}", lambda: step.run(self._graph, self._sink))
+        return self._check_graph(name) and succeeded
+
     def _check_graph(self, step: str) -> bool:
         """Show the graph to the observer and, with ``verify_each``, verify it."""
         self._observer.after(step, self._graph)
@@ -316,7 +333,7 @@ class _CompilationRun:
         return True
 
     def _begin_step(self, description: str) -> None:
-        total = 1 + len(self._passes) + len(self._request.backends)
+        total = 1 + len(self._passes) + len(self._analyses) + len(self._request.backends)
         self._observer.step(description, self._step_number, total)
         self._step_number += 1
 

@@ -1,4 +1,4 @@
-"""The registry of front ends, passes, back ends and rules, imported when they are used.
+"""The registry of front ends, passes, analyses, back ends and rules, imported when they are used.
 
 Other distributions add passes and back ends by entry points. A pass of a plug-in runs after those
 of sysmlc. The rules of a plug-in are those that its modules define when they are imported.
@@ -11,10 +11,12 @@ from contextlib import suppress
 from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
 from pkgutil import walk_packages
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from msgspec import Struct, structs
 
+from sysmlc.analyses import analysis
+from sysmlc.analyses.analysis import Analysis
 from sysmlc.backends.base import Backend
 from sysmlc.config import ConfigError
 from sysmlc.diagnostics import Rule, catalogue
@@ -66,10 +68,14 @@ _RULE_PACKAGES = (
     "simulation",
     "synthesis",
     "robots",
+    "analyses",
     "passes",
     "backends",
     "driver",
 )
+
+
+_Step = TypeVar("_Step", Pass, Analysis)
 
 
 class BackendError(Exception):
@@ -92,26 +98,41 @@ def load_frontends(library: str = "") -> list[Frontend]:
 
 
 def load_passes(options: Mapping[str, Mapping[str, object]]) -> list[Pass]:
-    """Return the passes in order; *options* maps the name of a pass to its options.
+    """Return the passes in order; *options* maps the name of a pass or analysis to its options.
 
-    A plug-in that cannot be used is ignored with a PlugInWarning. Raises ConfigError for a pass or
-    an option that does not exist.
+    A plug-in that cannot be used is ignored with a PlugInWarning. Raises ConfigError for a pass, an
+    analysis or an option that does not exist.
     """
     plug_ins = find_plug_ins(PASS_GROUP)
-    names = [*pipeline.NAMES, *plug_ins]
+    names = [*pipeline.NAMES, *analysis.NAMES, *plug_ins]
     for name in options:
         if name not in names:
             advice = did_you_mean(name, names)
             raise ConfigError(f"passes.{name}: unknown pass; {advice}", ("passes", name))
+    for name in analysis.NAMES:
+        if name in options:
+            load_analysis(name, options)
     loaded = [pipeline.load(name) for name in pipeline.NAMES]
     loaded += [step for entry in plug_ins.values() if (step := _load_pass(entry)) is not None]
     configured = [_set_options(step, options.get(step.name, {})) for step in loaded]
-    return pipeline.sort_passes(_share_assumed_range(configured))
+    return pipeline.sort_passes(configured)
+
+
+def load_analysis(name: str, options: Mapping[str, Mapping[str, object]]) -> Analysis:
+    """Return an analysis with its options. Raises ConfigError for a wrong option."""
+    loaded = _set_options(analysis.load(name), options.get(name, {}))
+    contracts = options.get("contracts", {})
+    if name == "activities" and contracts:
+        # Token graphs have the domains of their variables before contracts are derived.
+        low, high = cast("Any", loaded).assumed_range
+        assumed_range = contracts.get("assumed_low", low), contracts.get("assumed_high", high)
+        loaded = structs.replace(cast("Any", loaded), assumed_range=assumed_range)
+    return loaded
 
 
 def _load_pass(entry: EntryPoint) -> Pass | None:
     """Return the pass of a plug-in, or None with a PlugInWarning if it cannot be used."""
-    if entry.name in pipeline.NAMES:
+    if entry.name in (*pipeline.NAMES, *analysis.NAMES):
         _ignore_plug_in(f"the plug-in {entry.value} takes the name of pass '{entry.name}'")
         return None
     try:
@@ -125,8 +146,8 @@ def _ignore_plug_in(reason: str) -> None:
     warnings.warn(f"{reason}; the plug-in is ignored", PlugInWarning, stacklevel=3)
 
 
-def _set_options(step: Pass, options: Mapping[str, object]) -> Pass:
-    """Return the pass with these options. Raises ConfigError."""
+def _set_options(step: _Step, options: Mapping[str, object]) -> _Step:
+    """Return the pass or analysis with these options. Raises ConfigError."""
     if not options:
         return step
     names = _list_option_names(step)
@@ -139,25 +160,11 @@ def _set_options(step: Pass, options: Mapping[str, object]) -> Pass:
         if not _has_type_of(value, default):
             raise ConfigError(f"{where}: {value!r} is no {type(default).__name__}", path)
     replace = structs.replace if isinstance(step, Struct) else dataclasses.replace
-    return cast("Pass", replace(cast("Any", step), **options))
+    return cast("_Step", replace(cast("Any", step), **options))
 
 
-def _share_assumed_range(steps: Iterable[Pass]) -> list[Pass]:
-    """Return the passes, with the assumed range of ``contracts`` also set for ``activities``.
-
-    Activities get the domains of their variables before contracts are derived.
-    """
-    by_name = {step.name: step for step in steps}
-    contracts = cast("Any", by_name.get("contracts"))
-    if contracts is not None and "activities" in by_name:
-        assumed_range = contracts.assumed_low, contracts.assumed_high
-        activities = cast("Any", by_name["activities"])
-        by_name["activities"] = structs.replace(activities, assumed_range=assumed_range)
-    return list(by_name.values())
-
-
-def _list_option_names(step: Pass) -> list[str]:
-    """Return the options of a pass, which is a struct or, in a plug-in, maybe a dataclass."""
+def _list_option_names(step: Pass | Analysis) -> list[str]:
+    """Return the options of a step, which is a struct or, in a plug-in, maybe a dataclass."""
     if isinstance(step, Struct):
         return list(step.__struct_fields__)
     return [field.name for field in dataclasses.fields(cast("DataclassInstance", step))]
@@ -234,6 +241,12 @@ def select_backends(wanted: Sequence[str]) -> list[Backend]:
     defaults = [b for b in _load_usable(by_default, foreign) if b.is_default]
     backends = [*defaults, *_load_each(selected, foreign)]
     return sorted(backends, key=lambda backend: backend.name)
+
+
+def list_needs(backends: Iterable[Backend]) -> tuple[str, ...]:
+    """Return the analyses that back ends need; all of them for a plug-in that names none."""
+    needs = [getattr(backend, "needs", analysis.NAMES) for backend in backends]
+    return tuple(dict.fromkeys(name for names in needs for name in names))
 
 
 def load_full_catalogue(note: Callable[[str], None] = lambda _: None) -> dict[str, Rule]:

@@ -153,6 +153,12 @@ class Contract(Struct, frozen=True):
         return tuple(item for item in self.assumptions if item.viewpoint in ("", viewpoint))
 
 
+class GivenContract(Struct, frozen=True):
+    """A contract that replaces the derived contract of the same component."""
+
+    contract: Contract
+
+
 def mark_derived(contract: Contract) -> Contract:
     """Return the contract with all conjuncts marked as derived."""
 

@@ -35,13 +35,9 @@ NAMES = (
     "classify",
     "ports",
     "flows",
-    "activities",
+    "guards",
     "behaviours",
     "interactions",
-    "recipe",
-    "platform",
-    "contracts",
-    "robots",
     "views",
 )
 """All passes in order; the class of a pass is its capitalised name in ``sysmlc.passes.<name>``."""

@@ -19,13 +19,13 @@ from spin_oracle import (
 from examples.compiling import ROOT
 from long_runs import quick_first
 from machine_samples import arrow, choice, machine, machine_of, region, state
+from refinement import run_all
 from sysmlc.diagnostics import Sink
 from sysmlc.driver import Request, compile_model
 from sysmlc.ir.text import parse_text
 from sysmlc.logic.contract import Class, Contract
 from sysmlc.logic.formats.spin import SpinPrinter, print_spin
 from sysmlc.logic.formula import Apply, Op
-from sysmlc.passes import pipeline
 
 buddy = pytest.importorskip("buddy")
 
@@ -54,7 +54,7 @@ MODELS = {
 
 def derive_contracts(text):
     graph = parse_text(text)
-    pipeline.run(graph, Sink())
+    run_all(graph, Sink())
     return list(graph.derived(Contract))
 
 

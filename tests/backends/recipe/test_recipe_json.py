@@ -12,12 +12,12 @@ from recipe_files import SCHEMA, compile_recipe, find_example, list_faults, list
 import backend_runs
 import recipe_samples as samples
 from rule_examples import read_graphs
+from sysmlc.analyses.recipe import Recipe
 from sysmlc.backends.base import EmitOptions, InputFile
 from sysmlc.backends.recipe import BACKEND
 from sysmlc.diagnostics import Sink
 from sysmlc.driver import load_full_catalogue
 from sysmlc.ir import parse_text
-from sysmlc.passes.recipe import Recipe
 
 INPUTS = (InputFile("b.uml", "0" * 64, "xmi"), InputFile("a.uml", "1" * 64, "xmi"))
 LOOP = ("s m", "m l", "l d", "d m ok", "d g else", "g a", "a b", "b e")

@@ -7,6 +7,7 @@ import pytest
 
 from backend_runs import emit
 from examples.compiling import ROOT, compile_example, outputs
+from refinement import run_all
 from rule_examples import read_graphs
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.reqtable import (
@@ -19,7 +20,6 @@ from sysmlc.backends.reqtable import (
 from sysmlc.backends.reqtable.table import Cell
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text
-from sysmlc.passes import pipeline
 
 SYSML = "http://www.omg.org/spec/SysML/20150709/SysML"
 MAGICDRAW = "http://www.magicdraw.com/spec/Customization/180/SysML"
@@ -47,7 +47,7 @@ def write_relation(stereotype, client, supplier):
 def emit_tables(text, templates=None):
     """Return the texts of the tables by path, and the diagnostics of the back end."""
     graph = parse_text(text)
-    pipeline.run(graph, Sink(), verify_each=True)
+    run_all(graph, Sink(), verify_each=True)
     artefacts, diagnostics = emit(BACKEND, graph, EmitOptions(templates))
     return {path: artefact.text for path, artefact in artefacts.items()}, diagnostics
 

@@ -1,10 +1,10 @@
 """Reads small texts of SysML v2 for the tests of the front end."""
 
+from refinement import run_steps
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.frontends.sysml import FRONTEND
 from sysmlc.ir import Edge, Graph, Kind
 from sysmlc.ir.verify import verify
-from sysmlc.passes import pipeline
 from sysmlc.sources import Source
 
 PASSES = ("resolve", "inherit", "classify", "ports")
@@ -19,7 +19,7 @@ class Reading:
         sources = [Source(name, text.encode()) for name, text in named]
         FRONTEND.read(sources, self.graph, self.sink, self.coverage)
         assert verify(self.graph) == []
-        pipeline.build_pipeline(passes).run(self.graph, self.sink, verify_each=True)
+        run_steps(passes, self.graph, self.sink, verify_each=True)
 
     def find_element(self, name, kind=None):
         """Return the only element with a qualified name, and the kind if it is given."""

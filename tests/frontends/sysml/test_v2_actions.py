@@ -6,13 +6,13 @@ from pathlib import Path
 import pytest
 from reading_v2 import read
 
+from refinement import run_all
 from sysmlc.diagnostics import Sink
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Contract, EnumerationDomain, IntegerDomain, Owner
 from sysmlc.logic.formats import read as read_contracts
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.simplification import rebuild
-from sysmlc.passes import pipeline
 
 CELL = """
 package Cells {
@@ -61,7 +61,7 @@ ADDED = {
 
 def read_contracts_of(text=CELL):
     reading = read(text)
-    pipeline.run(reading.graph, reading.sink)
+    run_all(reading.graph, reading.sink)
     assert [diagnostic.rule.code for diagnostic in reading.sink] == []
     return {contract.component: contract for contract in reading.graph.derived(Contract)}
 

@@ -5,9 +5,9 @@ from itertools import pairwise
 import pytest
 from reading_v2 import read
 
+from refinement import run_all
 from sysmlc.backends.contract_pages import print_page
 from sysmlc.logic.contract import Contract
-from sysmlc.passes import pipeline
 
 
 def list_paragraphs(steps, features="", more=""):
@@ -21,7 +21,7 @@ def list_paragraphs(steps, features="", more=""):
         }}
     }}"""
     reading = read(text)
-    pipeline.run(reading.graph, reading.sink)
+    run_all(reading.graph, reading.sink)
     contracts = reading.graph.derived(Contract)
     (contract,) = (contract for contract in contracts if contract.component == "P::Cell")
     page = print_page(reading.graph, contract)

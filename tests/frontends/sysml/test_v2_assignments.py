@@ -3,15 +3,16 @@
 import pytest
 from reading_v2 import read
 
+from refinement import run_all
+from sysmlc.analyses import analysis
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text
 from sysmlc.logic.contract import Class, Contract, Owner
 from sysmlc.logic.printing import print_formula
-from sysmlc.passes import pipeline
 from sysmlc.synthesis.contract_checks import check_contracts
 from sysmlc.synthesis.decision import Options
 
-pipeline.load("contracts")
+analysis.load("contracts")
 
 V2 = """
 package P {
@@ -61,13 +62,13 @@ def compile_v1(text=V1):
         flows += f"      ControlFlow f{number}{attribute}\n"
         flows += f"        -> flow-source {source}\n        -> flow-target {target}\n"
     graph, sink = parse_text(text.replace("FLOWS", flows)), Sink()
-    pipeline.run(graph, sink)
+    run_all(graph, sink)
     return graph, sink
 
 
 def compile_v2(text=V2):
     reading = read(text)
-    pipeline.run(reading.graph, reading.sink)
+    run_all(reading.graph, reading.sink)
     return reading.graph, reading.sink
 
 

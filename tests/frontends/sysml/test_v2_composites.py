@@ -3,17 +3,18 @@
 import pytest
 from reading_v2 import read
 
+from refinement import run_all
+from sysmlc.analyses import analysis
 from sysmlc.diagnostics import Sink, catalogue
 from sysmlc.ir.text import parse_text
 from sysmlc.logic.composition.derivation import compose_blocks
 from sysmlc.logic.contract import Contract, IntegerDomain
 from sysmlc.logic.printing import print_formula
-from sysmlc.passes import pipeline
 from sysmlc.synthesis import Limits
 from sysmlc.synthesis.composition_check import check_compositions
 from sysmlc.synthesis.decision import Options
 
-pipeline.load("contracts")
+analysis.load("contracts")
 PANEL = """
 package Line {
     private import ScalarValues::*;
@@ -59,7 +60,7 @@ JOINED = """
 
 def compose(text):
     reading = read(text)
-    pipeline.run(reading.graph, reading.sink)
+    run_all(reading.graph, reading.sink)
     compositions = list(
         compose_blocks(reading.graph, reading.graph.derived(Contract), reading.sink)
     )
@@ -164,7 +165,7 @@ def test_rules_report_their_wrong_model_and_not_their_right_one(code):
     for text, expected in ((rule.read_page().wrong, True), (rule.read_page().right, False)):
         reading = read(text)
         graph, sink = reading.graph, reading.sink
-        pipeline.run(graph, sink, verify_each=True)
+        run_all(graph, sink, verify_each=True)
         is_composed = len(list(compose_blocks(graph, graph.derived(Contract), sink))) == 1
         assert (code in [diagnostic.rule.code for diagnostic in sink]) is expected
         assert is_composed is (code in ("SM508", "SM526") or not expected)
@@ -286,7 +287,7 @@ def test_a_machine_is_its_actions_and_its_coordinator():
 def check_page(text):
     """Return the diagnostics about the parts of a machine, and whether they fit together."""
     reading = read(text)
-    pipeline.run(reading.graph, reading.sink)
+    run_all(reading.graph, reading.sink)
     graph, sink = reading.graph, Sink()
     compositions = list(compose_blocks(graph, graph.derived(Contract), sink))
     place = lambda it: graph.subject(graph[it])  # noqa: E731
@@ -382,7 +383,7 @@ Package p "Cells"
 
 def test_operations_are_composed_by_their_methods():
     graph, sink = parse_text(OPERATIONS), Sink()
-    pipeline.run(graph, sink)
+    run_all(graph, sink)
     (cell,) = compose_blocks(graph, graph.derived(Contract), sink)
     assert cell.component == "Cells::Cell"
     assert [part.name for part in cell.parts] == ["fetch", "put"]

@@ -3,10 +3,10 @@
 import pytest
 from reading_v2 import read
 
+from refinement import run_all
 from sysmlc.diagnostics import Sink, catalogue
 from sysmlc.logic.composition.derivation import compose_blocks
 from sysmlc.logic.contract import Contract
-from sysmlc.passes import pipeline
 from sysmlc.synthesis import Limits
 from sysmlc.synthesis import composition_check as together
 from sysmlc.synthesis import composition_check as together_rules
@@ -18,7 +18,7 @@ CODES = ("SM506", "SM548", "SM595", "SM596", "SM597", "SM598")
 
 def check_model(text, limits=None):
     reading = read(text)
-    pipeline.run(reading.graph, reading.sink, verify_each=True)
+    run_all(reading.graph, reading.sink, verify_each=True)
     graph, sink = reading.graph, Sink()
     options = Options("", limits or Limits())
     compositions = list(compose_blocks(graph, graph.derived(Contract), sink))
@@ -78,7 +78,7 @@ def test_a_check_beyond_the_limits_is_not_decided():
 
 def check_requirements(text):
     reading = read(text)
-    pipeline.run(reading.graph, reading.sink, verify_each=True)
+    run_all(reading.graph, reading.sink, verify_each=True)
     graph, sink = reading.graph, Sink()
     contracts = graph.derived(Contract)
     list(

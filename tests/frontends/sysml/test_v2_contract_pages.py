@@ -3,12 +3,12 @@
 import pytest
 from reading_v2 import read
 
+from refinement import run_all
+from sysmlc.analyses.contracts import Contracts
 from sysmlc.backends.contract_pages import print_page
 from sysmlc.diagnostics import Sink
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
-from sysmlc.passes import pipeline
-from sysmlc.passes.contracts import Contracts
 
 LINE = """
 package Plant {
@@ -28,7 +28,7 @@ package Plant {
 @pytest.fixture(scope="module")
 def pages():
     reading = read(LINE)
-    pipeline.run(reading.graph, reading.sink)
+    run_all(reading.graph, reading.sink)
     graph = reading.graph
     return {contract.component: print_page(graph, contract) for contract in graph.derived(Contract)}
 
@@ -73,7 +73,7 @@ package Plant {
 def test_a_demand_has_the_sentence_of_the_author():
     """It is that of the constraint, or else the text of the requirement."""
     reading = read(GATE)
-    pipeline.run(reading.graph, reading.sink)
+    run_all(reading.graph, reading.sink)
     (contract,) = reading.graph.derived(Contract)
     page = print_page(reading.graph, contract)
     assert "- A closed gate is locked. 'Keep' demands it. " in page
@@ -97,7 +97,7 @@ def test_a_formula_without_meaning_is_reported_with_the_reason(language, text, r
         part def Gate {{ attribute open : Boolean; attribute marks : Boolean[3]; }}
         requirement def Lock {{ subject gate : Gate; require constraint {formula} }}
     }}""")
-    pipeline.run(reading.graph, reading.sink)
+    run_all(reading.graph, reading.sink)
     messages = [item.message for item in reading.sink if item.rule.code == "SM522"]
     start = "the formula of 'the constraint' in requirement 'Lock' is not understood: "
     assert messages == ([start + reason] if reason else [])
@@ -113,7 +113,7 @@ TIMED = """package Plant {
 
 def test_a_duration_in_seconds_depends_on_the_length_of_a_step():
     reading = read(TIMED)
-    pipeline.run(reading.graph, Sink())
+    run_all(reading.graph, Sink())
     Contracts(tick_seconds=2.0).run(reading.graph, Sink())
     (contract,) = reading.graph.derived(Contract)
     assert [print_formula(item.formula) for item in contract.guarantees] == ["open -> shut | shut'"]
@@ -121,7 +121,7 @@ def test_a_duration_in_seconds_depends_on_the_length_of_a_step():
 
 def test_a_duration_between_two_steps_is_reported():
     reading, sink = read(TIMED), Sink()
-    pipeline.run(reading.graph, Sink())
+    run_all(reading.graph, Sink())
     Contracts(tick_seconds=1.5).run(reading.graph, sink)
     (finding,) = sink
     assert finding.message.endswith(
@@ -135,7 +135,7 @@ def test_an_empty_formula_of_a_constraint_is_reported():
         exhibit state S { entry; then A; state A; }
         constraint calm { language "ltl" /* */ }
     } }""")
-    pipeline.run(reading.graph, reading.sink)
+    run_all(reading.graph, reading.sink)
     assert [item.message for item in reading.sink if item.rule.code == "SM501"] == [
         "the formula of 'calm' is not understood: it is empty"
     ]
@@ -149,7 +149,7 @@ def test_conjuncts_of_a_constraint_have_its_name_and_steps_that_of_the_diagram(p
 
 def test_markup_of_tools_is_not_copied():
     reading = read(LINE.replace("Two turns.", "<p>Two turns</p>"))
-    pipeline.run(reading.graph, reading.sink)
+    run_all(reading.graph, reading.sink)
     (page,) = (
         print_page(reading.graph, contract)
         for contract in reading.graph.derived(Contract)

@@ -3,13 +3,13 @@
 import pytest
 from reading_v2 import read
 
+from refinement import run_all
 from sysmlc.diagnostics import Place, Sink, Subject
 from sysmlc.ir import Graph
 from sysmlc.ir.text import parse_text
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
-from sysmlc.passes import pipeline
 from sysmlc.synthesis.decision import Options, decide
 
 PICK = """
@@ -24,7 +24,7 @@ def compile_robot(members: str) -> Graph:
     """Return the graph of a part with some members."""
     items = "item def Go; item def Stop;"
     reading = read(f"package P {{ {items} part def Robot {{ {members} }} }}")
-    pipeline.run(reading.graph, reading.sink)
+    run_all(reading.graph, reading.sink)
     return reading.graph
 
 
@@ -119,7 +119,7 @@ Activity a "a"
 @pytest.mark.parametrize(("end", "stop"), [("final", "stop_pick"), ("flow-final", "")])
 def test_only_an_activity_final_stops_the_call_in_another_branch(end, stop):
     graph = parse_text(FORKED.replace("END", end))
-    pipeline.run(graph, Sink())
+    run_all(graph, Sink())
     handshakes = {game.component: game.handshake for game in graph.derived(TokenGraph)}
     assert handshakes["pick"].stop == stop
 

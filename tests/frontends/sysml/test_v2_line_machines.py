@@ -4,9 +4,9 @@ import pytest
 from msgspec.structs import replace
 from reading_v2 import read
 
+from refinement import run_all
 from sysmlc.logic.contract import Contract, IntegerDomain
 from sysmlc.logic.printing import print_formula
-from sysmlc.passes import pipeline
 from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.synthesis.games.game import make_game
 from sysmlc.synthesis.games.solver import solve
@@ -33,7 +33,7 @@ NEEDED = {
 
 def read_contracts():
     reading = read(LINE)
-    pipeline.run(reading.graph, reading.sink)
+    run_all(reading.graph, reading.sink)
     assert [diagnostic.rule.code for diagnostic in reading.sink] == []
     contracts = reading.graph.derived(Contract)
     return {contract.component.removeprefix("Lines::Line."): contract for contract in contracts}

@@ -6,11 +6,11 @@ from pathlib import Path
 import pytest
 from reading_v2 import read
 
+from refinement import run_all
 from sysmlc.diagnostics import Sink
 from sysmlc.logic.composition.derivation import compose_blocks
 from sysmlc.logic.contract import Contract, Owner
 from sysmlc.logic.printing import print_formula
-from sysmlc.passes import pipeline
 from sysmlc.synthesis import composition_check as together
 from sysmlc.synthesis.contract_checks import check_contracts
 from sysmlc.synthesis.decision import Options
@@ -95,7 +95,7 @@ package Cells {
 
 def compile_text(text):
     reading = read(text)
-    pipeline.run(reading.graph, reading.sink)
+    run_all(reading.graph, reading.sink)
     assert [diagnostic.message for diagnostic in reading.sink] == []
     return reading.graph
 

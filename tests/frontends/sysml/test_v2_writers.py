@@ -3,12 +3,13 @@
 import pytest
 from reading_v2 import read
 
+from refinement import run_all
+from sysmlc.analyses import analysis
 from sysmlc.diagnostics import Sink, catalogue
 from sysmlc.ir import Graph
 from sysmlc.logic.contract import Contract, Owner
-from sysmlc.passes import pipeline
 
-pipeline.load("contracts")
+analysis.load("contracts")
 
 PLANT = """
 package Plant {{
@@ -33,7 +34,7 @@ CLEAR = "first start; then action clear {{ assign {} := false; }} then done;"
 def write_plant(base="", actions="", step="", beside="", elsewhere="") -> tuple[Graph, Sink]:
     text = PLANT.format(base=base, own=actions, step=step, beside=beside, elsewhere=elsewhere)
     reading = read(text)
-    pipeline.run(reading.graph, reading.sink, verify_each=True)
+    run_all(reading.graph, reading.sink, verify_each=True)
     return reading.graph, reading.sink
 
 
@@ -118,7 +119,7 @@ def test_machines_of_one_name_are_told_apart():
         "part def P {{ attribute full : ScalarValues::Boolean; part a {{ {0} }} part b {{ {0} }} }}"
     )
     reading = read(text.format(machine))
-    pipeline.run(reading.graph, reading.sink, verify_each=True)
+    run_all(reading.graph, reading.sink, verify_each=True)
     assert list_messages(reading.sink) == [
         f"'full' is also assigned by 'P::{other}::mode', so the contract of 'mode' treats it as an "
         "input and shows 'full := true' as output 'full_true'"
@@ -138,7 +139,7 @@ def test_machines_of_one_name_are_told_apart():
 def test_the_finding_is_where_the_reason_is(old, new, place):
     text = PLANT.format(base="", own="", step="", beside=without_text("full"), elsewhere="")
     reading = read(text.replace(old, new))
-    pipeline.run(reading.graph, reading.sink, verify_each=True)
+    run_all(reading.graph, reading.sink, verify_each=True)
     names = [d.subject.name for d in reading.sink if d.rule.code == "SM544"]
     assert place in names
 
@@ -147,7 +148,7 @@ def test_the_rule_of_machines_reports_its_wrong_model_and_not_its_right_one():
     rule = catalogue()["SM546"]
     for text, expected in ((rule.read_page().wrong, True), (rule.read_page().right, False)):
         reading = read(text)
-        pipeline.run(reading.graph, reading.sink, verify_each=True)
+        run_all(reading.graph, reading.sink, verify_each=True)
         assert ("SM546" in [diagnostic.rule.code for diagnostic in reading.sink]) is expected
 
 

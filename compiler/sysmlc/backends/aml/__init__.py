@@ -24,6 +24,7 @@ class AmlBackend(Struct, frozen=True):
     name: str = "aml"
     summary: str = "the structure as AutomationML, CAEX 3.0, aml/*.aml"
     is_default: bool = False
+    needs: tuple[str, ...] = ()
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add a file for each AutomationML file of the unit, or one file for another model."""

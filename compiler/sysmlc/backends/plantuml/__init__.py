@@ -55,6 +55,7 @@ class PlantUml(Struct, frozen=True):
     name: str = "plantuml"
     summary: str = "block, internal block, activity, state machine, requirement, sequence, use case"
     is_default: bool = True
+    needs: tuple[str, ...] = ()
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Write every diagram that is not empty; report the elements that no diagram shows."""

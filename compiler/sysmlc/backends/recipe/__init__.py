@@ -22,11 +22,12 @@ EMPTY_RECIPE = rule(
 
 
 class RecipeBackend(Struct, frozen=True):
-    """Writes the models that the pass ``recipe`` derived (metamodels/sysmlc-recipe.schema.json)."""
+    """Writes the models of the analysis ``recipe`` (metamodels/sysmlc-recipe.schema.json)."""
 
     name: str = "recipe"
     summary: str = "three-level recipe models as JSON, one file a recipe"
     is_default: bool = True
+    needs: tuple[str, ...] = ("recipe",)
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add one file for each recipe.

@@ -35,6 +35,7 @@ class ReqTableBackend(Struct, frozen=True):
     name: str = "reqtable"
     summary: str = "requirement tables as CSV and Markdown"
     is_default: bool = False
+    needs: tuple[str, ...] = ()
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add ``requirements/<root>.requirements.csv`` and ``.md``; report open requirements."""

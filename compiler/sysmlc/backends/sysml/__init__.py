@@ -62,6 +62,7 @@ class SysmlBackend(Struct, frozen=True):
     name: str = "sysml"
     summary: str = "the model as SysML v2 text, sysml/*.sysml"
     is_default: bool = False
+    needs: tuple[str, ...] = ("recipe",)
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add the texts of the authors and ``sysml/<unit>.sysml``; report what texts omit."""

@@ -64,6 +64,7 @@ class UmlBackend(Struct, frozen=True):
     name: str = "uml"
     summary: str = "the model as SysML 1.6 in XMI for Papyrus, uml/*.uml"
     is_default: bool = False
+    needs: tuple[str, ...] = ()
 
     def emit(self, graph: Graph, output: Output, sink: Sink, options: EmitOptions) -> None:
         """Add ``uml/<unit>.uml`` and the shipped libraries; report what UML cannot express."""

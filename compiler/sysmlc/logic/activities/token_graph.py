@@ -1,7 +1,7 @@
 """Token graphs: activities as 1-safe token games.
 
-The pass ``activities`` derives a token graph from an activity diagram (UML 2.5.1, clauses 15 and
-16; fUML 1.5, clause 8). Contracts, the reference interpreter and back ends read it.
+The analysis ``activities`` derives a token graph from an activity diagram (UML 2.5.1, clauses 15
+and 16; fUML 1.5, clause 8). Contracts, the reference interpreter and back ends read it.
 
 In one step of the game, actions end, and their tokens pass all forks, joins, merges, object nodes,
 silent actions and final nodes on their way: what follows runs in the next step

@@ -65,8 +65,8 @@ def compose_blocks(graph: Graph, contracts: Iterable[Contract], sink: Sink) -> I
 
     A block may have contracts of its own. A contract whose outputs the parts only read is a further
     member (a controller, a coordinator). A contract whose outputs the parts decide is the
-    specification of the composition. *contracts* are those that the pass ``contracts`` derives from
-    the graph. The composites are in the order of their components.
+    specification of the composition. *contracts* are those that the analysis ``contracts`` derives
+    from the graph. The composites are in the order of their components.
     """
     handshakes = {game.activity: game.handshake for game in graph.derived(TokenGraph)}
     by_origin = {

@@ -1,0 +1,1 @@
+"""Analyses compute results from the refined graph, on demand, and never change it."""

@@ -1,0 +1,73 @@
+"""The interface of analyses, the table of the shipped ones, and the selection of those to run."""
+
+from collections.abc import Iterable
+from importlib import import_module
+from typing import ClassVar, Protocol, cast
+
+from msgspec import Struct
+
+from sysmlc.diagnostics import Sink
+from sysmlc.ir import Graph, Kind
+
+
+class Analysis(Protocol):
+    """A computation from the graph, which it does not change.
+
+    An analysis is a frozen value whose fields are its options. It runs after the passes, if a back
+    end or a command needs its result.
+    """
+
+    name: ClassVar[str]
+
+    def run(self, graph: Graph, sink: Sink) -> None:
+        """Store the result in the graph (``Graph.store``), and report faults of the model."""
+
+
+class _Entry(Struct, frozen=True):
+    target: str
+    """Module and class of the analysis."""
+    needs: tuple[str, ...] = ()
+    """Names of the analyses whose results it reads."""
+    library: str = ""
+    """Package without which the analysis has no result; empty if it needs no package."""
+
+
+_ANALYSES = {
+    "activities": _Entry("sysmlc.analyses.activities:Activities"),
+    "recipe": _Entry("sysmlc.analyses.recipe:Recipe", ("activities",)),
+    "platform": _Entry("sysmlc.analyses.platform:Platform", ("recipe",)),
+    "robots": _Entry("sysmlc.analyses.robots:Robots", library="Floors"),
+    "contracts": _Entry("sysmlc.analyses.contracts:Contracts", ("activities", "robots")),
+}
+"""The table of analyses. An analysis is imported when it runs for the first time."""
+NAMES = tuple(_ANALYSES)
+"""All analyses, each after those that it needs."""
+
+
+def load(name: str) -> Analysis:
+    """Import and return the analysis of this name with its default options.
+
+    Raises KeyError for an unknown name.
+    """
+    module, _, class_name = _ANALYSES[name].target.partition(":")
+    return cast("Analysis", getattr(import_module(module), class_name)())
+
+
+def expand(names: Iterable[str]) -> list[str]:
+    """Return the names of these analyses and of those that they need, in the order to run them.
+
+    Raises KeyError for an unknown name.
+    """
+    worklist, selected = list(names), set[str]()
+    while worklist:
+        name = worklist.pop()
+        if name not in selected:
+            selected.add(name)
+            worklist += _ANALYSES[name].needs
+    return [name for name in NAMES if name in selected]
+
+
+def has_result(name: str, graph: Graph) -> bool:
+    """Whether an analysis can have a result: the graph contains the library that it is about."""
+    library = _ANALYSES[name].library
+    return not library or any(p.name == library for p in graph.of_kind(Kind.PACKAGE))

@@ -1,0 +1,356 @@
+"""The context of the recipe analysis: graph, recipe levels, ids, and memoised results.
+
+For-each regions and blocks are inlined: their content belongs to the graph of the activity around
+them.
+"""
+
+from collections.abc import Iterator, Mapping
+
+from msgspec import Struct, field
+from msgspec.structs import replace
+
+from sysmlc.analyses.recipe.profile import (
+    Tags,
+    find_followers,
+    find_profile_stereotypes,
+    find_stated_levels,
+    read_tags,
+)
+from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.recipe.model import FlowGraph, Parameter, ValueType
+
+SERVICES = ("machine service", "infrastructure service")
+NODES = frozenset(
+    [
+        Kind.ACTION,
+        Kind.CONTROL,
+        Kind.STRUCTURED,
+        Kind.OBJECT_NODE,
+        Kind.DATA_STORE,
+        Kind.ACTIVITY_PARAMETER,
+    ]
+)
+
+
+class Call(Struct, frozen=True):
+    """The call of a service, machine function or helper: the ids of the node and of the callee."""
+
+    kind: str
+    node: str
+    definition: str
+
+
+class Refinement(Struct, frozen=True):
+    """The content of an activity that refines a task or a service.
+
+    ``decisions`` are pairs of an element id and a text for ``reports.report_decisions``: a node
+    whose content the recipe omits, with an empty text, or a called definition without a stated
+    level, with the level that the position of the call gives it.
+    """
+
+    graph: FlowGraph
+    calls: tuple[Call, ...]
+    decisions: tuple[tuple[str, str], ...]
+
+
+class Context(Struct, frozen=True):
+    """The graph with the levels given by options, model and stereotypes.
+
+    The fields with a leading underscore, and those from ``types`` on, memoise results.
+    """
+
+    graph: Graph
+    levels: Mapping[str, str] = field(default_factory=dict)
+    stated: Mapping[str, str] = field(default_factory=dict)
+    """Levels by id that elements do not take over from others, derived levels included."""
+    candidates: frozenset[str] = frozenset()
+    """Ids of elements that may have a level; most elements of a model have none."""
+    derived: Mapping[str, str] = field(default_factory=dict)
+    """Levels by id that ``derived_levels`` concludes; stated levels override them."""
+    stereotypes: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """Stereotypes of the shipped profile, and those with such generals, by application."""
+    stereotyped: frozenset[str] = frozenset()
+    """Ids of elements to which one of ``stereotypes`` is applied."""
+    _segments: dict[str, str] = field(default_factory=dict)
+    _names: dict[str, str] = field(default_factory=dict)
+    _levels: dict[str, str] = field(default_factory=dict)
+    _elements_by_level: dict[str, list[Element]] = field(default_factory=dict)
+    _literals: list[dict[str, str]] = field(default_factory=list)
+    _contents: dict[str, list[Element]] = field(default_factory=dict)
+    _nodes: dict[str, list[Element]] = field(default_factory=dict)
+    types: dict[str, ValueType] = field(default_factory=dict)
+    """Types of values by the id of the type element."""
+    parameters: dict[str, Parameter] = field(default_factory=dict)
+    """Parameters of recipes by the id of the parameter, pin or property."""
+    kinds: dict[tuple[str, str], str] = field(default_factory=dict)
+    """Kinds of recipe nodes by id and level of the activity."""
+    refined: dict[str, Element | None] = field(default_factory=dict)
+    """The refining activity by the id of the definition."""
+    refinements: dict[tuple[str, str], Refinement] = field(default_factory=dict)
+    """Refinements by the level of the refined element and the id of the activity."""
+    members: dict[str, dict[str, Element]] = field(default_factory=dict)
+    """Features by the id of the owner and by name."""
+
+    @classmethod
+    def build(cls, graph: Graph, levels: Mapping[str, str]) -> "Context":
+        """Return the context of a graph. *levels* by ids or qualified names override the model."""
+        bare = cls(graph, levels)
+        stereotypes = find_profile_stereotypes(graph)
+        stated = find_stated_levels(graph, stereotypes, levels, bare._segment)
+        applications = (graph[application] for application in stereotypes)
+        return replace(
+            bare,
+            stated=stated,
+            candidates=frozenset(find_followers(graph, stated)),
+            stereotypes=stereotypes,
+            stereotyped=frozenset(
+                subject.id
+                for application in applications
+                for subject in graph.targets(application, Edge.SUBJECT)
+            ),
+        )
+
+    # -- levels --------------------------------------------------------------------------------
+
+    def own_level(self, element: Element) -> str:
+        """Return the level that options, ``classify`` or a stereotype give the element."""
+        return self.stated.get(element.id, "")
+
+    def level(self, element: Element | None) -> str:
+        """Return the level of an element: its own, or that of its general, callee or type."""
+        if element is None or element.id not in self.candidates:
+            return ""
+        level = self._levels.get(element.id)
+        if level is None:
+            # The entry ends the recursion if types or generals form a cycle.
+            self._levels[element.id] = ""
+            level = self._levels[element.id] = self._find_level(element)
+        return level
+
+    def with_derived(self, derived: Mapping[str, str]) -> "Context":
+        """Return a context with derived levels by id, without memoised results that they change."""
+        changed = find_followers(self.graph, derived)
+        unaffected = {id: level for id, level in self._levels.items() if id not in changed}
+        return replace(
+            self,
+            stated={**derived, **self.stated},
+            candidates=self.candidates | changed,
+            derived=derived,
+            _levels=unaffected,
+            _elements_by_level={},
+            types={},
+            parameters={},
+            kinds={},
+            refinements={},
+        )
+
+    def elements_of_level(self, level: str) -> list[Element]:
+        """Return all elements of a level, in the order of the graph."""
+        if self.candidates and not self._elements_by_level:
+            for element in (element for element in self.graph if element.id in self.candidates):
+                self._elements_by_level.setdefault(self.level(element), []).append(element)
+        return self._elements_by_level.get(level, [])
+
+    def find_literal(self, name: str) -> Element | None:
+        """Return the literal ``Enumeration::literal``, or None if several have this name."""
+        if not self._literals:
+            self._literals.append(_index_literals(self.graph))
+        id = self._literals[0].get(_last_two(name))
+        return self.graph.get(id) if id else None
+
+    def _find_level(self, element: Element) -> str:
+        level = self.own_level(element)
+        if level:
+            return level
+        for general in query.generals(self.graph, element):
+            level = self.own_level(general)
+            if level:
+                return level
+        definition = self.definition(element)
+        if element.kind is Kind.OPERATION:
+            definition = self.graph.target(element, Edge.METHOD)
+        return "" if definition is None or definition is element else self.level(definition)
+
+    def definition(self, element: Element) -> Element | None:
+        """Return the definition of a use: the behaviour or operation that it calls, or its type."""
+        if element.kind is Kind.ACTION:
+            return self.graph.target(element, Edge.CALLS)
+        return query.type_of(self.graph, element)
+
+    # -- contents ------------------------------------------------------------------------------
+
+    def contents(self, activity: Element) -> list[Element]:
+        """Return the elements that an activity owns, and the content of inlined nodes."""
+        elements = self._contents.get(activity.id)
+        if elements is None:
+            elements = self._contents[activity.id] = list(_list_contents(self.graph, activity))
+        return elements
+
+    def nodes(self, activity: Element) -> list[Element]:
+        """Return the nodes of the activity, including those in for-each regions and blocks."""
+        nodes = self._nodes.get(activity.id)
+        if nodes is None:
+            elements = self.contents(activity)
+            nodes = self._nodes[activity.id] = [
+                element
+                for element in elements
+                if element.kind in NODES and query.is_performed(self.graph, element)
+            ]
+        return nodes
+
+    # -- stereotypes and tagged values ---------------------------------------------------------
+
+    def find_application(self, element: Element, stereotype: str) -> Element | None:
+        """Return the application of *stereotype*, or of a stereotype that specialises it."""
+        if not self.may_have_stereotype(element):
+            return None
+        applications = query.applications(self.graph, element)
+        return next(
+            (
+                application
+                for application in applications
+                if stereotype in self.stereotypes.get(application.id, ())
+            ),
+            None,
+        )
+
+    def may_have_stereotype(self, element: Element) -> bool:
+        """Whether a stereotype of the profile is applied to the element; most have none."""
+        return element.id in self.stereotyped
+
+    def tags(self, element: Element, stereotype: str) -> Tags:
+        """Return the tagged values of a stereotype of the profile; empty if it is not applied."""
+        return read_tags(self.graph, self.find_application(element, stereotype))
+
+    # -- ids -----------------------------------------------------------------------------------
+
+    def name(self, element: Element) -> str:
+        """Return the qualified name, the id of recipe elements.
+
+        An unnamed element is called by its kind, and the second element of a name gets ``#2``.
+        """
+        name = self._names.get(element.id)
+        if name is None:
+            owner, segment = self.graph.owner(element), self._segment(element)
+            name = segment if owner is None else f"{self.name(owner)}::{segment}"
+            self._names[element.id] = name
+        return name
+
+    def label(self, element: Element) -> str:
+        """Return the name of the element without its owners, or its kind and number if unnamed."""
+        return element.name or self._segment(element)
+
+    def reference(self, value: str) -> str:
+        """Return the recipe id of the element that a tagged value refers to, or else the value."""
+        element = self.graph.get(value)
+        return value if element is None else self.name(element)
+
+    def _segment(self, element: Element) -> str:
+        if element.id not in self._segments:
+            owner = self.graph.owner(element)
+            siblings = self.graph.roots() if owner is None else self.graph.owned(owner)
+            self._segments.update(_number_siblings(siblings))
+        return self._segments[element.id]
+
+
+def _index_literals(graph: Graph) -> dict[str, str]:
+    """Return ids of enumeration literals by the last two parts of their qualified names.
+
+    The id is empty if two literals have the same parts.
+    """
+    ids: dict[str, str] = {}
+    for literal in graph.of_kind(Kind.ENUMERATION_LITERAL):
+        name = _last_two(graph.qualified_name(literal))
+        ids[name] = "" if name in ids else literal.id
+    return ids
+
+
+def _last_two(name: str) -> str:
+    return "::".join(name.split("::")[-2:])
+
+
+def _number_siblings(siblings: list[Element]) -> Iterator[tuple[str, str]]:
+    seen: dict[str, int] = {}
+    for element in siblings:
+        word = segment_word(element)
+        number = seen[word] = seen.get(word, 0) + 1
+        yield element.id, word if number == 1 else f"{word}#{number}"
+
+
+def segment_word(element: Element) -> str:
+    """Return the part of a qualified name for an element: its name, or else its subkind or kind."""
+    return element.name or element.subkind or element.kind.lower()
+
+
+# -- structured nodes --------------------------------------------------------------------------
+
+_STEPS = frozenset([Kind.ACTION, Kind.CONTROL, Kind.STRUCTURED])
+_ENDS = ("final", "flow-final")
+
+
+def is_for_each(node: Element) -> bool:
+    """Whether a region takes the elements of a list one after the other (SysML v2 ``for``)."""
+    is_region = node.kind is Kind.STRUCTURED and node.subkind == "expansion"
+    return is_region and node.attrs.get("mode") == "iterative" and "collection" in node.attrs
+
+
+def is_block(graph: Graph, node: Element) -> bool:
+    """Whether a node only groups steps: a structured node with one entry and without forks."""
+    if node.kind is not Kind.STRUCTURED or node.subkind not in ("", "structured"):
+        return False
+    steps = list_steps(graph, node)
+    forks = any(step.subkind == "fork" for step in steps)
+    return bool(steps) and not forks and len(find_entries(graph, node)) == 1
+
+
+def is_inlined(graph: Graph, node: Element) -> bool:
+    """Whether the content of the node belongs to the graph of the activity around it."""
+    if node.kind is not Kind.STRUCTURED or not query.is_performed(graph, node):
+        return False
+    return is_for_each(node) or is_block(graph, node)
+
+
+def _list_contents(graph: Graph, activity: Element) -> Iterator[Element]:
+    """Yield the elements that an activity owns; each inlined node is followed by its content."""
+    for element in graph.owned(activity):
+        yield element
+        if is_inlined(graph, element):
+            yield from _list_contents(graph, element)
+
+
+def list_steps(graph: Graph, region: Element) -> list[Element]:
+    """Return the nodes that a structured node owns directly, without object nodes."""
+    return [
+        element
+        for element in graph.owned(region)
+        if element.kind in _STEPS and query.is_performed(graph, element)
+    ]
+
+
+def find_entries(graph: Graph, region: Element) -> list[Element]:
+    """Return the first nodes in a region: initial nodes, or else nodes without predecessor."""
+    steps = list_steps(graph, region)
+    targets = {target for _, target in _list_successions(graph, region)}
+    starts = [step for step in steps if step.subkind == "initial"]
+    return starts or [step for step in steps if step.id not in targets]
+
+
+def find_exits(graph: Graph, region: Element) -> list[Element]:
+    """Return the last nodes in a region: final nodes, and nodes without successor."""
+    sources = {source for source, _ in _list_successions(graph, region)}
+    steps = list_steps(graph, region)
+    return [step for step in steps if step.subkind in _ENDS or step.id not in sources]
+
+
+def _list_successions(graph: Graph, region: Element) -> Iterator[tuple[str, str]]:
+    """Yield the pairs of consecutive nodes in a region."""
+    for flow in graph.owned(region):
+        if flow.kind in (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW):
+            source, target = query.flow_source(graph, flow), query.flow_target(graph, flow)
+            if source is not None and target is not None:
+                yield _step_of_end(graph, source).id, _step_of_end(graph, target).id
+
+
+def _step_of_end(graph: Graph, end: Element) -> Element:
+    owner = graph.owner(end)
+    return owner if end.kind is Kind.PIN and owner is not None else end
