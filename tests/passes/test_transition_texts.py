@@ -145,3 +145,53 @@ def test_a_feature_with_one_value_is_a_variable(multiplicity):
 def test_an_effect_that_names_nothing_is_an_error(effect, code):
     (finding,) = list_text_findings(effect=effect)
     assert finding.startswith(f"{code}: ")
+
+
+WITHOUT_TEXTS = """\
+Package p "P"
+  Class c "Cell" role="block"
+    StateMachine m "M"
+      Region r "r"
+        Pseudostate i "i" subkind="initial"
+        State a "A"
+          -> entry e
+          Activity e "" subkind="opaque" body=""
+        State b "B"
+        Transition t0
+          -> flow-source i
+          -> flow-target a
+        Transition t1 guard=""
+          -> flow-source a
+          -> flow-target b
+          -> trigger g1
+          Trigger g1 subkind="time" when=""
+        Transition t2 guard=""
+          -> flow-source b
+          -> flow-target a
+          -> trigger g2
+          -> effect ef
+          Trigger g2 subkind="change" condition=""
+          Activity ef "" subkind="opaque" body=" "
+    Activity w "work"
+      Constraint k body="" subkind="precondition"
+      Control w1 "start" subkind="initial"
+      Action w2 "x" subkind="accept"
+        -> trigger g3
+        Trigger g3 subkind="change" condition=""
+      Control w3 "done" subkind="final"
+      ControlFlow f1 guard=""
+        -> flow-source w1
+        -> flow-target w2
+      ControlFlow f2 guard=""
+        -> flow-source w2
+        -> flow-target w3
+    Operation op
+      Constraint k2 body=" " subkind="postcondition"
+"""
+
+
+def test_no_message_quotes_a_text_that_is_empty():
+    sink = derive_contracts(WITHOUT_TEXTS)[2]
+    messages = {diagnostic.rule.code: diagnostic.message for diagnostic in sink}
+    assert {"SM411", "SM417", "SM458", "SM468", "SM505"} <= set(messages)
+    assert [message for message in messages.values() if "''" in message] == []

@@ -9,6 +9,7 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, list_items
 from sysmlc.ir.query import BEHAVIORS, features, parameters, redefined_features
 from sysmlc.passes.transition_names import read_transition_names
+from sysmlc.support.counts import count
 
 CALL_OF_NOTHING = rule(
     "SM400",
@@ -28,7 +29,7 @@ CALL_ARGUMENTS = rule(
     "SM401",
     "call-arguments",
     Severity.WARNING,
-    "pins of action '{action}': {pins}; parameters of '{called}': {parameters}",
+    "action '{action}' has {pins}, but '{called}' has {parameters}",
     help="let the modelling tool synchronise the pins of the action",
 )
 NO_BEHAVIOR = rule(
@@ -189,8 +190,8 @@ def _check_pins(graph: Graph, sink: Sink, action: Element, called: Element) -> N
     pin_counts = Counter(str(pin.attrs.get("direction", "in")) for pin in pins)
     ins, outs = _count_parameters(graph, called)
     differing = [
-        (direction, pin_counts[direction], wanted)
-        for direction, wanted in (("in", ins), ("out", outs))
+        (word, pin_counts[direction], wanted)
+        for direction, word, wanted in (("in", "input", ins), ("out", "output", outs))
         if pin_counts[direction] != wanted
     ]
     if differing:
@@ -198,9 +199,11 @@ def _check_pins(graph: Graph, sink: Sink, action: Element, called: Element) -> N
             CALL_ARGUMENTS,
             graph.subject(action),
             action=graph.qualified_name(action),
-            pins=" and ".join(f"{count} {direction}" for direction, count, _ in differing),
+            pins=" and ".join(count(number, f"{word} pin") for word, number, _ in differing),
             called=graph.qualified_name(called),
-            parameters=" and ".join(f"{wanted} {direction}" for direction, _, wanted in differing),
+            parameters=" and ".join(
+                count(wanted, f"{word} parameter") for word, _, wanted in differing
+            ),
         )
 
 

@@ -185,7 +185,9 @@ def _add_waiting_guard(draft: Draft, flow: Flow, source: str, marked: bool) -> s
     target = draft.drawing.labels[flow.target.id]
     name = flow_label(flow.element, source_label, target)
     subject = draft.graph.subject(flow.element)
-    draft.sink.report(rules.WAITING_GUARD, subject, text=_guard_text(flow), flow=name)
+    text = _guard_text(flow)
+    guard = f"the guard '{text}'" if text else "a guard without text"
+    draft.sink.report(rules.WAITING_GUARD, subject, guard=guard, flow=name)
     return node.id
 
 

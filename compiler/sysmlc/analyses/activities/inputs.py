@@ -289,8 +289,7 @@ class Inputs:
             rules.UNREADABLE,
             subject,
             help=error.advice,
-            what=what,
-            text=text,
+            condition=f"{what} '{text}'" if text else what,
             reason=str(error),
             variable=name,
         )

@@ -79,7 +79,7 @@ UNREADABLE = rule(
     "SM458",
     "guard-in-plain-words",
     Severity.WARNING,
-    "{what} '{text}' has no formula: {reason}; it becomes the input '{variable}'",
+    "{condition} has no formula: {reason}; it becomes the input '{variable}'",
     help="write it as an expression over properties of the block, for example 'angle > 90'",
 )
 WEIGHT = rule(
@@ -128,8 +128,7 @@ WAITING_GUARD = rule(
     "SM468",
     "guard-outside-decision",
     Severity.INFO,
-    "the guard '{text}' is on {flow}, which does not leave a decision; the token waits until "
-    "it holds",
+    "{guard} is on {flow}, which does not leave a decision; the token waits until it holds",
     help="put a decision node before the flow and say what happens else",
 )
 EMPTY = rule(

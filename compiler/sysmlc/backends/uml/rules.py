@@ -63,8 +63,8 @@ RESPELT_ID = rule(
     "SM747",
     "uml-value-names-respelt-id",
     Severity.WARNING,
-    "values with the ID of an element that is no valid XML name ({count}): the saved "
-    "elements have other ids",
+    "an ID is not a valid XML name, so that its element has another id in the saved model; values "
+    "that name the ID ({count}) lead nowhere there",
     help=(
         "let the plant's tool assign IDs that start with a letter, or follow these "
         "values in the plant and not in the saved model"

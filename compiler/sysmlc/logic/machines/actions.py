@@ -48,7 +48,7 @@ NOT_UNDERSTOOD = rule(
     "SM411",
     "opaque-condition",
     Severity.WARNING,
-    "{what} '{text}' has no formula: {reason}; the contract treats it as the input '{variable}'",
+    "{condition} has no formula: {reason}; the contract treats it as the input '{variable}'",
     help=FINITE_ADVICE,
 )
 _SYNTAX_ADVICE = "write an expression over features of the owner"
@@ -207,8 +207,7 @@ def _replace_empty(reading: ReadingContext, what: str, element: Element) -> Expr
         NOT_UNDERSTOOD,
         reading.graph.subject(element),
         help=EMPTY_ADVICE,
-        what=what,
-        text="",
+        condition=what,
         reason="it has no text that can be read",
         variable=variable,
     )
@@ -280,6 +279,7 @@ def _replace_by_input(
         help=advice,
         what=what,
         text=text,
+        condition=f"{what} '{text}'",
         reason=reason,
         variable=variable,
         name=name,

@@ -129,7 +129,7 @@ OPAQUE_TIME = rule(
     "SM417",
     "opaque-time",
     Severity.WARNING,
-    "time '{text}' {reason}; the contract treats the event as the input '{variable}'",
+    "{time} {reason}; the contract treats the event as the input '{variable}'",
     help="{advice}",
 )
 _SECONDS = {
@@ -187,7 +187,9 @@ def _make_time_input(reading: ReadingContext, trigger: Element) -> str:
     """Report a time that is not constant and return the Boolean input that replaces it."""
     text = str(trigger.attrs.get("when", "")) or trigger.name
     variable = reading.input_for(f"time {text}", f"time_{text}", trigger.id)
-    if _is_relative(trigger, text):
+    if not text:
+        reason, advice = "is not stated", "write 'after' and a duration"
+    elif _is_relative(trigger, text):
         reason = "is not a number"
         advice = "write a number, or a number with a unit, if the duration is constant"
     else:
@@ -196,7 +198,7 @@ def _make_time_input(reading: ReadingContext, trigger: Element) -> str:
     reading.sink.report(
         OPAQUE_TIME,
         reading.graph.subject(trigger),
-        text=text,
+        time=f"time '{text}'" if text else "the time of a trigger",
         reason=reason,
         advice=advice,
         variable=variable,

@@ -33,7 +33,7 @@ NOT_FORMAL = rule(
     "SM505",
     "condition-not-formal",
     Severity.INFO,
-    "the {kind} '{text}' of '{service}' is in no contract: {reason}{further}",
+    "the {condition} of '{service}' is in no contract: {reason}{further}",
     help="compare Booleans, enumerations and Integers for a contract about it",
 )
 _ORDERS = frozenset(["<", "<=", ">", ">="])
@@ -273,12 +273,13 @@ class _InformalConditions:
             others = len(conditions) - 1
             noun = "condition" if is_language else "service"
             further = f"; the same holds for {count(others, f'more {noun}')}" if others else ""
+            kind = _KIND_WORDS.get(constraint.subkind, constraint.subkind)
+            text = str(constraint.attrs["body"]).strip()
             sink.report(
                 NOT_FORMAL,
                 graph.subject(constraint),
-                kind=_KIND_WORDS.get(constraint.subkind, constraint.subkind),
-                text=str(constraint.attrs["body"]),
-                service=service.name,
+                condition=f"{kind} '{text}'" if text else kind,
+                service=service.name or graph.qualified_name(service),
                 reason=reason,
                 further=further,
                 help=_LANGUAGE_ADVICE if is_language else "",
