@@ -21,7 +21,7 @@ OPEN = rule(
     help="connect '{name}'",
     page="# SM944 test-open-end\n\n## Why\n\nSomething must be at both ends.\n",
 )
-ODD = rule("SM945", "test-odd-name", Severity.INFO, "'{name}' is odd")
+ODD = rule("TEST945", "test-odd-name", Severity.INFO, "'{name}' is odd")
 MODEL = """\
 <uml:Model xmlns:uml="u">
   <ownedConnector name="belt"/>
@@ -136,7 +136,7 @@ def test_sarif_has_the_fields_that_scanning_services_read():
     log = json.loads(render(report, "sarif"))
     assert list(Draft202012Validator(SARIF).iter_errors(log)) == []
     sarif_run = log["runs"][0]
-    assert [entry["id"] for entry in sarif_run["tool"]["driver"]["rules"]] == ["SM944", "SM945"]
+    assert [entry["id"] for entry in sarif_run["tool"]["driver"]["rules"]] == ["SM944", "TEST945"]
     assert [result["ruleIndex"] for result in sarif_run["results"]] == [0, 1, 1]
     assert sarif_run["results"][0]["locations"][0]["properties"] == {
         "xpath": "/uml:Model/ownedConnector[1]"

@@ -1,5 +1,6 @@
 """Which passes and back ends run, the options of passes, and plug-ins of other distributions."""
 
+import sys
 import tomllib
 from dataclasses import dataclass
 from importlib import import_module
@@ -249,19 +250,61 @@ def test_a_pass_that_cannot_be_used_is_ignored_with_a_warning(folder, entry, mes
     assert {step.name for step in passes} == set(pipeline.NAMES)
 
 
+SPACE = "from types import SimpleNamespace as S\nTHING = S(after=(), summary='', is_default=True"
+PLUG_IN_FAULTS = {
+    "import lost": "cannot be loaded: ModuleNotFoundError: No module named 'lost' (SOURCE, 1)",
+    "LIMIT = 3\nraise ValueError('boom')": "cannot be loaded: ValueError: boom (SOURCE, 2)",
+    "import sys\nsys.exit(3)": "cannot be loaded: SystemExit: 3 (SOURCE, 2)",
+    "THING = 3": "has no member 'name' of type str (SOURCE)",
+    "class THING: name = 'thing'": "is a class: name an instance of it (SOURCE)",
+    f"{SPACE}, name='thing')": "has no method 'METHOD' (SOURCE)",
+    f"{SPACE}, name='x', run=print, emit=print)": "is called 'x': "
+    "the names of the KIND and of its entry point must be equal (SOURCE)",
+}
+"""What the module of a plug-in contains, and the warning; a number is a line of the module."""
+
+
+@pytest.mark.parametrize("content", PLUG_IN_FAULTS)
+@pytest.mark.parametrize(("kind", "method"), [("pass", "run"), ("back end", "emit")])
+def test_a_plug_in_that_cannot_be_used_is_a_warning_with_its_place(folder, content, kind, method):
+    sys.modules.pop("acme_plug", None)
+    (folder / "acme_plug.py").write_text(content + "\n")
+    group = {"pass": "sysmlc.passes", "back end": "sysmlc.backends"}[kind]
+    install_distribution(folder, "acme", group, "thing = acme_plug:THING")
+    load = {"pass": lambda: registry.load_passes({}), "back end": lambda: select_backends([])}[kind]
+    with pytest.warns(PlugInWarning) as warnings:
+        plug_ins = load()
+    assert "thing" not in {plug_in.name for plug_in in plug_ins}
+    fault = PLUG_IN_FAULTS[content].replace("KIND", kind).replace("METHOD", method)
+    fault = fault.replace("SOURCE, ", f"SOURCE, {folder / 'acme_plug.py'}:")
+    fault = fault.replace("SOURCE", "acme_plug:THING of acme")
+    messages = [str(warning.message) for warning in warnings]
+    assert messages == [f"{kind} 'thing' {fault}; the plug-in is ignored"]
+
+
+def test_passes_of_plug_ins_that_wait_for_one_another_are_ignored(folder):
+    sys.modules.pop("counting_elements", None)
+    module = PASS_MODULE.replace('("views",)', '("census",)')
+    (folder / "counting_elements.py").write_text(module)
+    install_distribution(folder, "counting", "sysmlc.passes", "census = counting_elements:PASS")
+    with pytest.warns(PlugInWarning, match="passes wait for one another: census"):
+        passes = registry.load_passes({})
+    assert {step.name for step in passes} == set(pipeline.NAMES)
+
+
 @pytest.fixture
 def restore_catalogue():
     """Remove the rule of the plug-in after the test."""
     yield
     catalogue = import_module("sysmlc.diagnostics.rule")
-    catalogue._rules.pop("SM947", None)
+    catalogue._rules.pop("ACME4", None)
     catalogue._names.discard("long-name")
 
 
 def test_rules_of_a_pass_are_in_the_catalogue(folder, restore_catalogue):
     (folder / "strict_names.py").write_text(
         "from sysmlc.diagnostics import Severity, rule\n"
-        'LONG = rule("SM947", "long-name", Severity.INFO, "a long name")\n' + PASS_MODULE
+        'LONG = rule("ACME4", "long-name", Severity.INFO, "a long name")\n' + PASS_MODULE
     )
     install_distribution(folder, "strictness", "sysmlc.passes", "census = strict_names:PASS")
-    assert registry.load_full_catalogue()["SM947"].name == "long-name"
+    assert registry.load_full_catalogue()["ACME4"].name == "long-name"

@@ -21,7 +21,7 @@ def restore_catalogue():
     """Remove the rule that an example defines, after the test."""
     yield
     catalogue = import_module("sysmlc.diagnostics.rule")
-    catalogue._rules.pop("SM946", None)
+    catalogue._rules.pop("ACME003", None)
     catalogue._names.discard("port-prefix")
 
 

@@ -20,6 +20,8 @@ from msgspec import Struct
 
 PAGES = Path(__file__).with_name("rules")
 """The folder of the pages of sysmlc's own rules, ``<code>.md`` each."""
+_CODE = re.compile(r"[A-Z]+\d+")
+_NAME = re.compile(r"[a-z][a-z0-9]*(-[a-z0-9]+)*")
 _SECTION = re.compile(r"^## (Why|Wrong|Right|In Papyrus)\n", re.MULTILINE)
 _FENCED = re.compile(r"```(\w+)\n(.*)```", re.DOTALL)
 
@@ -84,13 +86,21 @@ def rule(
 ) -> Rule:
     """Create a rule and add it to the catalogue.
 
-    Raises ValueError if the code or the name is taken.
+    The code consists of a prefix, ``SM`` for the rules of sysmlc, and a number. Raises ValueError
+    if the code or the name has another form or belongs to another rule.
     """
+    if not (_CODE.fullmatch(code) and _NAME.fullmatch(name)):
+        expected = "a code such as ACME001 and a name such as open-end"
+        raise ValueError(f"rule {code} {name}: expected {expected}")
+    created = Rule(code, name, severity, phrase, help, page)
+    # A module of a plug-in that could not be imported is executed again by the next attempt.
+    if _rules.get(code) == created:
+        return created
     if code in _rules or name in _names:
         raise ValueError(f"rule {code} {name}: the code or the name is taken")
-    _rules[code] = Rule(code, name, severity, phrase, help, page)
+    _rules[code] = created
     _names.add(name)
-    return _rules[code]
+    return created
 
 
 def catalogue() -> dict[str, Rule]:

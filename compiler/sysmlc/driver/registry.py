@@ -7,11 +7,12 @@ of sysmlc. The rules of a plug-in are those that its modules define when they ar
 import dataclasses
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
 from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
+from pathlib import Path
 from pkgutil import walk_packages
-from typing import TYPE_CHECKING, Any, TypeVar, cast
+from traceback import extract_tb
+from typing import Any, TypeVar, cast
 
 from msgspec import Struct, structs
 
@@ -25,13 +26,16 @@ from sysmlc.passes import pipeline
 from sysmlc.passes.pipeline import Pass
 from sysmlc.support.suggestions import did_you_mean
 
-if TYPE_CHECKING:
-    from _typeshed import DataclassInstance
-
 BACKEND_GROUP = "sysmlc.backends"
 """Entry point group of back ends; an entry names an object with the protocol ``Backend``."""
 PASS_GROUP = "sysmlc.passes"
 """Entry point group of passes; an entry names an object with the protocol ``Pass``."""
+
+_INTERFACES: Mapping[str, tuple[str, Mapping[str, type]]] = {
+    "pass": ("run", {"name": str, "after": tuple}),
+    "back end": ("emit", {"name": str, "summary": str, "is_default": bool}),
+}
+"""The method and the other members of plug-ins."""
 
 _FRONTENDS = tuple(f"sysmlc.frontends.{name}" for name in ("xmi", "huds", "caex", "sysml", "ir"))
 _BACKENDS = {
@@ -82,6 +86,10 @@ class BackendError(Exception):
     """A back end is unknown or cannot be loaded."""
 
 
+class PlugInError(Exception):
+    """A plug-in cannot be loaded, or is no pass or back end."""
+
+
 class PlugInWarning(UserWarning):
     """A plug-in that no option names is ignored, because it cannot be used."""
 
@@ -115,7 +123,11 @@ def load_passes(options: Mapping[str, Mapping[str, object]]) -> list[Pass]:
     loaded = [pipeline.load(name) for name in pipeline.NAMES]
     loaded += [step for entry in plug_ins.values() if (step := _load_pass(entry)) is not None]
     configured = [_set_options(step, options.get(step.name, {})) for step in loaded]
-    return pipeline.sort_passes(configured)
+    try:
+        return pipeline.sort_passes(configured)
+    except ValueError as problem:
+        _ignore_plug_in(str(problem))
+        return pipeline.sort_passes(step for step in configured if step.name in pipeline.NAMES)
 
 
 def load_analysis(name: str, options: Mapping[str, Mapping[str, object]]) -> Analysis:
@@ -136,10 +148,48 @@ def _load_pass(entry: EntryPoint) -> Pass | None:
         _ignore_plug_in(f"the plug-in {entry.value} takes the name of pass '{entry.name}'")
         return None
     try:
-        return cast("Pass", entry.load())
-    except Exception as problem:
-        _ignore_plug_in(f"pass '{entry.name}' cannot be loaded: {problem!r}")
+        return cast("Pass", _load_plug_in(entry, "pass"))
+    except PlugInError as problem:
+        _ignore_plug_in(str(problem))
         return None
+
+
+def _load_plug_in(entry: EntryPoint, kind: str) -> object:
+    """Return the pass or back end that an entry point names. Raises PlugInError."""
+    distribution = f" of {entry.dist.name}" if entry.dist else ""
+    source = f"{entry.value}{distribution}"
+    try:
+        plug_in = entry.load()
+    # A module may call sys.exit() when it is imported.
+    except (Exception, SystemExit) as problem:
+        place = _find_fault(problem, entry.module)
+        text = f"{kind} '{entry.name}' cannot be loaded: {type(problem).__name__}: {problem}"
+        raise PlugInError(f"{text} ({source}{place})") from problem
+    method, members = _INTERFACES[kind]
+    if isinstance(plug_in, type):
+        raise PlugInError(f"{kind} '{entry.name}' is a class: name an instance of it ({source})")
+    for member, type_ in members.items():
+        if not isinstance(getattr(plug_in, member, None), type_):
+            needed = f"'{member}' of type {type_.__name__}"
+            raise PlugInError(f"{kind} '{entry.name}' has no member {needed} ({source})")
+    if not callable(getattr(plug_in, method, None)):
+        raise PlugInError(f"{kind} '{entry.name}' has no method '{method}' ({source})")
+    name = cast("Any", plug_in).name
+    if name != entry.name:
+        advice = f"the names of the {kind} and of its entry point must be equal"
+        raise PlugInError(f"{kind} '{entry.name}' is called '{name}': {advice} ({source})")
+    return cast("object", plug_in)
+
+
+def _find_fault(problem: BaseException, module: str) -> str:
+    """Return file and line of the last call in the package of a plug-in, after a comma."""
+    package = module.partition(".")[0]
+    places = [
+        f", {frame.filename}:{frame.lineno}"
+        for frame in extract_tb(problem.__traceback__)
+        if package in Path(frame.filename).with_suffix("").parts
+    ]
+    return places[-1] if places else ""
 
 
 def _ignore_plug_in(reason: str) -> None:
@@ -167,7 +217,9 @@ def _list_option_names(step: Pass | Analysis) -> list[str]:
     """Return the options of a step, which is a struct or, in a plug-in, maybe a dataclass."""
     if isinstance(step, Struct):
         return list(step.__struct_fields__)
-    return [field.name for field in dataclasses.fields(cast("DataclassInstance", step))]
+    if not dataclasses.is_dataclass(step):
+        return []
+    return [field.name for field in dataclasses.fields(step)]
 
 
 def _has_type_of(value: object, default: object) -> bool:
@@ -261,12 +313,9 @@ def load_full_catalogue(note: Callable[[str], None] = lambda _: None) -> dict[st
             except Exception as problem:
                 note(f"the rules of {module} are missing: {problem!r}")
     foreign = _find_foreign_backends()
-    for name in foreign:
-        with suppress(BackendError):
-            _load(name, foreign)
+    _load_usable(foreign, foreign)
     for entry in find_plug_ins(PASS_GROUP).values():
-        with suppress(ConfigError):
-            _load_pass(entry)
+        _load_pass(entry)
     return catalogue()
 
 
@@ -289,7 +338,9 @@ def _load(name: str, foreign: dict[str, EntryPoint]) -> Backend:
         if name in _BACKENDS:
             module, _, variable = _BACKENDS[name].partition(":")
             return cast("Backend", getattr(import_module(module), variable))
-        return cast("Backend", foreign[name].load())
+        return cast("Backend", _load_plug_in(foreign[name], "back end"))
+    except PlugInError as problem:
+        raise BackendError(str(problem)) from problem
     except Exception as problem:
         raise BackendError(f"back end '{name}' cannot be loaded: {problem!r}") from problem
 

@@ -9,11 +9,11 @@ from sysmlc.ir import Element, Graph, Kind
 from sysmlc.support.output import Output, assign_file_names
 
 NO_PORTS = rule(
-    "SM949",
+    "ACME001",
     "outline-without-ports",
     Severity.WARNING,
     "block '{block}' has no ports to outline",
-    page=Path(__file__).with_name("SM949.md").read_text(encoding="utf-8"),
+    page=Path(__file__).with_name("ACME001.md").read_text(encoding="utf-8"),
 )
 
 

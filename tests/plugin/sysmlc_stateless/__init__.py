@@ -8,12 +8,12 @@ from msgspec import Struct
 from sysmlc import Graph, Kind, Severity, Sink, rule
 
 STATELESS_MACHINE = rule(
-    "SM948",
+    "ACME002",
     "stateless-machine",
     Severity.WARNING,
     "state machine '{machine}' has no states",
     help="draw the states, or remove the state machine",
-    page=Path(__file__).with_name("SM948.md").read_text(encoding="utf-8"),
+    page=Path(__file__).with_name("ACME002.md").read_text(encoding="utf-8"),
 )
 
 
