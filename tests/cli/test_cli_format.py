@@ -97,6 +97,18 @@ def test_permissions_are_preserved(tmp_path):
     assert (real.read_text(), real.stat().st_mode & 0o777) == (NEAT, 0o600)
 
 
+def test_links_in_a_folder_are_named_and_not_followed(tmp_path):
+    outside, folder = tmp_path / "outside.sysml", tmp_path / "models"
+    outside.write_text(UGLY)
+    folder.mkdir()
+    (folder / "neat.sysml").write_text(NEAT)
+    (folder / "link.sysml").symlink_to(outside)
+    result = run_format(folder)
+    link = f"'{folder.as_posix()}/link.sysml' is a link; it is not formatted"
+    assert result.stderr == f"sysmlc: warning: {link}\n0 of 1 file reformatted\n"
+    assert outside.read_text() == UGLY
+
+
 def test_a_symbolic_link_is_refused(tmp_path):
     """A link in a repository may lead to any file of the user."""
     real, link = tmp_path / "real.sysml", tmp_path / "link.sysml"

@@ -131,6 +131,27 @@ def test_the_order_of_parameters_matters_and_that_of_ports_does_not():
     assert list_changes(old.replace("Parameter", "Port"), new.replace("Parameter", "Port")) == []
 
 
+@pytest.mark.parametrize(
+    ("owner", "owned"),
+    [
+        ("Operation", "Parameter"),
+        ("Reception", "Parameter"),
+        ("Activity", "Parameter"),
+        ("StateMachine", "Parameter"),
+        ("Action", "Pin"),
+        ("Enumeration", "EnumerationLiteral"),
+        *(("Interaction", owned) for owned in ("Occurrence", "Execution", "Fragment")),
+        *(("Operand", owned) for owned in ("Occurrence", "Execution", "Fragment")),
+        ("Fragment", "Operand"),
+    ],
+)
+def test_the_order_of_what_has_a_sequence_matters(owner, owned):
+    first, second = f'    {owned} a "a"\n', f'    {owned} b "b"\n'
+    head = f'Package p "P"\n  {owner} o "go"\n'
+    (change,) = compare(parse_text(head + first + second), parse_text(head + second + first))
+    assert (str(change.what), change.aspect) == ("reordered", "order")
+
+
 def test_changes_of_stereotypes_and_tags_are_reported_at_the_stereotyped_element():
     old = (
         'Class c "Robot"\n'

@@ -1,6 +1,10 @@
 """The parser builds the trees that the productions of the standard describe."""
 
+import pytest
 from tree_outlines import parse_outline
+
+from sysmlc.diagnostics import Sink
+from sysmlc.language.text import parse
 
 
 def parse_members(text, language="sysml"):
@@ -371,3 +375,28 @@ def test_bindings_of_kerml_have_names_types_or_neither():
         "FeatureMembership BindingConnector x",
         "FeatureMembership BindingConnector FeatureTyping->B",
     ]
+
+
+@pytest.mark.parametrize(
+    ("language", "usage", "ends"),
+    [
+        ("kerml", "connector from a to b;", ["Feature", "Feature"]),
+        ("kerml", "binding a = b;", ["Feature", "Feature"]),
+        ("kerml", "succession first a then b;", ["Feature", "Feature"]),
+        ("kerml", "flow from a.x to b.y;", ["FlowEnd Feature", "FlowEnd Feature"]),
+        ("kerml", "succession flow from a.x to b.y;", ["FlowEnd Feature", "FlowEnd Feature"]),
+        ("sysml", "connect a to b;", ["ReferenceUsage", "ReferenceUsage"]),
+        ("sysml", "bind a = b;", ["ReferenceUsage", "ReferenceUsage"]),
+        ("sysml", "succession first a then b;", ["ReferenceUsage", "ReferenceUsage"]),
+        ("sysml", "interface connect a to b;", ["PortUsage", "PortUsage"]),
+        ("sysml", "flow from a.x to b.y;", ["FlowEnd ReferenceUsage"] * 2),
+        ("sysml", "succession flow from a.x to b.y;", ["FlowEnd ReferenceUsage"] * 2),
+        ("sysml", "message from a.x to b.y;", ["EventOccurrenceUsage"] * 2),
+    ],
+)
+def test_each_kind_of_connector_has_its_kind_of_ends(language, usage, ends):
+    """SysML 2.0, 8.2.2.13 and 8.2.2.16; KerML 1.0, 8.2.5.5 and 8.2.5.9."""
+    document = parse(f"package P {{ {usage} }}", "m", language, Sink())
+    (connector,) = document.root.members[0].members
+    kinds = [[end.kind, *(inner.kind for inner in end.members)] for end in connector.members]
+    assert list(map(" ".join, kinds)) == ends

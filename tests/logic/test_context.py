@@ -47,6 +47,19 @@ def read_features(members="", default=""):
     return context_of(graph, graph["c"]).features
 
 
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("Integer", "int", "Natural", "Positive", "UnlimitedNatural", "EInt", "short", "long"),
+        "byte",
+    ],
+)
+def test_names_of_integer_types_are_those_of_uml_sysml_ecore_and_java(name):
+    text = f'Class c "C"\n  Property p "p"\n    -> typed-by t\nDataType t "{name}"\n'
+    graph = parse_text(text)
+    assert isinstance(context_of(graph, graph["c"]).features["p"].domain, IntegerDomain)
+
+
 def test_domains_come_from_types():
     features = read_features()
     assert {name: feature.domain for name, feature in features.items()} == {

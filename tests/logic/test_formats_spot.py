@@ -133,3 +133,16 @@ def test_an_assumption_about_the_next_output_is_named(format_name):
     with pytest.raises(NotExpressibleError) as caught:
         formats.write(Contract("C", "", VARIABLES, (assumption,), ()), format_name)
     assert caught.value.conjunct == assumption
+
+
+def test_propositions_of_spot_may_be_quoted():
+    texts = ('G ("a" -> F "c") & 1', "G (a -> F c) & 1")
+    quoted, plain = (
+        formats.read(f"{text}\n.inputs a b\n.outputs c d\n", "C.txt", Sink(), "spot")[0]
+        for text in texts
+    )
+    assert quoted.guarantees == plain.guarantees
+    assert [variable.name for variable in quoted.variables] == [*"abcd"]
+    sink = Sink()
+    formats.read('G "x y"\n.inputs a\n.outputs c\n', "C.txt", sink, "spot")
+    assert ["'x y' is among neither" in found.message for found in sink] == [True]

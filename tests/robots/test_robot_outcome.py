@@ -20,7 +20,7 @@ from sysmlc.robots.robot_controller import (
     synthesise_robot,
     travel_times_of,
 )
-from sysmlc.robots.schedule import build_schedule, shortest_travel_times
+from sysmlc.robots.schedule import START, build_schedule, shortest_travel_times
 from sysmlc.robots.validation import validate_allocation
 from sysmlc.synthesis import Limits
 from sysmlc.synthesis.decision import Options, decide
@@ -188,6 +188,15 @@ def test_a_schedule_has_the_times_of_a_simulation_of_one_robot():
     schedule = build_schedule(study, travel_times, ((0, 1, 2),))
     validation = validate_allocation(study, ((0, 1, 2),), answers)
     assert validation.reached == schedule.reached
+
+
+def test_a_robot_has_no_travel_time_from_a_place_without_way_to_the_target():
+    """Robot r1 may start in cell 1 or 2, so that each of them needs a way."""
+    study = floor(3, 0, None, rows=1, targets=(2,))
+    reachable = travel_times_of(study, {2: {0: 3, 1: 2, 2: 0}})
+    assert reachable.steps == {(0, START, 0): 3, (1, START, 0): 2}
+    assert travel_times_of(study, {2: {0: 3, 1: 2}}).steps == {(0, START, 0): 3}
+    assert travel_times_of(study, {}).steps == {}
 
 
 DOCUMENTED_CLAIMS = (

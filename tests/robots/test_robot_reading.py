@@ -98,6 +98,25 @@ def test_a_fault_is_reported_at_its_element(code, tmp_path):
     assert result.graph.derived(Study) == ()
 
 
+@pytest.mark.parametrize(
+    ("orders", "circle"),
+    [
+        (("shelf to dock", "dock to shelf"), "'shelf' before 'dock' before 'shelf'"),
+        (
+            ("shelf to dock", "dock to gate", "gate to shelf"),
+            "'shelf' before 'dock' before 'gate' before 'shelf'",
+        ),
+    ],
+)
+def test_all_targets_of_a_circle_of_orders_are_named(orders, circle, tmp_path):
+    gate = "part gate : Target { :>> row = 2; :>> column = 3; }"
+    text = gate + "".join(f" connection : Before connect {order};" for order in orders)
+    old = "connection : Carry connect shelf to dock;"
+    (diagnostic,) = compile_text(tmp_path, HALL.replace(old, text)).diagnostics
+    assert diagnostic.rule.code == "SM567"
+    assert circle in diagnostic.message
+
+
 def test_a_row_must_be_a_whole_number(tmp_path):
     for value, problem in (("-1", "is negative"), ("1.5", "is not a whole number")):
         result = compile_text(tmp_path, HALL.replace(":>> row = 1", f":>> row = {value}"))

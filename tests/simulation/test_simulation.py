@@ -102,6 +102,10 @@ def test_junit_has_a_case_for_each_scenario():
     assert root.attrib == {"tests": "2", "failures": "1", "errors": "0"}
     good, bad = root.iter("testcase")
     assert (good.get("classname"), good.get("name")) == ("Gate.pass", "a wide gate pulls")
+    assert [(case.get("file"), case.get("line")) for case in (good, bad)] == [
+        ("s.yaml", "3"),
+        ("s.yaml", "12"),
+    ]
     assert good.find("failure") is None
     assert bad.find("failure").get("message") == "step 4: run_pull is true, expected false"
     assert report.as_junit() == simulate(two_scenarios)[0].as_junit()

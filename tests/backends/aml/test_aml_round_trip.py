@@ -311,3 +311,36 @@ def test_information_of_a_vendor_is_preserved_at_any_depth():
     texts, _, _ = round_trip(read(Source("plant.aml", text.encode())))
     (copy,) = texts.values()
     assert copy.count("<x>") + copy.count("<x/>") == 400
+
+
+STANDARD = "AutomationMLInterfaceClassLib/AutomationMLBaseInterface"
+ROLE = "AutomationMLBaseRoleClassLib/AutomationMLBaseRole"
+LINKED = """<CAEXFile xmlns="http://www.dke.de/CAEX" SchemaVersion="3.0" FileName="a.aml">
+<InstanceHierarchy Name="Plant"><InternalElement Name="line" ID="9">
+{elements}
+<InternalLink Name="l" RefPartnerSideA="0p" RefPartnerSideB="1p"/>
+</InternalElement></InstanceHierarchy></CAEXFile>"""
+
+
+@pytest.mark.parametrize(
+    ("interface", "roles", "directions"),
+    [
+        ("PPRConnector", ("Process", "Resource"), ("", "")),
+        ("Order", ("Process", "Process"), ("Out", "In")),
+    ],
+)
+def test_links_of_products_processes_and_resources_are_written_again(interface, roles, directions):
+    """They are dependencies, not connectors."""
+    ways = [
+        f'<Attribute Name="Direction"><Value>{way}</Value></Attribute>' if way else ""
+        for way in directions
+    ]
+    elements = "".join(
+        f'<InternalElement Name="e{n}" ID="{n}"><ExternalInterface Name="c" ID="{n}p" '
+        f'RefBaseClassPath="{STANDARD}/{interface}">{ways[n]}</ExternalInterface>'
+        f'<RoleRequirements RefBaseRoleClassPath="{ROLE}/{role}"/></InternalElement>'
+        for n, role in enumerate(roles)
+    )
+    graph = read(Source("a.aml", LINKED.format(elements=elements).encode()))
+    link = attrs_of(save(graph)[0], "//InternalLink")
+    assert (link["RefPartnerSideA"], link["RefPartnerSideB"]) == ("0p", "1p")

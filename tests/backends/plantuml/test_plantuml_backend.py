@@ -6,7 +6,7 @@ from diagrams import draw, emit
 from rule_examples import read_graphs
 from sysmlc.backends.plantuml import BAD_TEMPLATE, partitioning
 from sysmlc.backends.plantuml.partitioning import split_view
-from sysmlc.backends.plantuml.undrawn import OVERTAKEN
+from sysmlc.backends.plantuml.undrawn import NOT_DRAWN, OVERTAKEN
 from sysmlc.backends.plantuml.views import GraphView, Line, Node
 from sysmlc.ir.text import parse_text
 
@@ -209,6 +209,19 @@ StateMachine outer "Outer"
     assert 'state "Nested : Inner" as nested_1 <<state>> {' in diagram
     assert 'state "at" as at_1 <<entryPoint>>' in diagram
     assert "initial_1 --> at_1 : [ready] / [done]" in diagram
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [
+        *("Unit", "QuantityKind", "View", "GeneralOrdering", "GeneralizationSet", "ParameterSet"),
+        *("Stereotype", "Document"),
+    ],
+)
+def test_an_element_that_no_diagram_shows_is_reported(kind):
+    _, diagnostics = emit(parse_text(f'Package p "Plant"\n  {kind} x "extra"\n'))
+    messages = [found.message for found in diagnostics if found.rule.code == NOT_DRAWN.code]
+    assert [message for message in messages if f"{kind}" in message and "extra" in message]
 
 
 def test_a_message_that_another_overtakes_is_reported():

@@ -126,3 +126,21 @@ def test_a_tag_that_refers_to_an_element_without_a_name_has_its_id():
     texts, losses = write(refine(REFERRING_TAG.format(name="needs")))
     assert "'of' = \"Plant::needs\";" in texts["model.sysml"]
     assert losses == []
+
+
+def test_a_flow_to_an_element_that_is_not_written_is_reported():
+    _, losses = write(
+        refine("""
+Package p "P"
+  Activity a "A"
+    Action z "z" subkind="opaque"
+    Partition q "lane"
+    ControlFlow f
+      -> flow-source z
+      -> flow-target q
+""")
+    )
+    assert [loss for loss in losses if loss.startswith("SM736")] == [
+        "SM736 'flow-target' of ControlFlow leads to an element without a name in the text "
+        "(1 omitted)"
+    ]

@@ -594,3 +594,49 @@ def test_associations_typed_by_each_other_are_written():
     assert [line for line in lines if line.startswith("connection def")] == [
         f"connection def {name} {{" for name in "kmn"
     ]
+
+
+VALUES = """
+Package p "Plant"
+  Class a "A" role="block"
+    Property a.x "x" role="value"
+      -> typed-by {type}
+  Class b "B" role="block"
+    -> specializes a
+    Property b.x "{name}" role="value" default={default}
+      -> typed-by {type}
+      -> redefines a.x
+DataType int "Integer" subkind="primitive" external=true href="x#Integer"
+DataType real "Real" subkind="primitive" external=true href="x#Real"
+DataType string "String" subkind="primitive" external=true href="x#String"
+"""
+
+
+@pytest.mark.parametrize(
+    ("type", "default", "literal"),
+    [
+        ("int", '"7"', "7"),
+        ("real", '"2.5"', "2.5"),
+        ("real", '"7."', '"7."'),
+        ("real", '"7e"', '"7e"'),
+        ("string", '"7"', '"7"'),
+    ],
+)
+def test_a_text_is_a_number_only_as_the_value_of_a_number_type(type, default, literal):
+    (line,) = [
+        line
+        for line in lines_of(VALUES.format(type=type, name="y", default=default))
+        if "default" in line
+    ]
+    assert line.partition("default = ")[2].partition(" {")[0].rstrip(";") == literal
+
+
+@pytest.mark.parametrize(
+    ("name", "line"),
+    [
+        ("x", "attribute :>> x default = 2;"),
+        ("y", "attribute y : Integer :>> x default = 2;"),
+    ],
+)
+def test_a_redefinition_with_a_name_of_its_own_follows_the_type(name, line):
+    assert line in lines_of(VALUES.format(type="int", name=name, default=2))

@@ -448,3 +448,31 @@ def test_an_element_in_a_class_that_only_repeats_a_part_keeps_its_id_and_descrip
     assert reading.targets("Lib::B::a::m", "represents") == ["Lib::A::m"]
     assert reading.targets("Lib::B::x", "mirrors") == ["Lib::B::a::m"]
     assert reading.findings == []
+
+
+@pytest.mark.parametrize(
+    ("path", "kinds"),
+    [
+        ("", ["Slot"]),
+        ("Types/Width", ["Slot"]),
+        ("Types/Length", ["Slot"]),
+        ("Types/Colour", ["Property"]),
+    ],
+)
+def test_an_attribute_of_an_instance_overrides_with_a_type_that_its_own_is_not(path, kinds):
+    reading = Read(
+        types(
+            '<AttributeType Name="Length"/><AttributeType Name="Colour"/>'
+            '<AttributeType Name="Width" RefAttributeType="Types/Length"/>'
+        )
+        + classes(
+            '<SystemUnitClass Name="Box"><Attribute Name="w" RefAttributeType="Types/Width"/>'
+            "</SystemUnitClass>"
+        )
+        + plant(
+            '<InternalElement Name="box" ID="1" RefBaseSystemUnitPath="Lib/Box">'
+            f'<Attribute Name="w" RefAttributeType="{path}"><Value>1</Value></Attribute>'
+            "</InternalElement>"
+        )
+    )
+    assert [str(element.kind) for element in reading.find_all("Plant::box::w")] == kinds

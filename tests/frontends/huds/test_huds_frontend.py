@@ -8,7 +8,8 @@ from dialects.mutations import damage, mutate
 from sysmlc.diagnostics import Coverage, Sink
 from sysmlc.driver import Request, compile_model
 from sysmlc.frontends.huds import FRONTEND
-from sysmlc.ir import Edge, Graph
+from sysmlc.frontends.huds.vocabulary import KINDS
+from sysmlc.ir import Edge, Graph, Kind
 from sysmlc.ir.text import print_text
 from sysmlc.ir.verify import verify
 from sysmlc.passes import pipeline
@@ -145,6 +146,22 @@ def test_behaviour_has_the_shape_that_xmi_gives():
     assert graph.owner(graph["tr"]) is graph["re"]
     assert graph.target(graph["tr"], Edge.TRIGGER) is graph["tg"]
     assert graph["tg"].attrs == {"subkind": "time", "when": "1s", "relative": True}
+
+
+def test_each_type_of_mtip_is_read_as_its_kind(golden):
+    """Elements whose owner may not have them are not read; each type stands below a fitting one."""
+    owners = {Kind.REGION: "StateMachine", Kind.STATE: "Region", Kind.FINAL_STATE: "Region"}
+    owners |= {Kind.ENUMERATION_LITERAL: "Enumeration", Kind.SLOT: "InstanceSpecification"}
+    lines = []
+    for name, (kind, _) in KINDS.items():
+        owner = owners.get(kind, "Block")
+        root = [data("StateMachine", "s", "m", "S")] if owner == "Region" else []
+        above = data(owner, "o", "s" if root else "m", "owner")
+        model = data("Model", "m", name="Plant")
+        read = Read(packet(model, *root, above, data(name, "x", "o", "x")), resolved=False)
+        element = read.graph["x"]
+        lines.append(f"{name}: {element.kind} {element.subkind or ''}".strip())
+    golden.check("huds", {"types.txt": "\n".join(lines) + "\n"})
 
 
 @pytest.mark.parametrize(

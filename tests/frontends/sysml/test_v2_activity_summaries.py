@@ -150,3 +150,15 @@ def test_a_path_of_very_many_decisions_is_followed():
         f"first start then d0; {steps} action d{count};", "in attribute go : Boolean;"
     )
     assert paragraphs["Order of the steps"].startswith(f"It starts with 'd{count}' if `go`.")
+
+
+def test_a_value_into_which_an_assignment_is_substituted_names_its_conditions():
+    features = (
+        "in attribute c : Boolean; attribute n : Integer := 0; attribute k : Integer := 0; "
+        "assert constraint { 0 <= n and n <= 3 } assert constraint { 0 <= k and k <= 3 }"
+    )
+    steps = "action a { assign n := if c ? 1 else 2; assign k := n; } then done;"
+    assert list_paragraphs(f"first start; then {steps}", features)["Outputs"] == (
+        "Its steps assign `n` (0..3) and `k` (0..3). 'a' sets `n` to `if c ? 1 else 2`. "
+        "'a' sets `k` to `1` if `c` or `2` if `!c`."
+    )

@@ -42,7 +42,8 @@ def allocations(reading):
     for one in graph.owned(reading.find_element("P::Line")):
         if one.role == "allocate":
             client, supplier = graph.target(one, Edge.CLIENT), graph.target(one, Edge.SUPPLIER)
-            path = [graph[id].name for id in one.attrs.get("target_path", ())]
+            ids = one.attrs.get("target_path")
+            path = None if ids is None else [graph[id].name for id in ids]
             yield graph.qualified_name(client), path, graph.qualified_name(supplier)
 
 
@@ -50,7 +51,7 @@ def test_parameters_and_steps_are_allocated_with_the_way_from_the_block():
     assert list(allocations(read(LINE % "spare.busy"))) == [
         ("P::Make::arm", ["cell"], "P::Cell::robot"),
         ("P::Assemble::put", ["cell"], "P::Cell::place"),
-        ("P::Watch::arm", [], "P::Line::spare"),
+        ("P::Watch::arm", None, "P::Line::spare"),
         ("P::Watch::busy", ["spare"], "P::Robot::busy"),
     ]
 

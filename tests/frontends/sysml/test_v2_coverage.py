@@ -131,3 +131,16 @@ package P {{
     )
     roles = [reading.graph.target(end, Edge.ROLE).name for end in connector_ends]
     assert roles == ["x", "y", "z"]
+
+
+def test_a_flow_definition_with_types_of_its_ends_is_an_item_flow():
+    flow = (
+        "flow def Feed { ref item :>> payload : Fuel; end part tank : Tank; end part e : Engine; }"
+    )
+    text = f"{ENGINE} part def Tank; item def Fuel; {flow}"
+    reading = read(f"package P {{ {text} }}")
+    assert reading.find_element("P::Feed").kind == "ItemFlow"
+    assert [
+        reading.list_targets("P::Feed", edge) for edge in ("flow-source", "flow-target", "conveys")
+    ] == [["P::Tank"], ["P::Engine"], ["P::Fuel"]]
+    assert "flow definition is not read" not in list_lost(text)

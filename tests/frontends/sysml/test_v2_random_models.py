@@ -24,7 +24,7 @@ TRUE_WARNINGS = {
     "SM452": "a step after an endless loop is never reached",
     "SM456": "a random guard has no else",
     "SM458": "the contract cannot express a condition over reals, quantities or calls",
-    "SM480": "views, flow definitions and events outside sequences are not part of the graph",
+    "SM480": "views and events outside sequences are not part of the graph",
     "SM520": "random values are too many for a SPIN formula",
     "SM482": "a connector leads to an element that is not part of the graph",
     "SM315": "a random connector joins two outputs",

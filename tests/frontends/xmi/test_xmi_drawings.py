@@ -10,6 +10,7 @@ from dialects.mutations import mutate
 from sysmlc.backends.plantuml import BACKEND
 from sysmlc.diagnostics.renderers import make_report
 from sysmlc.driver import Request, compile_model
+from sysmlc.frontends.xmi.diagrams.common import extend_path
 from sysmlc.ir import Edge, Kind
 
 HEAD = (
@@ -321,3 +322,16 @@ def test_damaged_diagrams_cause_no_internal_error(tmp_path, seed):
     compile_diagrams(tmp_path / "plant.uml")
     (tmp_path / "plant.xmi").write_bytes(spoilt(EA))
     compile_diagrams(tmp_path / "plant.xmi")
+
+
+@pytest.mark.parametrize(
+    ("path", "id", "extended"),
+    [
+        ((), "a", ("a",)),
+        (("a",), "b", ("a", "b")),
+        (("a",), "a", ("a",)),
+        (("a", "b"), "a", ("a", "b", "a")),
+    ],
+)
+def test_two_shapes_of_one_element_are_one_step_of_a_path(path, id, extended):
+    assert extend_path(path, id) == extended
