@@ -8,6 +8,7 @@ from typing import ClassVar
 import pytest
 from click.testing import CliRunner
 
+from sysmlc.analyses import analysis
 from sysmlc.cli import group
 from sysmlc.diagnostics import Severity, rule
 from sysmlc.driver import registry
@@ -51,6 +52,7 @@ Package pkg "Plant"
   Signal pallet "Pallet"
 """
 LOAD_ALL_PASSES = registry.load_passes
+HAS_RESULT = analysis.has_result
 
 
 @dataclass(frozen=True)
@@ -107,6 +109,7 @@ def workspace(tmp_path, monkeypatch):
     """A folder with ``plant.ir``, a model without errors. Commands run only the pass above."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(registry, "load_passes", lambda options: [CheckPorts()])
+    monkeypatch.setattr(analysis, "has_result", lambda name, graph: False)
     monkeypatch.delenv("NO_COLOR", raising=False)
     (tmp_path / ".git").mkdir()
     workspace = Workspace(tmp_path)
@@ -118,3 +121,4 @@ def workspace(tmp_path, monkeypatch):
 def all_passes(workspace, monkeypatch):
     """Let the commands in the workspace run all passes."""
     monkeypatch.setattr(registry, "load_passes", LOAD_ALL_PASSES)
+    monkeypatch.setattr(analysis, "has_result", HAS_RESULT)
