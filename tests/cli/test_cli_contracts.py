@@ -30,12 +30,12 @@ def test_an_unrealizable_contract_is_an_error(workspace):
 
 
 def test_a_behaviour_that_violates_a_requirement_is_an_error_with_a_run(workspace, all_passes):
-    workspace.write("lamp.ir", contract_checks.BREAKS.read_page().wrong)
-    result = workspace.sysmlc("contracts", "check", "lamp.ir")
+    workspace.write("gate.sysml", contract_checks.BREAKS.read_page().wrong)
+    result = workspace.sysmlc("contracts", "check", "gate.sysml")
     assert result.exit_code == 1
     assert "Plant::Gate: realizable, violates its requirements\n" in result.stdout
     assert "error[SM560 behaviour-breaks-requirement]" in result.stderr
-    assert "step 2: event=stop, state=B" in result.stderr
+    assert "step 2: event=Stop, state=open" in result.stderr
 
 
 def test_a_run_shows_no_history_bits_and_no_tokens_on_flows(workspace, all_passes):
@@ -123,20 +123,20 @@ def test_a_run_uses_the_names_that_requirements_use(workspace, all_passes):
 
 
 def test_one_component_can_be_selected(workspace, all_passes):
-    workspace.write("lamp.ir", contract_checks.BREAKS.read_page().right)
-    result = workspace.sysmlc("contracts", "check", "lamp.ir", "-c", "Plant::Gate.requirements")
+    workspace.write("gate.sysml", contract_checks.BREAKS.read_page().right)
+    result = workspace.sysmlc("contracts", "check", "gate.sysml", "-c", "Plant::Gate.requirements")
     assert result.stdout == "Plant::Gate.requirements: realizable\n"
-    result = workspace.sysmlc("contracts", "check", "lamp.ir", "-c", "Plant::Gat")
+    result = workspace.sysmlc("contracts", "check", "gate.sysml", "-c", "Plant::Gat")
     assert [result.exit_code, result.stdout] == [2, ""]
 
 
 def test_a_selected_component_is_compared_with_its_requirements(workspace, all_passes):
-    workspace.write("lamp.ir", contract_checks.BREAKS.read_page().wrong)
-    result = workspace.sysmlc("contracts", "check", "lamp.ir", "-c", "Plant::Gate")
+    workspace.write("gate.sysml", contract_checks.BREAKS.read_page().wrong)
+    result = workspace.sysmlc("contracts", "check", "gate.sysml", "-c", "Plant::Gate")
     assert [result.exit_code, result.stdout] == [
         1,
         "Plant::Gate: realizable, violates its requirements\n"
-        "  Stays on: broken: G (state=B -> state'=B)\n",
+        "  StaysOpen: broken: G (state=open -> state'=open)\n",
     ]
 
 
