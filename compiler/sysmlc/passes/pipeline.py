@@ -38,6 +38,7 @@ NAMES = (
     "guards",
     "behaviours",
     "interactions",
+    "expressions",
     "views",
 )
 """All passes in order; the class of a pass is its capitalised name in ``sysmlc.passes.<name>``."""

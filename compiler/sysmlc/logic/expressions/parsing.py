@@ -1,9 +1,11 @@
-"""Parser of expressions and effects, memoised by text: Lark runs ``grammars/expression.lark``."""
+"""Parser of expressions and effects: Lark runs ``grammars/expression.lark``."""
 
 import re
 from collections.abc import Iterator
-from functools import cache, lru_cache
+from functools import cache
 from typing import TYPE_CHECKING, Any
+
+from msgspec import Struct
 
 from sysmlc.ir.expressions import (
     Assignment,
@@ -29,8 +31,6 @@ from sysmlc.support import resources
 if TYPE_CHECKING:
     from lark import Lark, Token, Tree
 
-_CACHE_SIZE = 4096
-"""Texts whose trees are cached: every pass parses the same guards and ranges."""
 _SPELLING = {"&&": "and", "&": "and", "||": "or", "|": "or", "!": "not", "=": "==", "<>": "!="}
 _ESCAPE = {"n": "\n"}
 _SHOWN_TOKEN = re.compile(r"\w{1,40}|[^\w\s]")
@@ -39,7 +39,7 @@ _SHOWN_TOKEN = re.compile(r"\w{1,40}|[^\w\s]")
 def tree_of(value: str) -> Expression:
     """Return the syntax tree of an attribute's value. Raises ExpressionError.
 
-    A value whose tree the front end has not attached is parsed.
+    A text is parsed if neither its front end nor the pass ``expressions`` has attached its tree.
     """
     return value.tree if isinstance(value, ExpressionText) else parse_expression(value)
 
@@ -49,14 +49,28 @@ def statements_of(value: str) -> tuple[Statement, ...]:
     return value.tree if isinstance(value, EffectText) else parse_effect(value)
 
 
-@lru_cache(_CACHE_SIZE)
+def attach_tree(text: str) -> str:
+    """Return the text of an expression with its tree; any other text as it is."""
+    try:
+        return ExpressionText(text, parse_expression(text))
+    except ExpressionError:
+        return text
+
+
+def attach_statements(text: str) -> str:
+    """Return the text of an effect with its statements; any other text as it is."""
+    try:
+        return EffectText(text, parse_effect(text))
+    except ExpressionError:
+        return text
+
+
 def parse_expression(text: str) -> Expression:
     """Parse an expression. Raises ExpressionError."""
     expression: Expression = _parse(text, "expression")
     return expression
 
 
-@lru_cache(_CACHE_SIZE)
 def parse_effect(text: str) -> tuple[Statement, ...]:
     """Parse the statements of an effect, which semicolons separate. Raises ExpressionError."""
     statements: tuple[Statement, ...] = _parse(text, "effect")
@@ -215,27 +229,28 @@ def unquote(text: str) -> str:
 _COMPLEMENTS = {"<": ">=", ">=": "<", ">": "<=", "<=": ">", "==": "!=", "!=": "=="}
 
 
-def are_complementary(left: str, right: str) -> bool:
-    """Whether two guards exclude each other by their form, such as ``a < b`` and ``c and a >= b``.
+class GuardTerms(Struct, frozen=True):
+    """The operands of a guard that is a conjunction, and their negations."""
 
-    The operands may have any type, also one whose values are not finite.
-    """
-    left_terms, negated_left = _list_terms(left)
-    right_terms, negated_right = _list_terms(right)
-    return not (right_terms.isdisjoint(negated_left) and left_terms.isdisjoint(negated_right))
+    terms: frozenset[Expression]
+    negations: frozenset[Expression]
 
+    @staticmethod
+    def read(guard: str) -> "GuardTerms":
+        """Return the terms of a guard; none of a text that cannot be read."""
+        try:
+            terms = frozenset(_iter_terms(tree_of(guard)))
+        except ExpressionError:
+            terms = frozenset()
+        return GuardTerms(terms, frozenset(map(_negate, terms)))
 
-@lru_cache(_CACHE_SIZE)
-def _list_terms(guard: str) -> tuple[frozenset[Expression], frozenset[Expression]]:
-    """Return the operands of a conjunction and their negations; none of an unreadable text.
+    def excludes(self, guard: "GuardTerms") -> bool:
+        """Whether two guards exclude each other by form, such as ``a < b`` and ``c and a >= b``.
 
-    A guard is compared with those of all other transitions that leave its state.
-    """
-    try:
-        terms = frozenset(_iter_terms(parse_expression(guard)))
-    except ExpressionError:
-        return frozenset(), frozenset()
-    return terms, frozenset(map(_negate, terms))
+        The operands may have any type, also one whose values are not finite.
+        """
+        is_disjoint = self.terms.isdisjoint(guard.negations)
+        return not (is_disjoint and guard.terms.isdisjoint(self.negations))
 
 
 def _iter_terms(expression: Expression) -> Iterator[Expression]:

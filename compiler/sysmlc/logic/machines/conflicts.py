@@ -19,7 +19,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Domain
 from sysmlc.logic.evaluate import compile_evaluation
 from sysmlc.logic.expressions.elaboration import Scope, elaborate_condition
-from sysmlc.logic.expressions.parsing import are_complementary
+from sysmlc.logic.expressions.parsing import GuardTerms
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines.machine import (
     Action,
@@ -103,13 +103,13 @@ def list_competing(
     vertex: Vertex,
     comparison: GuardComparison,
     *,
-    texts: Mapping[str, str],
+    terms: Mapping[str, GuardTerms],
     by_one_occurrence: bool,
 ) -> list[Transition]:
     """Return the *outgoing* transitions that can be enabled together with another of them.
 
-    With *by_one_occurrence*, the same occurrence of a trigger has to enable both. *texts* are the
-    guards as written, by transition: the contract may treat each of them as an input.
+    With *by_one_occurrence*, the same occurrence of a trigger has to enable both. *terms* are those
+    of the guards as written, by transition: the contract may treat each of them as an input.
     """
     is_state = vertex.kind == "state"
     can_meet = _have_equal_trigger if by_one_occurrence else _can_coincide
@@ -118,7 +118,7 @@ def list_competing(
         if left.id in competing and right.id in competing:
             continue
         are_excluded = is_state and not can_meet(left, right)
-        if are_excluded or are_complementary(texts[left.id], texts[right.id]):
+        if are_excluded or terms[left.id].excludes(terms[right.id]):
             continue
         if comparison.are_compatible(left, right):
             competing |= {left.id: left, right.id: right}

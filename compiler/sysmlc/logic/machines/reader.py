@@ -11,6 +11,7 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, query
 from sysmlc.logic.contract import EnumerationDomain, IntegerDomain, Owner, Variable
 from sysmlc.logic.expressions.context import context_of
+from sysmlc.logic.expressions.parsing import GuardTerms
 from sysmlc.logic.feature_writes import Sharing, WriterIndex
 from sysmlc.logic.identifiers import Names
 from sysmlc.logic.machines.actions import ReadingContext, read_behaviours
@@ -185,10 +186,12 @@ def _add_choice_variable(
     domain = EnumerationDomain((NO_EVENT, *literals))
     pick = reading.variable_for(f"pick {id}", f"taken_{name}", Owner.SYSTEM, domain, element_id(id))
     vertex = draft.vertices[id]
-    texts = {t.id: str(draft.element(t.id).attrs.get("guard", "")) for t in outgoing}
+    terms = {
+        t.id: GuardTerms.read(str(draft.element(t.id).attrs.get("guard", ""))) for t in outgoing
+    }
     for finding, by_one_occurrence in ((NONDETERMINISTIC, True), (COINCIDING, False)):
         competing = list_competing(
-            outgoing, vertex, comparison, texts=texts, by_one_occurrence=by_one_occurrence
+            outgoing, vertex, comparison, terms=terms, by_one_occurrence=by_one_occurrence
         )
         if competing:
             names = list_names(competing, draft.vertices)
