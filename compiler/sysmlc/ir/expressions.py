@@ -4,6 +4,7 @@ The grammar is ``grammars/expression.lark``. Printing a tree and parsing the tex
 tree: offsets are not compared.
 """
 
+import re
 from dataclasses import dataclass, field
 from typing import Generic, Self, TypeVar
 
@@ -12,6 +13,7 @@ from msgspec import Struct
 _WORDS = "if else implies or OR xor XOR and AND not NOT true TRUE false FALSE send to"
 _KEYWORDS = frozenset(_WORDS.split(" "))
 """Names that are spelled with quotes."""
+_WORD = re.compile(r"[^\W\d]\w*")
 
 
 class ExpressionError(ValueError):
@@ -188,17 +190,17 @@ def is_nested_too_deeply(tree: Expression | tuple[Statement, ...]) -> bool:
     """Whether the tree is so deep that functions cannot recurse over it."""
     level: list[object] = [tree]
     for _ in range(_MAX_NESTING):
-        children = [part for parent in level for part in _list_parts(parent)]
-        level = [part for part in children if not isinstance(part, str | int | float | None)]
+        level = [child for node in level for child in _list_children(node)]
         if not level:
             return False
     return True
 
 
-def _list_parts(value: object) -> list[object]:
-    if isinstance(value, tuple | list):
-        return list(value)
-    return [getattr(value, name) for name in getattr(type(value), "__match_args__", ())]
+def _list_children(node: object) -> list[object]:
+    """Return the nodes and the tuples below a node of a tree, or in a tuple."""
+    names = getattr(type(node), "__match_args__", ())
+    parts = node if isinstance(node, tuple) else [getattr(node, name) for name in names]
+    return [part for part in parts if not isinstance(part, str | int | float | None)]
 
 
 # -- printing ----------------------------------------------------------------------------------
@@ -243,7 +245,7 @@ def print_literal(value: bool | float | str) -> str:
     return str(value).lower()
 
 
-def dotted_name(expression: Expression) -> str | None:
+def dotted_name(expression: Expression | Statement) -> str | None:
     """Return a name or a chain of features as text (``a.b``, ``A::B``), or None."""
     match expression:
         case Name(path):
@@ -255,7 +257,7 @@ def dotted_name(expression: Expression) -> str | None:
             return None
 
 
-def name_of(expression: Expression) -> str | None:
+def name_of(expression: Expression | Statement) -> str | None:
     """Return ``dotted_name`` without a leading ``self`` or ``this``: ``x`` equals ``self.x``."""
     name = dotted_name(expression)
     if name is None or isinstance(expression, Name):
@@ -320,21 +322,29 @@ def _quote(text: str, quote: str) -> str:
     return f"{quote}{escaped}{quote}"
 
 
-_OPERANDS = (
-    *("base", "function", "operand", "left", "right", "condition", "then", "otherwise", "index"),
-)
+def walk_tree(tree: Expression | tuple[Statement, ...]) -> list[Expression | Statement]:
+    """Return an expression and all its subexpressions, or an effect's statements with theirs."""
+    nodes: list[Expression | Statement] = []
+    worklist: list[object] = [tree]
+    while worklist:
+        node = worklist.pop()
+        if isinstance(node, Expression | Statement):
+            nodes.append(node)
+        worklist += reversed(_list_children(node))
+    return nodes
 
 
-def walk_expression(expression: Expression) -> list[Expression]:
-    """Return the expression and all its subexpressions."""
-    parts = [expression]
-    for slot in _OPERANDS:
-        operand = getattr(expression, slot, None)
-        if operand is not None and not isinstance(operand, str):
-            parts += walk_expression(operand)
-    for arg in getattr(expression, "args", ()):
-        parts += walk_expression(arg)
-    return parts
+def list_names(text: str) -> list[str]:
+    """Return all names in an expression or an effect; the words of a text without a tree."""
+    if not isinstance(text, ParsedText):
+        return _WORD.findall(text)
+    names: list[str] = []
+    for node in walk_tree(text.tree):
+        if isinstance(node, Name):
+            names += node.path
+        elif isinstance(node, Member):
+            names.append(node.name)
+    return names
 
 
 def describe_unsupported(expression: Expression) -> str:

@@ -18,17 +18,15 @@ from sysmlc.ir.expressions import (
     Expression,
     ExpressionError,
     last_name,
+    list_names,
     name_of,
     print_expression,
 )
 from sysmlc.logic.expressions.named_elements import VALUE_KINDS, find_named_values
 from sysmlc.logic.expressions.parsing import statements_of, tree_of
 
-_ASSIGNED_NAME = re.compile(r"([^\W\d]\w*)\s*:=")
-"""The last name of each assigned path, in a body without quoted names."""
 _FOREIGN_ASSIGNMENT = re.compile(r"(?<![=<>!:])=(?!=)|\+\+|--")
 """A sign of an assignment in a programming language; KerML and UML write ``:=``."""
-_WORD = re.compile(r"[^\W\d]\w*")
 _PATH_SEPARATOR = re.compile(r"::|\.")
 _NAMED = (*VALUE_KINDS, *query.CLASSIFIERS, Kind.PACKAGE)
 """Kinds that a path of names may lead through."""
@@ -70,23 +68,6 @@ def _iter_written_names(graph: Graph, action: Element) -> Iterator[str]:
     """
     yield from (write.name for write in _iter_assignments(action))
     yield from _iter_bound_names(graph, action)
-
-
-def _iter_mentioned_names(graph: Graph, action: Element) -> Iterator[str]:
-    """Yield the last names of all features that an action may write.
-
-    Most bodies are searched without being parsed, so a name may belong to no write.
-    """
-    if action.subkind == "write":
-        yield from (feature.name for feature in graph.targets(action, Edge.CALLS))
-    body = action.attrs.get("body")
-    if isinstance(body, str) and ":=" in body:
-        if "'" in body:
-            # A quoted name may contain blanks and ":=", so the body must be parsed.
-            yield from (last_name(name) for name in _iter_written_names(graph, action))
-        else:
-            yield from _ASSIGNED_NAME.findall(body)
-    yield from (last_name(name) for name in _iter_bound_names(graph, action))
 
 
 def _iter_bound_names(graph: Graph, action: Element) -> Iterator[str]:
@@ -270,12 +251,12 @@ class WriterIndex:
         if not isinstance(body, str):
             return
         if _FOREIGN_ASSIGNMENT.search(body):
-            yield from _WORD.findall(body)
+            yield from list_names(body)
         elif ":=" in body:
             try:
                 statements = statements_of(body)
             except ExpressionError:
-                yield from _WORD.findall(body)
+                yield from list_names(body)
                 return
             for statement in statements:
                 path = name_of(statement.target) if isinstance(statement, Assignment) else None
@@ -296,7 +277,6 @@ class WriterIndex:
 
     def _list_candidates(self, name: str) -> list[Element]:
         """Return the actions that may write a feature of the name."""
-        # Parsing the bodies of all actions instead would take ten times as long.
         if self._candidates_by_name is None:
             self._candidates_by_name = _index_candidates(self._graph)
         return self._candidates_by_name.get(name, [])
@@ -349,7 +329,9 @@ def _index_candidates(graph: Graph) -> dict[str, list[Element]]:
     """Return the actions and activities that may write a feature, by the last name of its path."""
     candidates: dict[str, list[Element]] = {}
     for action in (*graph.of_kind(Kind.ACTION), *graph.of_kind(Kind.ACTIVITY)):
-        for name in dict.fromkeys(_iter_mentioned_names(graph, action)):
+        written = graph.targets(action, Edge.CALLS) if action.subkind == "write" else ()
+        paths = _iter_written_names(graph, action)
+        for name in dict.fromkeys((*(feature.name for feature in written), *map(last_name, paths))):
             candidates.setdefault(name, []).append(action)
     return candidates
 

@@ -14,7 +14,7 @@ from sysmlc.ir.expressions import (
     Expression,
     ExpressionError,
     name_of,
-    walk_expression,
+    walk_tree,
 )
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import (
@@ -198,7 +198,7 @@ class Scope:
 
     def _reads_assumed(self, expression: Expression) -> bool:
         """Whether an expression reads a property with an assumed range."""
-        names = (name_of(part) for part in walk_expression(expression))
+        names = (name_of(part) for part in walk_tree(expression))
         features = (self._feature(name) for name in names if name)
         return any(feature is not None and feature.is_assumed for feature in features)
 

@@ -9,7 +9,6 @@ from collections.abc import Iterator
 from functools import cached_property, partial
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.ir.expressions import ExpressionError, name_of
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.action_names import make_path
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
@@ -23,7 +22,7 @@ from sysmlc.logic.components.signals import check_signal_names
 from sysmlc.logic.composition.structure import find_drawn_activity
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Owner, Source, Variable
 from sysmlc.logic.expressions.context import context_of
-from sysmlc.logic.expressions.parsing import tree_of
+from sysmlc.logic.expressions.parsing import performed_name
 from sysmlc.logic.feature_writes import WriterIndex
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.identifiers import Names, identifier
@@ -293,11 +292,8 @@ class Component:
         if called:
             performer = self.tree.find_performer(object_, called[0])
             return None if performer is None else (performer, called[0])
-        try:
-            path = name_of(tree_of(str(behaviour.attrs.get("body", "")))) or ""
-        except ExpressionError:
-            return None
-        return self.tree.find_named_activity(object_, path)
+        path = performed_name(str(behaviour.attrs.get("body", "")))
+        return None if path is None else self.tree.find_named_activity(object_, path)
 
     def _add_own_activities(self, object_: ComponentObject) -> None:
         for classifier in object_.list_family(self.graph)[::-1]:

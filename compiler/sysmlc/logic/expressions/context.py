@@ -4,15 +4,24 @@ Features are computed when they are looked up: a behaviour can name hundreds thr
 its parameters, and uses a few.
 """
 
-import re
 from collections.abc import Iterator, Mapping
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Element, Graph, Kind, query
+from sysmlc.ir.expressions import (
+    Assignment,
+    Binary,
+    Expression,
+    ParsedText,
+    Statement,
+    name_of,
+    walk_tree,
+)
+from sysmlc.ir.expressions import Literal as LiteralExpression
 from sysmlc.logic.contract import EnumerationDomain, IntegerDomain
 from sysmlc.logic.domains import describe
 from sysmlc.logic.expressions.elaboration import Symbol
@@ -33,8 +42,7 @@ from sysmlc.logic.expressions.named_elements import (
     find_part_values,
     find_port_values,
 )
-from sysmlc.logic.expressions.parsing import unquote
-from sysmlc.logic.expressions.ranges import MIRROR, Access
+from sysmlc.logic.expressions.ranges import MIRROR, Access, evaluate_integer
 from sysmlc.logic.formula import const, var
 from sysmlc.logic.identifiers import make_unique
 
@@ -203,8 +211,8 @@ def _find_values_in_parts(
         owner = next(around, None)
     if owner is None or not any(part.role == "part" for part in query.features(graph, owner)):
         return {}
-    paths = (name for _, text in _iter_texts(graph, behaviour) for name in _PATH.findall(text))
-    return find_part_values(graph, owner, dict.fromkeys(paths))
+    names = (name_of(node) for _, node in _iter_nodes(graph, behaviour))
+    return find_part_values(graph, owner, dict.fromkeys(name for name in names if name))
 
 
 def _find_enclosing_values(graph: Graph, classifier: Element) -> dict[str, Element]:
@@ -343,18 +351,9 @@ class _FeatureTable(Mapping[str, Feature]):
 
 _BEHAVIOURS = frozenset([Kind.ACTIVITY, Kind.STATE_MACHINE])
 _TEXT_ATTRIBUTES = ("guard", "body", "condition", "value")
-_TEXT = re.compile(r'"(?:[^"\\]|\\.)*"')
-_WORD = r"[^\W\d][\w.]*"
-_NAME = rf"{_WORD}|'(?:[^'\\]|\\.)*'"
-_VALUE = rf"-?\d+(?![\w.])|{_WORD}::\w+"
-_NAME_FIRST = re.compile(rf"({_NAME})\s*(==|!=|<=|>=|<|>|:=)\s*({_VALUE})")
-_PATH = re.compile(r"[^\W\d]\w*(?:\.[^\W\d]\w*)+")
-"""Plain names that are joined by dots."""
-_VALUE_FIRST = re.compile(rf"(?<![\w.:])({_VALUE})\s*(==|!=|<=|>=|<|>)\s*({_NAME})")
+_COMPARISONS = frozenset({"==", "!=", "<", "<=", ">", ">="})
 _NEXT = {"<": -1, ">=": -1, ">": 1, "<=": 1}
 """Where the other side of a threshold begins: ``n < 5`` and ``n >= 5`` differ at 4 and 5."""
-_CACHE_SIZE = 4096
-"""Texts whose values are cached: the same guards occur in many behaviours."""
 _GREATEST = 255
 """Numbers further from zero widen no range: the size of a domain is its number of values."""
 
@@ -369,43 +368,50 @@ class _MentionedValues(Struct, frozen=True):
 def _find_mentioned_values(
     graph: Graph, behaviour: Element, enumerations: Enumerations
 ) -> _MentionedValues:
-    """Return the values with which the texts of a behaviour compare names, or which they assign.
+    """Return the values with which a behaviour compares names, or which it assigns to them.
 
     A threshold counts with the number next to it, so that a comparison may be true and false. A
     constraint is no threshold: it is always true.
     """
     texts: dict[str, None] = {}
     numbers: dict[str, dict[int, None]] = {}
-    for element, text in _iter_texts(graph, behaviour):
-        strings, comparisons = _find_values(text)
-        texts |= dict.fromkeys(strings)
-        for name, op, value in comparisons:
-            number = enumerations.numbers.get(value) if "::" in value else int(value)
+    for element, node in _iter_nodes(graph, behaviour):
+        if isinstance(node, LiteralExpression) and isinstance(node.value, str):
+            texts[node.value] = None
+        for name, op, value in _iter_comparisons(node):
+            # A computed threshold widens no range.
+            is_plain = not isinstance(value, Binary)
+            number = evaluate_integer(value, enumerations.numbers) if is_plain else None
             if number is not None and abs(number) <= _GREATEST:
                 step = 0 if element.kind is Kind.CONSTRAINT else _NEXT.get(op, 0)
                 numbers.setdefault(name, {}).update({number: None, number + step: None})
     return _MentionedValues(tuple(texts), {name: tuple(values) for name, values in numbers.items()})
 
 
-def _iter_texts(graph: Graph, behaviour: Element) -> Iterator[tuple[Element, str]]:
+def _iter_nodes(
+    graph: Graph, behaviour: Element
+) -> Iterator[tuple[Element, Expression | Statement]]:
+    """Yield the elements of a behaviour with the nodes of their expressions and effects."""
     for element in graph.subtree(behaviour):
-        if element.kind is not Kind.COMMENT:
-            for key in _TEXT_ATTRIBUTES:
-                text = element.attrs.get(key)
-                if isinstance(text, str):
-                    yield element, text
+        for key in _TEXT_ATTRIBUTES:
+            value = element.attrs.get(key)
+            if isinstance(value, ParsedText):
+                yield from ((element, node) for node in walk_tree(value.tree))
 
 
-@lru_cache(_CACHE_SIZE)
-def _find_values(text: str) -> tuple[tuple[str, ...], tuple[tuple[str, str, str], ...]]:
-    """Return the strings in a text, and names with the operators and values behind them.
-
-    Regular expressions also find the values in texts that the grammar rejects.
-    """
-    value_first = (
-        (name, MIRROR.get(op, op), value) for value, op, name in _VALUE_FIRST.findall(text)
-    )
-    return tuple(map(unquote, _TEXT.findall(text))), tuple(
-        (unquote(name) if name.startswith("'") else name, op, value)
-        for name, op, value in (*_NAME_FIRST.findall(text), *value_first)
-    )
+def _iter_comparisons(node: Expression | Statement) -> Iterator[tuple[str, str, Expression]]:
+    """Yield the names that a node compares or assigns, with the operators and the values."""
+    match node:
+        case Assignment(target, value):
+            pairs = [(target, ":=", value)]
+        case Binary(op, left, right) if op in _COMPARISONS:
+            # ``level`` belongs to both comparisons of ``0 <= level <= 7``.
+            if isinstance(left, Binary) and left.op in _COMPARISONS:
+                left = left.right
+            pairs = [(left, op, right), (right, MIRROR.get(op, op), left)]
+        case _:
+            return
+    for feature, op, value in pairs:
+        name = name_of(feature)
+        if name:
+            yield name, op, value

@@ -25,6 +25,7 @@ from sysmlc.ir.expressions import (
     Statement,
     Unary,
     is_nested_too_deeply,
+    name_of,
 )
 from sysmlc.support import resources
 
@@ -47,6 +48,18 @@ def tree_of(value: str) -> Expression:
 def statements_of(value: str) -> tuple[Statement, ...]:
     """Return the statements of an attribute's value. Raises ExpressionError."""
     return value.tree if isinstance(value, EffectText) else parse_effect(value)
+
+
+def performed_name(body: str) -> str | None:
+    """Return the path of the behaviour that an effect performs; None for any other effect."""
+    try:
+        statements = statements_of(body)
+    except ExpressionError:
+        return None
+    match statements:
+        case (Invocation(call),):
+            return name_of(call)
+    return None
 
 
 def attach_tree(text: str) -> str:

@@ -19,7 +19,7 @@ from sysmlc.ir.expressions import (
     name_of,
     print_expression,
     print_statement,
-    walk_expression,
+    walk_tree,
 )
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Domain, Owner, Variable
@@ -172,7 +172,7 @@ class ReadingContext:
 
     def record_reads(self, expression: Expression, target: str = "") -> None:
         """Record the features that a condition reads, or the value of a variable *target*."""
-        for part in walk_expression(expression):
+        for part in walk_tree(expression):
             name = name_of(part)
             feature = self.context.features.get(name) if name else None
             if feature is not None:
@@ -226,7 +226,7 @@ def _classify_fault(
         reason = _explain_name(reading, element, text, error.name)
         return (NOT_UNDERSTOOD, reason) if reason else (UNKNOWN_NAME, str(error))
     if error.fault is Fault.OUTSIDE:
-        names = (name_of(part) for expression in read for part in walk_expression(expression))
+        names = (name_of(part) for expression in read for part in walk_tree(expression))
         features = reading.context.features
         if any(features[name].is_assumed for name in names if name and name in features):
             return NOT_UNDERSTOOD, f"{reason}, a range that is assumed"

@@ -13,7 +13,7 @@ from itertools import combinations
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Graph
-from sysmlc.ir.expressions import Expression, name_of, walk_expression
+from sysmlc.ir.expressions import Expression, name_of, walk_tree
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Domain
@@ -177,7 +177,7 @@ def can_be_simultaneous(left: Transition, right: Transition) -> bool:
 
 def _find_domains(source: Expression, scope: Scope) -> Iterator[tuple[str, Domain]]:
     """Yield the variables in the expression with their domains."""
-    for part in walk_expression(source):
+    for part in walk_tree(source):
         name = name_of(part)
         symbol = None if name is None else scope(name)
         if symbol is not None and symbol.domain is not None:

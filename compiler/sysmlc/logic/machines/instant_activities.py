@@ -4,28 +4,26 @@ A chain of assignments is part of the run-to-completion step, so the machine has
 their order. Other activities are performances, or nothing is decided about them.
 """
 
-import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.ir.expressions import (
     Assignment,
-    ExpressionError,
     last_name,
+    list_names,
     name_of,
-    walk_expression,
+    walk_tree,
 )
 from sysmlc.logic.expressions.context import Context, find_literal, make_symbol
 from sysmlc.logic.expressions.elaboration import ElaborationError, Symbol, elaborate_value
 from sysmlc.logic.expressions.features import check_assignable
-from sysmlc.logic.expressions.parsing import tree_of
+from sysmlc.logic.expressions.parsing import performed_name
 from sysmlc.logic.feature_writes import WriterIndex, read_assignments, takes_one_step
 
 _INSTANT = (Edge.ENTRY, Edge.EXIT, Edge.EFFECT)
 _HARMLESS = {Edge.OWNS, Edge.FEATURE, Edge.CLASSIFIER_BEHAVIOR, Edge.ALLOCATED_TO, Edge.SATISFIES}
 _UNSEEN = [edge for edge in Edge if edge not in {*_HARMLESS, *_INSTANT, Edge.DO}]
 """Edges from what may perform an activity in a way that no state or transition names."""
-_WORD = re.compile(r"[^\W\d]\w*")
 
 
 def find_instant_steps(
@@ -74,7 +72,7 @@ def _is_same_feature(graph: Graph, element: Element | None, special: Element | N
 
 def _list_names(assignment: Assignment) -> list[str]:
     """Return the names in an assignment, the target first."""
-    parts = (assignment.target, *walk_expression(assignment.value))
+    parts = (assignment.target, *walk_tree(assignment.value))
     return [name_of(part) or "" for part in parts]
 
 
@@ -83,10 +81,7 @@ def _find_named_activity(graph: Graph, behaviour: Element, classifier: Element) 
 
     The result is None if several of their members have the name, or a member of the machine has it.
     """
-    try:
-        name = name_of(tree_of(str(behaviour.attrs.get("body", ""))))
-    except ExpressionError:
-        return None
+    name = performed_name(str(behaviour.attrs.get("body", "")))
     family = (classifier, *query.generals(graph, classifier))
     for scope in graph.ancestors(behaviour):
         owners = family if scope in family else (scope,)
@@ -155,16 +150,9 @@ def has_unknown_performer(graph: Graph, activity: Element, machines: Collection[
 
 def _is_mentioned(graph: Graph, name: str) -> bool:
     """Whether a text has the name of an activity, other than a behaviour whose text is the name."""
+    bodies = ((e, str(e.attrs.get("body", ""))) for e in graph.of_kind(Kind.ACTIVITY, Kind.ACTION))
     return any(
-        name in _WORD.findall(body) and (is_action or body != name)
-        for body, is_action in _iter_bodies(graph)
+        name in list_names(body) and (element.kind is Kind.ACTION or performed_name(body) != name)
+        for element, body in bodies
         if name in body
     )
-
-
-def _iter_bodies(graph: Graph) -> Iterator[tuple[str, bool]]:
-    """Yield the texts of behaviours and actions, each with whether it is the text of an action."""
-    for element in graph.of_kind(Kind.ACTIVITY, Kind.ACTION):
-        body = element.attrs.get("body")
-        if isinstance(body, str):
-            yield body.strip(), element.kind is Kind.ACTION
