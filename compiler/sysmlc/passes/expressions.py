@@ -49,5 +49,5 @@ def _list_expressions(element: Element) -> Iterator[str]:
 
 def _attach(graph: Graph, element: Element, key: str, attach: Callable[[str], str]) -> None:
     text = element.attrs.get(key)
-    if isinstance(text, str) and not isinstance(text, ParsedText):
+    if isinstance(text, str) and not isinstance(text, ParsedText) and text != "else":
         graph.set(element, **{key: attach(text)})
