@@ -10,7 +10,8 @@ from test_interchange_projects import ABOUT, write_archive, write_meta
 
 from sysmlc.diagnostics import Sink
 from sysmlc.language.formatter import format_text
-from sysmlc.language.interchange import link, open_archive, read, write
+from sysmlc.language.interchange import link, open_archive, read
+from sysmlc.language.interchange.writer import write
 from sysmlc.language.text import parse
 from sysmlc.sources import Source, SourceError
 

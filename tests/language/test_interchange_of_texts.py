@@ -14,7 +14,8 @@ from official_models import (
 from long_runs import quick_first
 from sysml_metamodel import count_ids, count_with_metamodel
 from sysmlc.diagnostics import Sink
-from sysmlc.language.interchange import InterchangeFiles, interchange_path, link, read, write
+from sysmlc.language.interchange import link, read
+from sysmlc.language.interchange.writer import InterchangeFiles, interchange_path, write
 from sysmlc.language.names import resolve
 from sysmlc.language.names.implied_relations import implied_redefinitions
 from sysmlc.language.text import parse

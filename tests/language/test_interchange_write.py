@@ -10,7 +10,8 @@ from tree_outlines import outline
 
 from sysml_metamodel import count_ids, count_with_metamodel
 from sysmlc.diagnostics import Sink
-from sysmlc.language.interchange import interchange_path, link, read, write
+from sysmlc.language.interchange import link, read
+from sysmlc.language.interchange.writer import interchange_path, write
 from sysmlc.language.text import parse
 from sysmlc.language.tree import Document, Node, Reference, Relation
 from sysmlc.sources import Source

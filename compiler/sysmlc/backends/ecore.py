@@ -14,6 +14,7 @@ from sysmlc.backends.base import EmitOptions
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Element, Graph
 from sysmlc.support.output import Output
+from sysmlc.support.xml_text import make_root, print_element
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Node
@@ -50,7 +51,7 @@ def print_xmi(graph: Graph) -> str:
     References between elements are EMF paths such as ``//@roots.0/@owns.2``, because an ``xmi:id``
     may not contain all characters of our ids, which are plain attributes instead.
     """
-    root = etree.Element(etree.QName(_IR, "Graph"), nsmap={"ir": _IR, "xmi": _XMI, "xsi": _XSI})
+    root = make_root(f"{{{_IR}}}Graph", {"ir": _IR, "xmi": _XMI, "xsi": _XSI})
     root.set(etree.QName(_XMI, "version"), "2.0")
     paths: dict[str, str] = {}
     nodes: list[tuple[Element, Node]] = []
@@ -58,8 +59,7 @@ def print_xmi(graph: Graph) -> str:
         _add_tree(graph, element, root, f"//@roots.{number}", paths, nodes)
     for element, node in nodes:
         _set_references(graph, element, node, paths)
-    etree.indent(root, " ")
-    return etree.tostring(root, encoding="unicode") + "\n"
+    return print_element(root)
 
 
 def _add_tree(

@@ -16,7 +16,7 @@ from sysmlc.backends.sysml import BACKEND as TEXT
 from sysmlc.backends.sysml.author_texts import BYTE_ORDER_MARK, list_texts, path_of_text
 from sysmlc.diagnostics import Diagnostic, Severity, Sink, rule
 from sysmlc.ir import Element, Graph
-from sysmlc.language.interchange import InterchangeFiles, interchange_path, write
+from sysmlc.language.interchange.writer import InterchangeFiles, interchange_path, write
 from sysmlc.language.library import SHIPPED, VARIABLE, Library, find_library, load_core
 from sysmlc.language.names import Model, resolve
 from sysmlc.language.names.implied_relations import implied_redefinitions

@@ -1,15 +1,16 @@
 """Reports of played scenarios: as text, as JUnit XML, and as a sequence diagram."""
 
 from collections.abc import Iterator
-from xml.etree import ElementTree
 
+from lxml import etree
 from msgspec import Struct, field
 
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.machines.interpreter import Valuation
 from sysmlc.support.counts import count
-from sysmlc.support.escapes import escape_invisible
+from sysmlc.support.escapes import escape_invisible, replace_illegal_in_xml
 from sysmlc.support.plantuml_text import escape_line
+from sysmlc.support.xml_text import print_element
 
 
 class Difference(Struct, frozen=True):
@@ -90,29 +91,31 @@ class Report(Struct, frozen=True):
         errors = sum(not (r.is_valid and r.is_decided) for r in self.results)
         counts = {"tests": len(self.results), "failures": failures, "errors": errors}
         attributes = {name: str(number) for name, number in counts.items()}
-        root = ElementTree.Element("testsuites", attributes)
-        suite = ElementTree.SubElement(root, "testsuite", {"name": self.file, **attributes})
+        root = etree.Element("testsuites", attributes)
+        suite = etree.SubElement(root, "testsuite", {"name": self._xml_file, **attributes})
         for result in self.results:
             self._add_case(suite, result)
-        ElementTree.indent(root)
-        text = ElementTree.tostring(root, encoding="unicode")
-        return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'
+        return print_element(root)
 
-    def _add_case(self, suite: ElementTree.Element, result: Result) -> None:
-        position = {"file": self.file, "line": str(result.line)}
+    @property
+    def _xml_file(self) -> str:
+        return replace_illegal_in_xml(self.file)[0]
+
+    def _add_case(self, suite: "etree._Element", result: Result) -> None:
+        position = {"file": self._xml_file, "line": str(result.line)}
         names = {
-            "classname": _drop_invalid_characters(result.component),
-            "name": _drop_invalid_characters(result.name),
+            "classname": replace_illegal_in_xml(result.component)[0],
+            "name": replace_illegal_in_xml(result.name)[0],
         }
-        case = ElementTree.SubElement(suite, "testcase", {**names, **position})
+        case = etree.SubElement(suite, "testcase", {**names, **position})
         if result.difference is not None:
-            message = _drop_invalid_characters(str(result.difference))
-            failure = ElementTree.SubElement(case, "failure", {"message": message})
-            failure.text = f"{self.file}:{result.difference.line}: {message}"
+            message = replace_illegal_in_xml(str(result.difference))[0]
+            failure = etree.SubElement(case, "failure", {"message": message})
+            failure.text = f"{self._xml_file}:{result.difference.line}: {message}"
         elif not result.is_valid:
-            ElementTree.SubElement(case, "error", {"message": "the scenario is not valid"})
+            etree.SubElement(case, "error", {"message": "the scenario is not valid"})
         elif not result.is_decided:
-            ElementTree.SubElement(case, "error", {"message": "the scenario is not decided"})
+            etree.SubElement(case, "error", {"message": "the scenario is not decided"})
 
     def sequence_diagram(self) -> str:
         """Return the first failing run, else the first run, as a PlantUML diagram.
@@ -124,11 +127,6 @@ class Report(Struct, frozen=True):
         failed = [result for result in results_with_trace if result.difference is not None]
         shown = next(iter([*failed, *results_with_trace]), None)
         return "" if shown is None else "\n".join(_iter_diagram_lines(shown)) + "\n"
-
-
-def _drop_invalid_characters(text: str) -> str:
-    """Return the text without characters that XML forbids."""
-    return "".join(c for c in text if c in "\t\n" or (c >= " " and not "\ud800" <= c <= "\udfff"))
 
 
 def show_value(value: Literal | None) -> str:

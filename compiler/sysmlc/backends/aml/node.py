@@ -2,13 +2,12 @@
 
 import math
 from dataclasses import dataclass, field
-from typing import Any
 
 from lxml import etree
 
 from sysmlc.ir import AttrValue
 from sysmlc.sources.caex_vocabulary import NAMESPACE, ORDER
-from sysmlc.support.escapes import replace_illegal_in_xml
+from sysmlc.support.xml_text import print_tree
 
 _UNORDERED = frozenset({"AdditionalInformation"})
 """Elements that may hold any XML, so that their children stay in the author's order."""
@@ -54,29 +53,7 @@ class Node:
 
 def print_document(root: Node) -> tuple[str, int]:
     """Return the document as text, and the number of illegal characters replaced in it."""
-    replaced = 0
-
-    def make_legal(text: str) -> str:
-        nonlocal replaced
-        legal, count = replace_illegal_in_xml(text)
-        replaced += count
-        return legal
-
-    # The stubs of lxml do not know that None is the prefix of the default namespace.
-    namespaces: Any = {None: NAMESPACE}
-    top = etree.Element(f"{{{NAMESPACE}}}{root.tag}", nsmap=namespaces)
-    # A stack instead of recursion: models nest more deeply than Python's stack.
-    stack = [(root, top)]
-    while stack:
-        node, target = stack.pop()
-        for name, value in node.attributes.items():
-            target.set(name, make_legal(value))
-        if node.text:
-            target.text = make_legal(node.text)
-        for child in _sort_children(node):
-            stack.append((child, etree.SubElement(target, f"{{{NAMESPACE}}}{child.tag}")))
-    data = etree.tostring(top, pretty_print=True, xml_declaration=True, encoding="UTF-8")
-    return data.decode(), replaced
+    return print_tree(root, {"": NAMESPACE}, _sort_children)
 
 
 def _sort_children(node: Node) -> list[Node]:

@@ -13,7 +13,7 @@ from sysmlc.backends.uml.metaclasses import (
     UNSUPPORTED_KINDS,
     find_metaclass,
 )
-from sysmlc.backends.uml.node import Node, print_document
+from sysmlc.backends.uml.node import Node
 from sysmlc.backends.uml.relations import write_edges
 from sysmlc.backends.uml.rules import (
     ILLEGAL_CHARACTERS,
@@ -31,6 +31,7 @@ from sysmlc.ir.compare.titles import spell_kind
 from sysmlc.support import resources
 from sysmlc.support.counts import count
 from sysmlc.support.output import Output, assign_file_names
+from sysmlc.support.xml_text import print_tree
 
 _NAMESPACES = {
     "xmi": "http://www.omg.org/spec/XMI/20131001",
@@ -103,8 +104,7 @@ def write_document(graph: Graph, sink: Sink) -> str:
     _note_respelt_ids(context)
     namespaces = _NAMESPACES | stereotypes.namespaces
     document.attributes = {"xmi:version": "20131001"}
-    document.attributes |= {f"xmlns:{prefix}": space for prefix, space in namespaces.items()}
-    text, replaced = print_document(document)
+    text, replaced = print_tree(document, namespaces, lambda node: node.children)
     losses.report(sink)
     if replaced:
         subject = next((graph.subject(root) for root in graph.roots()), Subject())

@@ -2,7 +2,8 @@
 
 from functools import cache
 from urllib.parse import quote
-from xml.etree import ElementTree
+
+from lxml import etree
 
 from sysmlc.backends.uml.metaclasses import find_metaclass
 from sysmlc.backends.uml.node import Node
@@ -47,13 +48,13 @@ def list_shipped_libraries(graph: Graph) -> list[str]:
 def _read_library_ids(library: str) -> dict[tuple[str, ...], str]:
     """Return the ids in a shipped library for SysML v1 by the names on the path to the element."""
     ids: dict[tuple[str, ...], str] = {}
-    root = ElementTree.fromstring(resources.read_text("metamodels", f"{library}.uml"))
-    stack: list[tuple[ElementTree.Element, tuple[str, ...]]] = [(root, ())]
+    root = etree.parse(resources.path("metamodels", f"{library}.uml")).getroot()
+    stack: list[tuple[etree._Element, tuple[str, ...]]] = [(root, ())]
     while stack:
         node, path = stack.pop()
         if "name" in node.attrib:
-            path = (*path, node.attrib["name"])
-            ids[path] = node.get("{http://www.omg.org/spec/XMI/20131001}id", "")
+            path = (*path, str(node.attrib["name"]))
+            ids[path] = str(node.get("{http://www.omg.org/spec/XMI/20131001}id", ""))
         stack.extend((child, path) for child in node)
     return ids
 

@@ -1,15 +1,7 @@
-"""XML elements of XMI, printed as Eclipse prints them."""
+"""XML elements of XMI."""
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-
-from sysmlc.support.escapes import replace_illegal_in_xml
-
-_TEXT = {"&": "&amp;", "<": "&lt;", ">": "&gt;", "\r": "&#xD;"}
-# A parser replaces line ends and tabs in values of attributes by blanks (XML 1.0, 3.3.3).
-_VALUE = {"&": "&amp;", "<": "&lt;", '"': "&quot;", "\r": "&#xD;", "\n": "&#xA;", "\t": "&#x9;"}
-_ESCAPED_IN_TEXT, _ESCAPED_IN_VALUE = re.compile("[&<>\r]"), re.compile('[&<"\r\n\t]')
 
 
 @dataclass(slots=True, eq=False)
@@ -50,37 +42,3 @@ class Node:
             node = stack.pop()
             yield node
             stack.extend(child for child in reversed(node.children) if not child.is_element)
-
-
-def print_document(root: Node) -> tuple[str, int]:
-    """Return the document as text, and the number of illegal characters replaced in it."""
-    lines = ['<?xml version="1.0" encoding="UTF-8"?>']
-    # A stack instead of recursion: models nest more deeply than Python's stack. A string on the
-    # stack is an end tag.
-    stack: list[tuple[Node | str, int]] = [(root, 0)]
-    while stack:
-        node, depth = stack.pop()
-        if isinstance(node, str):
-            lines.append(node)
-        elif node.children:
-            lines.append(f"{'  ' * depth}{_format_start(node)}>")
-            stack.append((f"{'  ' * depth}</{node.tag}>", depth))
-            stack.extend((child, depth + 1) for child in reversed(node.children))
-        else:
-            end = f">{_escape_text(node.text)}</{node.tag}>" if node.text else "/>"
-            lines.append(f"{'  ' * depth}{_format_start(node)}{end}")
-    lines.append("")
-    return replace_illegal_in_xml("\n".join(lines))
-
-
-def _format_start(node: Node) -> str:
-    pairs = (f' {name}="{_escape_value(value)}"' for name, value in node.attributes.items())
-    return f"<{node.tag}{''.join(pairs)}"
-
-
-def _escape_text(text: str) -> str:
-    return _ESCAPED_IN_TEXT.sub(lambda match: _TEXT[match[0]], text)
-
-
-def _escape_value(text: str) -> str:
-    return _ESCAPED_IN_VALUE.sub(lambda match: _VALUE[match[0]], text)

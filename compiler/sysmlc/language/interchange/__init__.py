@@ -1,4 +1,7 @@
-"""Interchange of KerML and SysML v2 models: XMI files and project archives, in and out."""
+"""Interchange of KerML and SysML v2 models: XMI files and project archives.
+
+The module ``writer`` is imported when a file is written, because it needs lxml.
+"""
 
 from sysmlc.language.interchange.element_ids import ExchangeDocument, link
 from sysmlc.language.interchange.projects import (
@@ -9,18 +12,14 @@ from sysmlc.language.interchange.projects import (
     resolve_usages,
 )
 from sysmlc.language.interchange.reader import read
-from sysmlc.language.interchange.writer import InterchangeFiles, interchange_path, write
 
 __all__ = [
     "ExchangeDocument",
-    "InterchangeFiles",
     "Project",
     "ProjectUsage",
-    "interchange_path",
     "link",
     "open_archive",
     "read",
     "read_project",
     "resolve_usages",
-    "write",
 ]

@@ -1,9 +1,10 @@
 """Writer of trees of KerML and SysML v2 as XMI (.kermlx, .sysmlx; KerML 1.0, 10.2)."""
 
-import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from posixpath import dirname, relpath, splitext
 from urllib.parse import quote
+
+from lxml import etree
 
 from sysmlc.diagnostics import Rule, Sink, Subject
 from sysmlc.language.interchange import rules
@@ -18,7 +19,9 @@ from sysmlc.language.interchange.unfolding import Element, Link, unfold, walk_el
 from sysmlc.language.library import SHIPPED
 from sysmlc.language.metaclasses import is_a
 from sysmlc.language.tree import AttributeValue, Document, Node, find_root, locate
+from sysmlc.support.escapes import replace_illegal_in_xml
 from sysmlc.support.output import make_path_of_input
+from sysmlc.support.xml_text import make_root, print_element
 
 _MEMBERSHIPS = {"importedMembership"}
 """Features that refer to the membership of an element instead of the element."""
@@ -87,19 +90,9 @@ class InterchangeFiles:
 
 
 NAMESPACE = "https://www.omg.org/spec/SysML/20250201"
-_ROOT = (
-    'xmi:version="2.0" xmlns:xmi="http://www.omg.org/XMI"'
-    ' xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"'
-    f' xmlns:sysml="{NAMESPACE}"'
-)
+_XMI, _XSI = "http://www.omg.org/XMI", "http://www.w3.org/2001/XMLSchema-instance"
+_TYPE = f"{{{_XSI}}}type"
 _RELATIONSHIP, _RELATED = "ownedRelationship", "ownedRelatedElement"
-_ESCAPES = str.maketrans(
-    {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": "&#xA;", "\t": "&#x9;"}
-    | {"\r": "&#xD;"}
-)
-FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
-"""Characters that XML 1.0 excludes even as character references."""
-_REPLACEMENT = "\ufffd"
 _UNTYPED_FEATURES = {"memberElement", "annotatedElement", "client", "supplier"}
 """Features typed by the abstract Element: a reference to another file says the metaclass."""
 
@@ -107,42 +100,33 @@ Targets = dict[str, list[tuple[str, str]]]
 """The targets of an element by feature: the id or the href, and for an href the metaclass."""
 
 
-def write_lines(root: Element, targets: Callable[[Element], Targets]) -> Iterator[str]:
-    """Yield the lines of the file with this root namespace."""
-    yield '<?xml version="1.0" encoding="UTF-8"?>'
-    tag = f"sysml:{root.kind}"
-    stack: list[str | tuple[Element, str, str, str]] = [(root, tag, f"{tag} {_ROOT}", "")]
+def print_file(root: Element, targets: Callable[[Element], Targets]) -> str:
+    """Return the text of the file with this root namespace."""
+    namespaces = {"xmi": _XMI, "xsi": _XSI, "sysml": NAMESPACE}
+    top = make_root(f"{{{NAMESPACE}}}{root.kind}", namespaces)
+    top.set(f"{{{_XMI}}}version", "2.0")
+    # A stack instead of recursion: models nest more deeply than Python's stack.
+    stack = [(root, top)]
     while stack:
-        item = stack.pop()
-        if isinstance(item, str):
-            yield item
-        else:
-            yield _write_start_tag(*item, stack, targets(item[0]))
+        element, node = stack.pop()
+        element_targets = targets(element)
+        _set_attributes(element, node, element_targets)
+        _add_hrefs(node, element_targets)
+        for owned in element.owned:
+            child = etree.SubElement(node, _choose_tag(element, owned))
+            child.set(_TYPE, f"sysml:{owned.kind}")
+            stack.append((owned, child))
+    return print_element(top)
 
 
-def _write_start_tag(
-    element: Element,
-    tag: str,
-    start: str,
-    indent: str,
-    stack: list[str | tuple[Element, str, str, str]],
-    targets: Targets,
-) -> str:
-    """Return the start tag of an element; push its content and end tag on the stack."""
-    local_ids = {name: [id for id, kind in ones if not kind] for name, ones in targets.items()}
-    texts = {name: _write_value(fact) for name, fact in element.attributes.items()}
-    texts |= {name: " ".join(ids) for name, ids in local_ids.items() if ids}
-    attributes = "".join(f' {name}="{text.translate(_ESCAPES)}"' for name, text in texts.items())
-    inner = f"{indent}  "
-    hrefs = list(_write_hrefs(targets, inner))
-    start_tag = f'{indent}<{start} xmi:id="{element.id}" elementId="{element.id}"{attributes}'
-    if not element.owned and not hrefs:
-        return f"{start_tag}/>"
-    stack += [f"{indent}</{tag}>", *reversed(hrefs)]
-    for owned in reversed(element.owned):
-        name = _choose_tag(element, owned)
-        stack.append((owned, name, f'{name} xsi:type="sysml:{owned.kind}"', inner))
-    return f"{start_tag}>"
+def _set_attributes(element: Element, node: "etree._Element", targets: Targets) -> None:
+    node.set(f"{{{_XMI}}}id", element.id)
+    node.set("elementId", element.id)
+    for name, fact in element.attributes.items():
+        node.set(name, _write_value(fact))
+    for name, references in targets.items():
+        if local_ids := [id for id, kind in references if not kind]:
+            node.set(name, " ".join(local_ids))
 
 
 def _choose_tag(element: Element, owned: Element) -> str:
@@ -155,26 +139,32 @@ def _choose_tag(element: Element, owned: Element) -> str:
     return _RELATED if is_plain and owned.kind != "Annotation" else _RELATIONSHIP
 
 
-def _write_hrefs(targets: Targets, indent: str) -> Iterable[str]:
+def _add_hrefs(node: "etree._Element", targets: Targets) -> None:
     for name, references in targets.items():
         for href, kind in references:
             if kind:
+                child = etree.SubElement(node, name)
                 # A reader cannot create a proxy of the abstract metaclass Element, so the href has
                 # a type.
-                type = f' xsi:type="sysml:{kind}"' if name in _UNTYPED_FEATURES else ""
-                yield f'{indent}<{name}{type} href="{href.translate(_ESCAPES)}"/>'
+                if name in _UNTYPED_FEATURES:
+                    child.set(_TYPE, f"sysml:{kind}")
+                child.set("href", replace_illegal_in_xml(href)[0])
 
 
 def _write_value(fact: AttributeValue) -> str:
     if isinstance(fact, bool):
         return "true" if fact else "false"
-    return FORBIDDEN.sub(_REPLACEMENT, str(fact))
+    return replace_illegal_in_xml(str(fact))[0]
 
 
 def _find_unwritable(element: Element) -> Iterator[str]:
     """Yield the features of the element with characters that XML cannot have."""
     for name, fact in element.attributes.items():
-        if isinstance(fact, str) and name in list_features(element.kind) and FORBIDDEN.search(fact):
+        if (
+            isinstance(fact, str)
+            and name in list_features(element.kind)
+            and replace_illegal_in_xml(fact)[1]
+        ):
             yield name
 
 
@@ -196,7 +186,7 @@ def write(
     """
     files = others if isinstance(others, InterchangeFiles) else InterchangeFiles(others)
     writer = _Writer(document, files, sink, path_of or interchange_path)
-    return ("\n".join(write_lines(writer.root, writer.targets)) + "\n").encode()
+    return print_file(writer.root, writer.targets).encode()
 
 
 def interchange_path(document: Document) -> str:
