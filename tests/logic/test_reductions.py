@@ -9,6 +9,7 @@ from random_contracts import apply_binary, apply_unary
 from long_runs import examples
 from spot_formulas import conjoin, conjoin_parts, print_for_spot
 from sysmlc.logic import formula as f
+from sysmlc.logic.classification import classify
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owner, Variable
 from sysmlc.logic.formal_texts import read_temporal_logic
 from sysmlc.logic.formula import Op, Var
@@ -66,6 +67,10 @@ def are_equivalent(formula, parts, history):
         ("G (a -> F F b)", None, None),
         ("G F (a & F b)", None, None),
         ("F (a & X X b)", None, None),
+        ("X (a U X !b)", None, None),
+        ("a W X b", None, None),
+        ("X a R b", None, None),
+        ("G (c -> a U X X b)", None, None),
     ],
 )
 def test_formulas_with_a_known_reduction_become_gr1(text, parts, bits):
@@ -125,6 +130,7 @@ STATES = st.recursive(
     lambda inner: st.one_of(st.builds(f.negate, inner), st.builds(f.either, inner, inner)),
     max_leaves=2,
 )
+STEPS = STATES | apply_unary([Op.NEXT], STATES)
 BODIES = st.recursive(
     STATES,
     lambda inner: st.one_of(
@@ -132,7 +138,7 @@ BODIES = st.recursive(
         st.builds(f.both, inner, inner),
         st.builds(f.negate, inner),
         apply_unary([Op.NEXT, Op.ALWAYS, Op.EVENTUALLY], inner),
-        apply_binary([Op.UNTIL, Op.WEAK_UNTIL, Op.RELEASE], STATES, STATES),
+        apply_binary([Op.UNTIL, Op.WEAK_UNTIL, Op.RELEASE], STEPS, STEPS),
     ),
     max_leaves=3,
 )
@@ -179,3 +185,9 @@ def test_an_assumption_is_about_the_inputs_that_the_environment_chooses():
     reduced = reduce_contract(Contract("C", "", variables, (late,), ())).contract
     assumptions = [(item.class_, print_formula(item.formula)) for item in reduced.assumptions]
     assert assumptions == [(Class.SAFETY, "a -> !b'"), (Class.SAFETY, "was_1 -> !b'")]
+
+
+@pytest.mark.parametrize("text", ["a", "a | b", "a U b", "F a"])
+def test_what_holds_now_and_from_the_next_step_on_holds_always(text):
+    spelt, plain = parse(f"({text}) & X G ({text})"), parse(f"G ({text})")
+    assert list(classify(spelt)) == list(classify(plain))

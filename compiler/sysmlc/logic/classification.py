@@ -17,7 +17,7 @@ def classify(formula: Formula) -> Iterator[tuple[Class, Formula]]:
     """
     match formula:
         case Apply(Op.AND, args):
-            for arg in args:
+            for arg in _join_always(args):
                 yield from classify(arg)
         case Apply(Op.ALWAYS, (Apply(Op.AND, args),)):
             for arg in args:
@@ -35,6 +35,13 @@ def classify(formula: Formula) -> Iterator[tuple[Class, Formula]]:
         case _:
             is_initial = not has_future(formula) and not has_primes(formula)
             yield (Class.INIT if is_initial else Class.OTHER), formula
+
+
+def _join_always(args: tuple[Formula, ...]) -> list[Formula]:
+    """Replace ``p`` and ``X G p`` by ``G p``."""
+    later = {Apply(Op.NEXT, (f.always(arg),)): arg for arg in args}
+    joined = {later[arg] for arg in args if arg in later}
+    return [f.always(arg) if arg in joined else arg for arg in args if arg not in later]
 
 
 def word_conjuncts(conjuncts: Sequence[Conjunct], wording: Formula | None) -> Iterator[Conjunct]:

@@ -1,8 +1,8 @@
 """Normal form of formulas that no reduction to GR(1) fits as they are written.
 
 Negations stand before formulas about the present and the past, implications are disjunctions, and
-operators have one spelling: ``p W false`` is ``G p``, ``X p U X q`` is ``X (p U q)``, and
-``G p | p U q`` is ``p W q``.
+operators have one spelling: ``p W false`` is ``G p``, ``X p U X q`` is ``X (p U q)``, ``p U X q``
+is ``X (Y p U q)``, and ``G p | p U q`` is ``p W q``.
 """
 
 from collections.abc import Callable
@@ -43,8 +43,15 @@ def _apply(op: Op, args: tuple[Formula, ...]) -> Formula:
         return args[-1]
     if op in FUTURE and op is not Op.NEXT:
         stripped = [_strip_next(arg) for arg in args]
-        if all(arg is not None for arg in stripped):
-            return Apply(Op.NEXT, (_apply(op, tuple(arg for arg in stripped if arg is not None)),))
+        if any(arg is not None and not isinstance(arg, Const) for arg in stripped):
+            shifted = [
+                _shift_back(arg) if inner is None else inner
+                for arg, inner in zip(args, stripped, strict=True)
+            ]
+            if None not in shifted:
+                return Apply(
+                    Op.NEXT, (_apply(op, tuple(arg for arg in shifted if arg is not None)),)
+                )
     return _REWRITTEN[op](args) if op in _REWRITTEN else Apply(op, args)
 
 
@@ -60,6 +67,11 @@ def _strip_next(formula: Formula) -> Formula | None:
             return _apply(op, stripped) if len(stripped) == len(args) else None
         case _:
             return None
+
+
+def _shift_back(formula: Formula) -> Formula | None:
+    """Return the formula as seen from the next step, if it has no future."""
+    return None if has_future(formula) else Apply(Op.PREVIOUS, (formula,))
 
 
 def _join_next(disjunction: Formula) -> Formula:
