@@ -81,7 +81,7 @@ CYCLES = [
 ]
 """Modules whose functions take an object whose class imports them, for the type checker only."""
 
-REGISTRIES = {"sysmlc", "sysmlc.api", "sysmlc.driver.registry", "sysmlc.ir", "sysmlc.frontends.ir"}
+REGISTRIES = {"sysmlc", "sysmlc.driver.registry", "sysmlc.ir", "sysmlc.frontends.ir"}
 """Modules that load front ends, passes, back ends or a reader when they are used."""
 
 PLATFORM_MODULES = {"fcntl", "resource"}

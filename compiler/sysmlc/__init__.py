@@ -10,13 +10,15 @@ which may belong to a stranger, still comes first in the search for modules (see
 TYPE_CHECKING = False
 """Type checkers take it as true, like the name in ``typing``."""
 if TYPE_CHECKING:
-    from sysmlc.api import (
+    from sysmlc.api.compiling import (
+        Change,
         Compilation,
         Config,
         Contract,
         Diagnostic,
         Edge,
         Element,
+        Finding,
         Graph,
         Kind,
         Pass,
@@ -26,19 +28,39 @@ if TYPE_CHECKING:
         Severity,
         Sink,
         compile_model,
+        compile_texts,
+        diff,
+        format_findings,
+        list_findings,
         query,
         rule,
+        write,
+    )
+    from sysmlc.api.verification import (
+        CheckedContract,
+        CompositionVerdict,
+        ContractChecks,
+        SimulationReport,
+        Synthesis,
+        check_contracts,
+        simulate,
+        synthesise,
     )
 
 __version__ = "0.1.0"
 
 __all__ = [
+    "Change",
+    "CheckedContract",
     "Compilation",
+    "CompositionVerdict",
     "Config",
     "Contract",
+    "ContractChecks",
     "Diagnostic",
     "Edge",
     "Element",
+    "Finding",
     "Graph",
     "Kind",
     "Pass",
@@ -46,11 +68,34 @@ __all__ = [
     "Request",
     "Rule",
     "Severity",
+    "SimulationReport",
     "Sink",
+    "Synthesis",
+    "check_contracts",
     "compile_model",
+    "compile_texts",
+    "diff",
+    "format_findings",
+    "list_findings",
     "query",
     "rule",
+    "simulate",
+    "synthesise",
+    "write",
 ]
+
+
+_VERIFICATION = (
+    "CheckedContract",
+    "CompositionVerdict",
+    "ContractChecks",
+    "SimulationReport",
+    "Synthesis",
+    "check_contracts",
+    "simulate",
+    "synthesise",
+)
+"""Names of ``sysmlc.api.verification``; the others are those of ``sysmlc.api.compiling``."""
 
 
 def __getattr__(name: str) -> object:
@@ -58,7 +103,8 @@ def __getattr__(name: str) -> object:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from importlib import import_module
 
-    return getattr(import_module("sysmlc.api"), name)
+    module = "verification" if name in _VERIFICATION else "compiling"
+    return getattr(import_module(f"sysmlc.api.{module}"), name)
 
 
 def __dir__() -> list[str]:

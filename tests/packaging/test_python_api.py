@@ -36,8 +36,9 @@ def test_an_example_prints_the_output_on_the_page(
     assert output
 
 
-def test_the_three_examples_have_their_output_on_the_page():
-    assert set(OUTPUTS) == {"ports", "dependencies", "check"} < {name for name, _ in EXAMPLES}
+def test_the_examples_have_their_output_on_the_page():
+    names = {"ports", "dependencies", "check", "requirements"}
+    assert set(OUTPUTS) == names < {name for name, _ in EXAMPLES}
 
 
 @pytest.mark.parametrize("name", sysmlc.__all__)
@@ -68,6 +69,70 @@ def test_outputs_are_not_written_to_files(tmp_path):
     compilation = sysmlc.compile_model([model], emit=["ir"])
     assert [artefact.path for artefact in compilation.artefacts] == ["graph.ir"]
     assert list(tmp_path.iterdir()) == [model]
+
+
+GATE = """package Plant {
+    part def Gate { attribute open : ScalarValues::Boolean; part bolt : Bolt; }
+}
+"""
+LAMP = """package Plant {
+    part def Lamp {
+        in attribute wanted : ScalarValues::Boolean;
+        out attribute lit : ScalarValues::Boolean;
+    }
+    requirement def Shines {
+        subject lamp : Lamp;
+        require constraint { language "ltl" /* G (wanted -> X lit) */ }
+    }
+}
+"""
+
+
+def test_findings_of_texts_in_memory_have_locations():
+    compilation = sysmlc.compile_texts({"gate.sysml": GATE})
+    (finding,) = sysmlc.list_findings(compilation)
+    assert finding.where == "gate.sysml:2:73"
+    assert "unknown name 'Bolt'" in finding.diagnostic.message
+    text = sysmlc.format_findings([finding], "concise")
+    assert "error[SM205 unresolved-name]" in text
+    fixed = {"gate.sysml": GATE, "bolt.sysml": "package Plant { part def Bolt; }"}
+    assert sysmlc.list_findings(sysmlc.compile_texts(fixed)) == []
+
+
+def test_elements_are_found_by_qualified_name():
+    graph = sysmlc.compile_texts({"gate.sysml": GATE.replace("part bolt : Bolt;", "")}).graph
+    assert graph.find("Plant::Gate::open").name == "open"
+    assert graph.find("Plant::open") is None
+
+
+def test_a_controller_is_synthesised_and_written_outputs_stay_as_they_are(tmp_path):
+    compilation = sysmlc.compile_texts({"lamp.sysml": LAMP}, emit=["contracts"])
+    (contract,) = compilation.graph.derived(sysmlc.Contract)
+    assert sysmlc.synthesise(contract).machine is not None
+    checks = sysmlc.check_contracts(compilation)
+    assert [result.verdict.is_realizable for result in checks.contracts] == [True]
+    assert "manifest.json" in sysmlc.write(compilation, tmp_path / "out").changed
+    assert sysmlc.write(compilation, tmp_path / "out").changed == ()
+
+
+def test_a_scenario_is_played():
+    machine = "exhibit state s { entry; then off; state off; accept Go then on; state on; }"
+    text = f"package Plant {{ item def Go; part def Lamp {{ {machine} }} }}"
+    steps = "[{expect: {state: off}, inputs: {event: Go}}, {expect: {state: on}}]"
+    scenarios = f"name: Go lights the lamp\ncomponent: Lamp\nsteps: {steps}\n"
+    sink = sysmlc.Sink()
+    report = sysmlc.simulate(sysmlc.compile_texts({"lamp.sysml": text}), scenarios, sink)
+    assert [diagnostic.message for diagnostic in sink] == []
+    assert report.passed
+
+
+def test_two_models_are_compared(tmp_path):
+    for name, text in (("old", GATE), ("new", GATE.replace("open", "opened"))):
+        (tmp_path / f"{name}.sysml").write_text(text)
+    changes = sysmlc.diff(tmp_path / "old.sysml", tmp_path / "new.sysml")
+    assert [(change.what, change.before, change.after) for change in changes] == [
+        ("renamed", "open", "opened")
+    ]
 
 
 def test_a_request_can_be_compiled(tmp_path):

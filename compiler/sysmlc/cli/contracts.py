@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from sysmlc.cli.contract_files import ContractFile
     from sysmlc.cli.session import Settings
     from sysmlc.diagnostics.renderers import Finding
-    from sysmlc.logic.contract import Composite
     from sysmlc.logic.requirements.statements import StatedRequirement
     from sysmlc.recipe.recipe_times import LimitVerdict
     from sysmlc.synthesis.composition_check import CompositionVerdict
@@ -110,6 +109,7 @@ def _check(
     from sysmlc.cli.contract_files import select_contracts, show_results
     from sysmlc.cli.reports import publish_results
     from sysmlc.cli.session import fail
+    from sysmlc.logic.composition.derivation import list_checked_composites
     from sysmlc.synthesis.composition_check import check_compositions
     from sysmlc.synthesis.contract_checks import check_contracts
     from sysmlc.synthesis.witnesses import witness_files
@@ -125,8 +125,8 @@ def _check(
             fail("all contracts are about libraries that the model does not use; name one with -c")
     place, sink, behaviours = contract_file.place, contract_file.sink, contract_file.behaviours
     composites = [
-        _without_demands(composite) if composite.component in behaviours else composite
-        for composite in contract_file.composites
+        composite
+        for composite in list_checked_composites(contract_file.composites, behaviours)
         if component == composite.component
         or (not component and composite.origin not in contract_file.unused)
     ]
@@ -198,12 +198,6 @@ def _find_exit_code(
     diagnostics = (finding.diagnostic for finding in list_findings(contract_file))
     reported = (item for item in diagnostics if is_reported(item, settings))
     return compute_exit_code(reported, settings.strict)
-
-
-def _without_demands(composite: "Composite") -> "Composite":
-    """Return the parts of a block that has a behaviour, which answers for its requirements."""
-    whole = composite.whole and replace(composite.whole, guarantees=())
-    return replace(composite, whole=whole)
 
 
 def _format_result(result: "CheckedContract", is_verbose: bool) -> "Iterator[str]":

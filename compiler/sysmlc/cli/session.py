@@ -20,9 +20,6 @@ if TYPE_CHECKING:
     from sysmlc.sources.user_schemas import Schemas
     from sysmlc.support.cache import Cache
 
-_READING_PASSES = frozenset({"resolve", "kept"})
-"""Passes that only resolve references and preserve what the authors wrote."""
-
 
 class Settings(Struct, frozen=True):
     """The options of the command line that concern reading, emitting and reporting."""
@@ -179,7 +176,9 @@ def compile_unit(
 
 def read_as_written(unit: "Unit", settings: Settings) -> "Compilation":
     """Read a unit and resolve its references without refining the graph."""
-    passes = tuple(step for step in unit.request.load_passes() if step.name in _READING_PASSES)
+    from sysmlc.passes import pipeline
+
+    passes = tuple(step for step in unit.request.load_passes() if step.name in pipeline.READING)
     return _compile(replace(unit.request, passes=passes), settings, unit.opened, analyses=())
 
 

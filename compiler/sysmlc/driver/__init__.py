@@ -6,6 +6,7 @@ from sysmlc.driver.compilation import (
     OpenedUnit,
     Request,
     compile_model,
+    open_texts,
     open_unit,
 )
 from sysmlc.driver.outcome import (
@@ -46,6 +47,7 @@ __all__ = [
     "load_all_backends",
     "load_backends",
     "load_full_catalogue",
+    "open_texts",
     "open_unit",
     "open_units",
     "publish",

@@ -16,7 +16,7 @@ from sysmlc.diagnostics.locations import complete_places
 from sysmlc.diagnostics.sink import suppress
 from sysmlc.driver import faults, registry
 from sysmlc.driver.ignore_comments import drop_ignored
-from sysmlc.driver.inputs import find_unit_root
+from sysmlc.driver.inputs import find_unit_root, recognise
 from sysmlc.driver.reading import Reading, load_companions, read_unit, store_refinements
 from sysmlc.driver.validation import validate
 from sysmlc.driver.withholding import find_withheld_artefacts
@@ -25,7 +25,7 @@ from sysmlc.ir import Graph
 from sysmlc.ir.verify import verify
 from sysmlc.overlay import SUFFIX
 from sysmlc.passes.pipeline import Pass
-from sysmlc.sources import Source, SourceError
+from sysmlc.sources import Roots, Source, SourceError
 from sysmlc.support.counts import count as count_nouns
 from sysmlc.support.output import Artefact, Output
 from sysmlc.support.suggestions import did_you_mean
@@ -156,6 +156,22 @@ def open_unit(request: Request) -> OpenedUnit:
         finds_siblings=request.finds_siblings,
     )
     return OpenedUnit(root, reading, sink, frontends, load_drawings(request, reading, root, sink))
+
+
+def open_texts(texts: Mapping[str, str | bytes], request: Request) -> OpenedUnit:
+    """Return the unit of texts in memory, by the name of the file that each stands for.
+
+    References to other files lead to external stubs, because nothing is read from disk.
+    """
+    sink = Sink(request.config.rules)
+    frontends = request.frontends or tuple(registry.load_frontends(request.library))
+    sources = [
+        Source(name, text.encode() if isinstance(text, str) else text)
+        for name, text in sorted(texts.items())
+    ]
+    recognised = tuple(recognise(sources, frontends, faults.UNRECOGNISED, sink))
+    reading = Reading(recognised, len(recognised) == len(sources), Roots(()))
+    return OpenedUnit(Path.cwd(), reading, sink, frontends)
 
 
 def load_drawings(request: Request, reading: Reading, root: Path, sink: Sink) -> tuple[Source, ...]:

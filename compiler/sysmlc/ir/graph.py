@@ -51,6 +51,12 @@ class Graph:
     def __getitem__(self, id: str) -> Element:
         return self._elements[id]
 
+    def find(self, name: str) -> Element | None:
+        """Return the first element with a qualified name such as ``Plant::Gate``, or None."""
+        last_name = name.rpartition("::")[2]
+        candidates = (element for element in self if element.name == last_name)
+        return next((e for e in candidates if self.qualified_name(e) == name), None)
+
     def __iter__(self) -> Iterator[Element]:
         return iter(self._elements.values())
 

@@ -44,6 +44,10 @@ NAMES = (
 """All passes in order; the class of a pass is its capitalised name in ``sysmlc.passes.<name>``."""
 
 
+READING = ("resolve", "kept")
+"""Passes that only resolve references and preserve what the authors wrote."""
+
+
 class InvalidGraphError(RuntimeError):
     """A front end or a pass left a graph that ``verify`` rejects: a fault of the compiler."""
 

@@ -4,7 +4,7 @@ The direction of a port decides which member owns its variable. Connectors make 
 sender and the input of the receiver one variable (SysML 1.6 clause 9.3.2).
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 
 from msgspec import Struct
 from msgspec.structs import replace
@@ -58,6 +58,22 @@ UNCLEAR_FLOW = rule(
     "{count} of them have '{feature}'",
     help="draw a connector between the parts, and let the flow be realised by it",
 )
+
+
+def list_checked_composites(
+    composites: Iterable[Composite], behaviours: Container[str]
+) -> list[Composite]:
+    """Return the composites as they are checked; *behaviours* are components with a behaviour.
+
+    A block with a behaviour of its own has no demands on its parts: the behaviour answers for the
+    requirements of the block.
+    """
+    return [
+        replace(composite, whole=composite.whole and replace(composite.whole, guarantees=()))
+        if composite.component in behaviours
+        else composite
+        for composite in composites
+    ]
 
 
 def compose_blocks(graph: Graph, contracts: Iterable[Contract], sink: Sink) -> Iterator[Composite]:
