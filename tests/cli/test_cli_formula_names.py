@@ -48,6 +48,10 @@ LINE = """package Line {{
             "'r.holdin' denotes no feature, value, state or event of 'Robot'; "
             "did you mean 'holding'?",
         ),
+        (
+            "G abs(holding) <= 3",
+            "formulas have no functions: for 'abs(x) <= 3' write 'x >= -3 & x <= 3'",
+        ),
         ("G (Busy -> F holding)", "'Busy' is not Boolean; did you mean 'state=Busy'?"),
     ],
 )

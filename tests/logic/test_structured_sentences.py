@@ -389,6 +389,11 @@ def test_sentences_in_other_words(sentence, formula):
             (1, 16),
             "'at the next timepoint' or 'at the last timepoint' is expected, not 'at'",
         ),
+        (
+            "the gate shall always satisfy r. It shall open.",
+            (1, 34),
+            "a formula is one sentence; write the next in a constraint of its own",
+        ),
         ("the gate shall always satisfy q", (1, 31), "'q' is neither a variable nor a literal"),
         (
             "In Flying mode the gate shall satisfy r",

@@ -51,6 +51,23 @@ def test_the_pass_leaves_the_elements_unchanged_and_is_idempotent():
 # -- edges and workers --------------------------------------------------------------------------
 
 
+def test_actions_without_names_are_named_after_what_they_call_or_assign():
+    lines = sketch("action x\naction y\naction c\naction o\nx -> y\ny -> c\nc -> o").splitlines()
+    named = {'x "x"': "level := 1", 'y "y"': "level := level + 1", 'c "c"': "", 'o "o"': "wait()"}
+    for name, body in named.items():
+        unnamed = f'{name[0]} body="{body}"' if body else name[0]
+        lines = [line.replace(f"Action {name}", f"Action {unnamed}") for line in lines]
+    index = next(number for number, line in enumerate(lines) if "Action c" in line)
+    lines.insert(index + 1, "    -> calls close")
+    graph = derive_token_graph("\n".join([*lines, 'Activity close "Close"', ""]))
+    assert [(node.label, node.run) for node in graph.nodes if node.run] == [
+        ("action 'assign level'", "run_assign_level"),
+        ("action 'assign level 2'", "run_assign_level_2"),
+        ("action 'Close'", "run_Close"),
+        ("action 4", "run_action_4"),
+    ]
+
+
 def test_each_edge_has_a_boolean_and_each_action_a_run_variable():
     graph = derive_token_graph(
         sketch(

@@ -37,6 +37,12 @@ is known has the domain as its kind.
 Kind = str | EnumerationDomain
 _CHAINS: dict[Op, Callable[..., Formula]] = {Op.AND: f.both, Op.OR: f.either}
 _FOLDING: dict[Op, Callable[[Formula, Formula], Formula]] = {Op.IMPLIES: f.implies, Op.IFF: f.iff}
+_REWRITTEN_FUNCTIONS = {
+    "abs": "for 'abs(x) <= 3' write 'x >= -3 & x <= 3'",
+    "max": "for 'max(x, y) <= 3' write 'x <= 3 & y <= 3'",
+    "min": "for 'min(x, y) <= 3' write 'x <= 3 | y <= 3'",
+}
+"""Functions that authors use, and the nearest form that is a formula."""
 
 
 class Term(NamedTuple):
@@ -271,6 +277,9 @@ class FormulaReader:
             return self.build_variable(token, self.cursor.accept("'"))
         if self._is_declared(token.text):
             return Term(Const(token.text), WORD, token.offset)
+        if token.text in _REWRITTEN_FUNCTIONS and self.cursor.next.text == "(":
+            advice = f"formulas have no functions: {_REWRITTEN_FUNCTIONS[token.text]}"
+            raise FormulaError(advice, token.offset)
         similar = find_similar(token.text, self._iter_words())
         raise UnknownNameError(token.text, similar, token.offset)
 

@@ -120,7 +120,10 @@ class WordReader:
 
     def read_end(self) -> None:
         """Read the optional full stop. Raises FormulaError if the text goes on."""
-        self._cursor.accept(".")
+        has_stop = self._cursor.accept(".")
+        if has_stop and not self._cursor.is_at_end:
+            advice = "a formula is one sentence; write the next in a constraint of its own"
+            raise FormulaError(advice, self._cursor.next.offset)
         if not self._cursor.is_at_end:
             self._cursor.fail("the end of the sentence is expected")
 

@@ -174,7 +174,8 @@ def add_node(draft: Draft, node: Element) -> None:
     """Add the token node of a drawn node, and the variables that it needs."""
     label = draft.drawing.labels[node.id]
     kind = _classify_node(draft, node)
-    short = identifier(node.name or _DEFAULT_NAMES.get(node.subkind, label))
+    title = draft.drawing.titles[node.id]
+    short = identifier(title or _DEFAULT_NAMES.get(node.subkind, label))
     draft.put_node(TokenNode(node.id, kind, label, node.id, draft.drawing.region[node.id]), short)
     if kind is NodeKind.ACTION:
         draft.put_node(_add_action_variables(draft, node, draft.nodes[node.id]), short)

@@ -4,6 +4,7 @@ A structured node is a region of its own. Each test, body and set-up of a loop o
 becomes a structured node too (``Part``), so that it starts and ends as a whole.
 """
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
@@ -34,6 +35,8 @@ _WORDS = {
     Kind.DATA_STORE: "data store",
 }
 _ACTION_WORDS = {"accept": "accept action", "accept-call": "accept action", "send": "send action"}
+_ASSIGNMENT = re.compile(r"\s*([\w.]+)\s*:=[^;]*;?\s*")
+"""A text that is one assignment."""
 _CONTROL_WORDS = {"initial": "initial node", "final": "activity final node"}
 
 
@@ -69,6 +72,8 @@ class Drawing:
     flows: list[Flow] = field(default_factory=list)
     region: dict[str, str] = field(default_factory=dict)
     parts: dict[str, list[Part]] = field(default_factory=dict)
+    titles: dict[str, str] = field(default_factory=dict)
+    """The name of each node, or what it calls or assigns, or nothing."""
     labels: dict[str, str] = field(default_factory=dict)
     handlers: dict[str, list[Handler]] = field(default_factory=dict)
 
@@ -112,7 +117,7 @@ def read_drawing(graph: Graph, activity: Element, sink: Sink) -> Drawing:
     if takes_one_step(activity):
         drawing.nodes.append(activity)
         drawing.region[activity.id] = ACTIVITY_REGION
-        _name_nodes(drawing)
+        _name_nodes(graph, drawing)
         return drawing
     # Groups and expansion nodes are no regions: nodes in them belong to the region around them.
     groups = find_groups(graph, drawing.inside)
@@ -120,7 +125,7 @@ def read_drawing(graph: Graph, activity: Element, sink: Sink) -> Drawing:
     _collect_nodes(
         graph, drawing, activity, ACTIVITY_REGION, frozenset([*groups, *expansion_nodes])
     )
-    _name_nodes(drawing)
+    _name_nodes(graph, drawing)
     for group in filter(lambda node: is_entered_again(graph, node), groups.values()):
         label = f"structured node '{group.name}'" if group.name else "a structured node"
         sink.report(rules.GROUPING, graph.subject(group), node=label)
@@ -152,14 +157,27 @@ def _collect_nodes(
             _collect_nodes(graph, drawing, element, element.id, dissolved)
 
 
-def _name_nodes(drawing: Drawing) -> None:
+def _name_nodes(graph: Graph, drawing: Drawing) -> None:
     numbers: dict[str, int] = {}
+    uses = dict.fromkeys((node.name for node in drawing.nodes), 1)
     for node in drawing.nodes:
         word = _describe_kind(node)
         numbers[word] = numbers.get(word, 0) + 1
-        drawing.labels[node.id] = (
-            f"{word} '{node.name}'" if node.name else f"{word} {numbers[word]}"
-        )
+        title = node.name or _describe_content(graph, node)
+        if title and not node.name:
+            uses[title] = uses.get(title, 0) + 1
+            title = title if uses[title] == 1 else f"{title} {uses[title]}"
+        drawing.titles[node.id] = title
+        drawing.labels[node.id] = f"{word} '{title}'" if title else f"{word} {numbers[word]}"
+
+
+def _describe_content(graph: Graph, node: Element) -> str:
+    """Return what an action without a name calls or assigns, or nothing."""
+    called = graph.target(node, Edge.CALLS)
+    if called is not None and node.subkind not in _ACTION_WORDS:
+        return called.name
+    assignment = _ASSIGNMENT.fullmatch(str(node.attrs.get("body", "")))
+    return f"assign {assignment[1]}" if assignment else ""
 
 
 def _describe_kind(node: Element) -> str:
