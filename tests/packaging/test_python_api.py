@@ -95,7 +95,8 @@ def test_findings_of_texts_in_memory_have_locations():
     assert "unknown name 'Bolt'" in finding.diagnostic.message
     text = sysmlc.format_findings([finding], "concise")
     assert "error[SM205 unresolved-name]" in text
-    fixed = {"gate.sysml": GATE, "bolt.sysml": "package Plant { part def Bolt; }"}
+    imported = GATE.replace("part bolt : Bolt;", "part bolt : Parts::Bolt;")
+    fixed = {"gate.sysml": imported, "parts.sysml": "package Parts { part def Bolt; }"}
     assert sysmlc.list_findings(sysmlc.compile_texts(fixed)) == []
 
 
