@@ -45,7 +45,7 @@ SUBLAYERS = {
         {"games"},
         {"unrealizable", "algebra"},
         {"decision", "controllers", "lints"},
-        {"certain_runs", "relevant_inputs", "witnesses"},
+        {"certain_runs", "witnesses"},
         {"controller_synthesis", "counterstrategy"},
         {"composition_check", "requirement_verdicts"},
         {"contract_checks", "controller_files"},

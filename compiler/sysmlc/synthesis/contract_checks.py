@@ -6,10 +6,12 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.basis import Basis
 from sysmlc.logic.components.derivation import ComponentBehaviour
-from sysmlc.logic.contract import Conjunct, Contract, Owner
+from sysmlc.logic.contract import Conjunct, Contract, Domain, Owner
+from sysmlc.logic.evaluate import find_violation
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import reduce_contract
 from sysmlc.synthesis.algebra.composition import conjoin_viewpoints
@@ -20,7 +22,6 @@ from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.synthesis.decision import Options, Place, Verdict, decide
 from sysmlc.synthesis.games.game import OutsideGr1Error, make_game
 from sysmlc.synthesis.lints import lint
-from sysmlc.synthesis.relevant_inputs import find_relevant_inputs
 from sysmlc.synthesis.requirement_verdicts import (
     Answer,
     BehaviourCheck,
@@ -43,6 +44,50 @@ from sysmlc.synthesis.witnesses import (
     report_failure,
     text_in_parentheses,
 )
+
+_MAX_VALUATIONS = 64
+"""Combinations of input values that are tried; with more of them an input counts as relevant."""
+
+
+def find_relevant_inputs(trace: Trace, behaviour: Contract) -> frozenset[str]:
+    """Return constant inputs without whose values the run would not be one of the behaviour.
+
+    The inputs are freed in turn. Those that stay free may have any value, all together: the run
+    satisfies each conjunct all the same.
+    """
+    constant_inputs = {
+        variable.name: variable.domain
+        for variable in behaviour.variables
+        if variable.owner is Owner.ENVIRONMENT
+        and variable.name in trace.steps[0]
+        and len({step.get(variable.name) for step in trace.steps}) == 1
+    }
+    free: dict[str, Domain] = {}
+    for name, domain in constant_inputs.items():
+        if _may_vary(trace, behaviour, name, {**free, name: domain}):
+            free[name] = domain
+    return frozenset(constant_inputs.keys() - free.keys())
+
+
+def _may_vary(trace: Trace, behaviour: Contract, name: str, free: dict[str, Domain]) -> bool:
+    """Whether the run satisfies all conjuncts about an input whatever the free inputs are."""
+    known = set(trace.steps[0])
+    for conjunct in (*behaviour.guarantees, *behaviour.assumptions):
+        read = f.variable_names(conjunct.formula)
+        if name not in read or not read <= known:
+            continue
+        varied = {input: domain for input, domain in free.items() if input in read}
+        if domains.count(varied) > _MAX_VALUATIONS:
+            return False
+        for values in domains.valuations(varied):
+            steps = [{**step, **values} for step in trace.steps]
+            if find_violation(conjunct, steps, trace.loop) is not None:
+                return False
+    return True
+
+
+# -- checks ----------------------------------------------------------------------------------------
+
 
 SUFFIX = ".requirements"
 """Suffix of the name of a requirements' contract, behind the name of the component."""
