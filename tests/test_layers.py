@@ -28,7 +28,7 @@ LAYERS = [
 SUBLAYERS = {
     "logic": [
         # values
-        {"formula", "contract", "identifiers", "advice", "domains", "evaluate"},
+        {"formula", "contract", "identifiers", "domains", "evaluate"},
         # languages of formulas: texts to values and back
         {"syntax", "infix", "printing", "simplification", "classification", "violations"},
         {"expressions"},
