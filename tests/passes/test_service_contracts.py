@@ -7,7 +7,7 @@ from sysmlc.analyses import analysis
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text
 from sysmlc.logic.contract import IntegerDomain
-from sysmlc.logic.services.conditions import iter_services
+from sysmlc.logic.services.derivation import iter_services
 from sysmlc.synthesis.bdd.manager import Manager
 from sysmlc.synthesis.games.game import make_game
 from sysmlc.synthesis.games.solver import solve

@@ -9,22 +9,306 @@ from collections.abc import Iterable, Iterator
 
 from msgspec import Struct
 
-from sysmlc.diagnostics import Sink
-from sysmlc.ir import Element, Graph, query
+from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.ir.expressions import Binary, Expression, ExpressionError
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import (
     BooleanDomain,
     Class,
     Conjunct,
     Contract,
+    Domain,
     Owner,
     Variable,
 )
+from sysmlc.logic.expressions.context import (
+    Context,
+    context_of,
+    find_literal,
+    make_symbol,
+    report_range,
+)
+from sysmlc.logic.expressions.elaboration import (
+    ElaborationError,
+    Fault,
+    Symbol,
+    elaborate_condition,
+)
 from sysmlc.logic.expressions.features import Feature
+from sysmlc.logic.expressions.parsing import tree_of
+from sysmlc.logic.formal_texts import is_formal
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.identifiers import Names
-from sysmlc.logic.services.conditions import Condition, Service, is_input, iter_services
-from sysmlc.logic.simplification import substitute
+from sysmlc.logic.simplification import simplify_constant, substitute
+from sysmlc.support.counts import count
+
+NOT_FORMAL = rule(
+    "SM505",
+    "condition-not-formal",
+    Severity.INFO,
+    "the {condition} of '{service}' is in no contract: {reason}{further}",
+    help="compare Booleans, enumerations and Integers for a contract about it",
+)
+_ORDERS = frozenset(["<", "<=", ">", ">="])
+_KINDS = ("", "precondition", "postcondition", "body")
+_KIND_WORDS = {"": "constraint", "body": "body condition"}
+_LANGUAGE_ADVICE = "choose OCL or no language for conditions that are expressions over features"
+_LANGUAGES = ("", "kerml", "sysml", "ocl", "alf")
+
+
+class Condition(Struct, frozen=True):
+    """A precondition (``is_before``) or postcondition of a service."""
+
+    constraint: Element
+    formula: Formula
+    is_before: bool
+
+
+class Service(Struct, frozen=True):
+    """An operation, or an action that no operation performs, with its conditions."""
+
+    element: Element
+    context: Context
+    conditions: tuple[Condition, ...]
+
+    def feature(self, variable: str) -> Feature:
+        """Return the parameter or feature that a variable represents."""
+        return next(
+            feature for feature in self.context.features.values() if feature.variable == variable
+        )
+
+
+def iter_services(graph: Graph, assumed: tuple[int, int], sink: Sink) -> Iterator[Service]:
+    """Yield the services of a model that have conditions, in model order.
+
+    *assumed* is the range of Integers without a stated one. A condition that is not an expression
+    over parameters and features with finitely many values is reported.
+    """
+    informal = _InformalConditions()
+    constraints_by_service: dict[str, tuple[Element, list[Element]]] = {}
+    for constraint in graph.of_kind(Kind.CONSTRAINT):
+        owner = graph.owner(constraint)
+        if owner is not None and _is_condition(constraint) and not _is_in_profile(graph, owner):
+            for service in _performed_services(graph, owner):
+                constraints_by_service.setdefault(service.id, (service, []))[1].append(constraint)
+    for service, constraints in constraints_by_service.values():
+        result = _read_service(graph, service, constraints, assumed, informal, sink)
+        if result.conditions:
+            yield result
+    informal.report(graph, sink)
+
+
+def _is_condition(constraint: Element) -> bool:
+    body = constraint.attrs.get("body")
+    if not isinstance(body, str) or constraint.subkind not in _KINDS:
+        return False
+    language = str(constraint.attrs.get("language", ""))
+    if not language:
+        return True
+    return not is_formal(language, body)
+
+
+def _is_in_profile(graph: Graph, owner: Element) -> bool:
+    """Whether a stereotype owns the element: its operations query models and are no services."""
+    return any(above.kind is Kind.STEREOTYPE for above in graph.ancestors(owner))
+
+
+def _performed_services(graph: Graph, owner: Element) -> Iterator[Element]:
+    """Yield the services to which the conditions of *owner* apply.
+
+    Conditions of an operation apply to it and to operations that redefine it. Conditions of an
+    action apply to the operations that have the action, or a special of it, as their method.
+    Without such operations they apply to the action itself.
+    """
+    edges = {Kind.OPERATION: Edge.REDEFINES, Kind.ACTIVITY: Edge.SPECIALIZES}
+    worklist = [owner] if owner.kind in edges else []
+    for element in worklist:
+        specializing = graph.sources(element, edges[element.kind])
+        # In KerML a structure may specialise a behaviour: it is no service.
+        worklist += (
+            element for element in specializing if element.kind in edges and element not in worklist
+        )
+        yield from _services_of(graph, element)
+
+
+def _services_of(graph: Graph, element: Element) -> Iterator[Element]:
+    if element.kind is Kind.ACTIVITY:
+        operations = graph.sources(element, Edge.METHOD)
+        is_service = not operations and not element.attrs.get("external")
+        yield from operations or ([element] if is_service else [])
+    elif not element.attrs.get("external"):
+        yield element
+
+
+def _read_service(
+    graph: Graph,
+    service: Element,
+    constraints: list[Element],
+    assumed: tuple[int, int],
+    informal: "_InformalConditions",
+    sink: Sink,
+) -> Service:
+    context = _make_context(graph, service, assumed)
+    read_conditions = [
+        _read_condition(service, context, condition, informal) for condition in constraints
+    ]
+    conditions = tuple(part for part in read_conditions if part is not None)
+    for name in {
+        variable.name: None for part in conditions for variable in f.variables(part.formula)
+    }:
+        feature = next(feature for feature in context.features.values() if feature.variable == name)
+        report_range(graph, feature, sink)
+    return Service(service, context, conditions)
+
+
+def _make_context(graph: Graph, service: Element, assumed: tuple[int, int]) -> Context:
+    owner = graph.owner(service)
+    is_owned = owner is not None and owner.kind in query.CLASSIFIERS
+    method = graph.target(service, Edge.METHOD)
+    parameter_owner = service if method is None or not _has_parameters(graph, method) else method
+    return context_of(graph, owner if is_owned else service, assumed, parameter_owner)
+
+
+def _has_parameters(graph: Graph, method: Element) -> bool:
+    """Whether a method has parameters of its own or inherited ones."""
+    family = (method, *query.generals(graph, method))
+    return any(query.parameters(graph, relative) for relative in family)
+
+
+def _read_condition(
+    service: Element, context: Context, constraint: Element, informal: "_InformalConditions"
+) -> Condition | None:
+    kind = constraint.subkind or "constraint"
+    if not _has_known_language(constraint):
+        informal.add_language(service, constraint)
+        return None
+    try:
+        formula = _read_formula(context, constraint)
+    except (ExpressionError, ElaborationError) as error:
+        informal.add(service, constraint, _explain(context, error))
+        return None
+    if formula == f.TRUE:
+        return None
+    is_before = kind == "precondition" or (
+        kind == "constraint" and _is_precondition(context, formula)
+    )
+    return Condition(constraint, formula, is_before)
+
+
+def _read_formula(context: Context, constraint: Element) -> Formula:
+    expression = _split_chain(tree_of(str(constraint.attrs["body"])))
+    formula = elaborate_condition(expression, lambda name: _find_symbol(context, name))
+    domains: dict[str, Domain] = {
+        feature.variable: feature.domain
+        for feature in context.features.values()
+        if feature.domain is not None
+    }
+    simplified_formula = simplify_constant(formula, domains)
+    return (
+        formula
+        if simplified_formula == f.TRUE and _is_single_bound(expression, formula)
+        else simplified_formula
+    )
+
+
+def _is_single_bound(expression: Expression, formula: Formula) -> bool:
+    """Whether the expression is a single bound such as ``h > 0``, which is no range."""
+    return (
+        isinstance(expression, Binary)
+        and expression.op in _ORDERS
+        and bool(list(f.variables(formula)))
+    )
+
+
+def _split_chain(expression: Expression) -> Expression:
+    """Rewrite ``0 <= x <= 4`` to ``0 <= x and x <= 4``."""
+    match expression:
+        case Binary("and" as op, left, right):
+            return Binary(op, _split_chain(left), _split_chain(right))
+        case Binary(op, Binary(first, _, middle) as left, right) if {op, first} <= _ORDERS:
+            return Binary("and", left, Binary(op, middle, right))
+        case _:
+            return expression
+
+
+def _find_symbol(context: Context, name: str) -> Symbol | None:
+    feature = context.features.get(name) or context.features.get(name.removeprefix("self."))
+    if feature is None:
+        return find_literal(context, name)
+    return make_symbol(feature)
+
+
+def _is_precondition(context: Context, formula: Formula) -> bool:
+    """Whether the formula reads only inputs of the service."""
+    names = f.variable_names(formula)
+    return all(
+        is_input(feature) for feature in context.features.values() if feature.variable in names
+    )
+
+
+def is_input(feature: Feature) -> bool:
+    """Whether the feature is an input parameter, whose value the caller decides."""
+    direction = feature.direction or "in"
+    return feature.element.kind is Kind.PARAMETER and direction == "in"
+
+
+def _has_known_language(constraint: Element) -> bool:
+    """Whether the language of the constraint may be that of expressions."""
+    language = str(constraint.attrs.get("language", "")).lower()
+    return language.rstrip("0123456789. ") in _LANGUAGES
+
+
+class _InformalConditions:
+    """The conditions without formula: one finding for a condition, and one for a language and file.
+
+    Special actions and operations inherit the conditions of general ones.
+    """
+
+    def __init__(self) -> None:
+        self._groups: dict[tuple[str, ...], list[tuple[Element, Element, str]]] = {}
+
+    def add(self, service: Element, constraint: Element, reason: str) -> None:
+        """Record why a condition of *service* has no formula."""
+        self._groups.setdefault((constraint.id,), []).append((service, constraint, reason))
+
+    def add_language(self, service: Element, constraint: Element) -> None:
+        """Record that a condition of *service* is written in a language that is not read."""
+        language = str(constraint.attrs["language"])
+        reason = f"it is written in {language}"
+        group = self._groups.setdefault((language, constraint.source), [])
+        group.append((service, constraint, reason))
+
+    def report(self, graph: Graph, sink: Sink) -> None:
+        """Report each group at its first condition, with the number of further ones."""
+        for key, conditions in self._groups.items():
+            is_language = len(key) > 1
+            service, constraint, reason = conditions[0]
+            others = len(conditions) - 1
+            noun = "condition" if is_language else "service"
+            further = f"; the same holds for {count(others, f'more {noun}')}" if others else ""
+            kind = _KIND_WORDS.get(constraint.subkind, constraint.subkind)
+            text = str(constraint.attrs["body"]).strip()
+            sink.report(
+                NOT_FORMAL,
+                graph.subject(constraint),
+                condition=f"{kind} '{text}'" if text else kind,
+                service=service.name or graph.qualified_name(service),
+                reason=reason,
+                further=further,
+                help=_LANGUAGE_ADVICE if is_language else "",
+            )
+
+
+def _explain(context: Context, error: Exception) -> str:
+    if isinstance(error, ElaborationError) and error.fault is Fault.UNKNOWN:
+        if error.name == "null":
+            return "'null' (no value) is no value of a Boolean, an enumeration or an Integer"
+        return f"'{error.name}' is not a parameter or feature with finitely many values"
+    return str(error)
+
+
+# -- derivation ------------------------------------------------------------------------------------
 
 
 class _ServiceCall(Struct, frozen=True):
