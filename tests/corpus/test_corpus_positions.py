@@ -9,8 +9,8 @@ from reading_corpus import XMI_SUFFIXES, list_models
 from dialects.mutations import mutate
 from fuzz.aml_changes import AML_CHANGES
 from long_runs import quick_first
+from sysmlc.diagnostics.locations import is_xml
 from sysmlc.diagnostics.renderers import make_report
-from sysmlc.diagnostics.xpath import is_xml
 from sysmlc.driver import Request, compile_model, select_backends
 
 pytestmark = pytest.mark.corpus
