@@ -20,7 +20,7 @@ _PORT_PROPERTIES = ("direction", "multiplicity", "category")
 
 
 def lower_roles(context: Context, components: Components) -> None:
-    """Add the realizations: once each, and not for a component whose class realises the role.
+    """Add each realization of a role once, unless the class of the component realises the role.
 
     Classes come first among the components, so that the roles of a class are known when its
     instances repeat them.

@@ -73,7 +73,7 @@ _EXPECTED_WORDS = {
 _IMPORT_RELATIONS = frozenset({"importedNamespace", "importedMembership"})
 _MAX_ADVICE_FROM_IMPORTS = 50
 """Diagnostics of a unit after which names of imported packages are no longer suggested."""
-_MAX_SIMILAR_NAMES = 200
+_MAX_SIMILAR_NAMES = 50
 """Diagnostics of a unit after which no similar names are searched, each among all names."""
 _NOT_GIVEN = "give the file that has it as an input too, or the folder of all files"
 _UNKNOWN = "declare it, import the package that has it, or give its file as an input too"

@@ -98,7 +98,7 @@ class StepFormulas:
     # -- complete regions ------------------------------------------------------------------
 
     def complete_formula(self, region: str) -> Formula:
-        """The region is complete; a variable of the graph stands for it if there is one."""
+        """Return the formula that a region is complete: its variable if the graph has one."""
         variable = self._completion_variable(region)
         return self.completion_formula(region) if variable is None else variable
 
@@ -368,7 +368,7 @@ class PerformanceFormulas(StepFormulas):
         super().__init__(graph)
 
     def start_formula(self, node: TokenNode) -> Formula:
-        """The node starts; for an outermost node, others decide it."""
+        """Return the formula that a node starts; it is given for an outermost node."""
         return self._starts[node.id] if node.id in self._starts else super().start_formula(node)
 
     def complete_formula(self, region: str) -> Formula:

@@ -206,7 +206,7 @@ class _Description:
         return PerformanceFormulas(tokens, starts, {root.id: root.stop for root in self._roots})
 
     def _define_ends(self, formulas: PerformanceFormulas) -> dict[str, Formula]:
-        """Return the formulas for the placeholders that tell when performances end."""
+        """Return for each placeholder of the end of a performance the formula that replaces it."""
         nodes = {root.id: formulas.graph.node(root.id) for root in self._roots}
         finishes = {
             finish_name(id): f.both(f.var(node.run), formulas.done_formula(node))

@@ -16,7 +16,7 @@ from sysmlc.logic.formula import Formula
 
 
 class LateValues:
-    """The variables for these values, and the conjuncts that define them.
+    """Variables for the values of features that are read late in a step, and their definitions.
 
     In a step in which no do behaviour assigns a feature, the variable has the feature's value. If
     several actions assign it, the variable has one of their values, so that all that read it in the

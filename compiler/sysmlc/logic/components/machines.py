@@ -157,7 +157,7 @@ class PlacedMachine(Struct, frozen=True):
                     yield MachineWrite(self.slots[name], condition, self.rename(value))
 
     def _path_formula(self, move: Move, path: Path) -> Formula:
-        """The machine takes a path of a move in this step."""
+        """Return the formula that the machine takes a path of a move in this step."""
         choices = (
             is_chosen_formula(*pick) for pick in iter_choices_on_path(self.exploration, move, path)
         )

@@ -149,7 +149,7 @@ def has_unknown_performer(graph: Graph, activity: Element, machines: Collection[
 
 
 def _is_mentioned(graph: Graph, name: str) -> bool:
-    """Whether a text has the name of an activity, other than a behaviour whose text is the name."""
+    """Whether a text names an activity; a behaviour whose whole text is the name does not count."""
     bodies = ((e, str(e.attrs.get("body", ""))) for e in graph.of_kind(Kind.ACTIVITY, Kind.ACTION))
     return any(
         name in list_names(body) and (element.kind is Kind.ACTION or performed_name(body) != name)

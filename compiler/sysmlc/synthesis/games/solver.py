@@ -241,7 +241,7 @@ class _Solver:
         return self._reach_goal(goal, drop_irrelevant_ranges(self.arena, goal, winning)) & winning
 
     def _goals_without_symmetry(self) -> dict[int, tuple[Swap, ...]]:
-        """Return all goals, each with the empty list of swaps: none represents others."""
+        """Return all goals, each without swaps, so that a goal represents itself only."""
         return dict.fromkeys(range(len(self._goals)), ())
 
     def _is_lost(self, winning: Node) -> bool:
