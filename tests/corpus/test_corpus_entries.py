@@ -9,7 +9,7 @@ from collections import Counter
 import pytest
 from corpus_findings import build_model, list_repeated_facts
 
-pytestmark = pytest.mark.corpus
+pytestmark = [pytest.mark.corpus, pytest.mark.long]
 
 ENTRIES = 48
 NOT_MODELS = {
@@ -40,7 +40,6 @@ def outcomes(corpus, tmp_path_factory):
     return {name: build_model(folder / name, tmp_path_factory.mktemp("out")) for name in names}
 
 
-@pytest.mark.long
 def test_every_entry_has_the_exit_code_and_diagnostics_of_the_golden_file(outcomes, golden):
     lines = [format_line(name, *outcome) for name, outcome in outcomes.items()]
     assert len(lines) + len(READ_ELSEWHERE) == ENTRIES

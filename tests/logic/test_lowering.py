@@ -180,8 +180,8 @@ def test_a_reserved_name_gets_two_underscores_if_one_is_taken():
 
 
 def test_a_comparison_of_too_many_values_is_not_expanded():
-    large = {name: IntegerDomain(0, 999) for name in "ab"}
+    large = {name: IntegerDomain(0, 299) for name in "ab"}
     comparison = Apply(Op.LT, (Var("a"), Var("b")))
     with pytest.raises(TooManyValuesError):
         expand_comparison(comparison, large)
-    assert expand_comparison(comparison, large, 1 << 20) is not None
+    assert expand_comparison(comparison, large, 1 << 17) is not None

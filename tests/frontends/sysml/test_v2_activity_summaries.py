@@ -159,6 +159,6 @@ def test_a_value_into_which_an_assignment_is_substituted_names_its_conditions():
     )
     steps = "action a { assign n := if c ? 1 else 2; assign k := n; } then done;"
     assert list_paragraphs(f"first start; then {steps}", features)["Outputs"] == (
-        "Its steps assign `n` (0..3) and `k` (0..3). 'a' sets `n` to `if c ? 1 else 2`. "
+        "Its steps assign `n` (0..3) and `k` (0..3). 'a' sets `n` to `1` if `c` or `2` if `!c`. "
         "'a' sets `k` to `1` if `c` or `2` if `!c`."
     )
