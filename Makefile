@@ -5,7 +5,7 @@ MODEL ?= examples/lego-recipe/lego-recipe.uml
 unexport PYTHONDONTWRITEBYTECODE
 PIP = -m pip --disable-pip-version-check --quiet install
 
-.PHONY: help demo test types quick-tests test-long check format bench clean
+.PHONY: help demo test types quick-tests test-long mutants check format bench clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "make %-9s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -36,6 +36,9 @@ quick-tests: .venv/.ready
 test-long: .venv/.ready ## the long tests: random models, crashes, whole corpus
 	@.ci/system-packages
 	SYSMLC_LONG=1 .venv/bin/pytest -n 2 -m "long or hypothesis"
+
+mutants: .venv/.ready ## 40 random faults in the code (some 20 minutes); which of them do the tests notice?
+	.venv/bin/python tests/mutants.py $(MUTANTS)
 
 check: .venv/.ready ## the quick half of 'make test': style, types, tests that are not slow
 	.venv/bin/ruff check
