@@ -43,10 +43,14 @@ class Literal(Struct, frozen=True, eq=False):
 
 @dataclass(frozen=True, slots=True)
 class Name:
-    """A name with the namespaces that qualify it, outermost first (``A::B``)."""
+    """A name with the namespaces that qualify it, outermost first (``A::B``).
+
+    ``element`` is the id of the element to which a front end has resolved the name, or empty.
+    """
 
     path: tuple[str, ...]
     offset: int = field(default=0, compare=False)
+    element: str = field(default="", compare=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 from reading_v2 import read
 
-from sysmlc.ir.expressions import EffectText, ExpressionText, ParsedText
+from sysmlc.ir.expressions import EffectText, ExpressionText, Name, ParsedText, walk_tree
 from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
 
 MODEL = """
@@ -41,6 +41,20 @@ def test_each_tree_is_that_of_the_text():
     assert "not (level - 1 < 0)" in values
     assert "level := level + 1; open := not open" in values
     assert "send Go(2) to self" in values
+
+
+def test_names_carry_the_elements_that_they_denote_also_later_ones():
+    graph = read(MODEL).graph
+    values = [v for e in graph for v in e.attrs.values() if isinstance(v, ParsedText)]
+    names = [n for v in values for n in walk_tree(v.tree) if isinstance(n, Name) and n.element]
+    assert {(n.path, graph.qualified_name(graph[n.element])) for n in names} == {
+        (("limit",), "Plant::limit"),
+        (("level",), "Plant::Tank::level"),
+        (("open",), "Plant::Tank::open"),
+        (("mode",), "Plant::Tank::mode"),
+        (("Mode", "hand"), "Plant::Mode::hand"),
+        (("Go",), "Plant::Go"),
+    }
 
 
 def test_an_expression_that_is_nested_too_deeply_has_no_tree():

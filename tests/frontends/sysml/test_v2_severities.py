@@ -393,6 +393,21 @@ def test_attributes_of_packages_with_bound_values_are_constants_in_behaviours():
     assert "level<9 & mode=slow -> state'=x & level'=2" in texts
 
 
+@pytest.mark.parametrize(
+    "declaration",
+    ["private import Limits::top;", "private import Limits::*;", "alias top for Limits::top;"],
+)
+def test_a_constant_is_the_one_that_its_name_means_in_the_text(declaration):
+    text = CONSTANTS.replace("Limits::top", "top")
+    text = text.replace("part def Cell {", f"part def Cell {{ {declaration}")
+    reading = read(f"package Other {{ attribute top = 5; }} {text}", passes=ALL)
+    (contract,) = (c for c in reading.graph.derived(Contract) if c.component == "P::Cell")
+    (taken,) = (c for c in contract.guarantees if c.text.startswith("In 'x'"))
+    assert print_formula(taken.formula) == "level<9 & mode=slow -> state'=x & level'=2"
+    guard = "[level < top and mode == fast] (top = 9, fast = slow)"
+    assert taken.text.startswith(f"In 'x', when 'x' is complete and {guard}: ")
+
+
 def test_components_of_one_name_in_two_files_are_reported_once_with_both():
     text = "package P { action def A { first start; then action x; then done; } }"
     reading = read(text, text, passes=ALL)

@@ -33,12 +33,11 @@ def lower_action(lowering: "Lowering", node: Node, owner: Element) -> Element:
     body = nodes.body_of(node)
     has_steps = any(map(_is_step, body))
     statements = expressions.list_statements(body) if has_steps else None
-    if statements is not None:
-        effect = expressions.write_effect(statements)
-        if effect is not None:
-            action = _add_action(lowering, node, owner, "opaque", body=effect)
-            lowering.lower_all(list_members_beside(body, statements), action)
-            return action
+    if statements is not None and expressions.write_effect(statements) is not None:
+        action = _add_action(lowering, node, owner, "opaque")
+        values.set_effect(lowering, action, statements)
+        lowering.lower_all(list_members_beside(body, statements), action)
+        return action
     is_group = subkind in _STRUCTURED_SUBKINDS or (has_steps and not subkind)
     if is_group and _find_called(node) is None:
         return _lower_group(lowering, node, owner, subkind)
@@ -225,11 +224,10 @@ def lower_accept(lowering: "Lowering", node: Node, owner: Element) -> Element:
 
 def lower_assignment(lowering: "Lowering", node: Node, owner: Element) -> Element:
     """Lower an assignment to an opaque action whose body is its text."""
-    body = expressions.write_effect([node])
     action = _add_action(lowering, node, owner, "opaque")
     document = lowering.document_of(node)
-    if body:
-        lowering.set_attributes(action, body=body)
+    if expressions.read_statement(node) is not None:
+        values.set_effect(lowering, action, [node])
     elif document is not None and node.end > node.start >= 0:
         lowering.set_attributes(action, body=nodes.quote_source(node, document.text))
     _lower_members(lowering, node, action)

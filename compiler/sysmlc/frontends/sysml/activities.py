@@ -12,7 +12,7 @@ from sysmlc.frontends.sysml.features import connect_types
 from sysmlc.frontends.sysml.kinds import BEHAVIOURS, FUNCTIONS
 from sysmlc.frontends.sysml.relations import allocate_arguments, allocate_steps
 from sysmlc.frontends.sysml.successions import lower_steps
-from sysmlc.frontends.sysml.values import expression_text
+from sysmlc.frontends.sysml.values import expression_text, set_effect
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.ir.query import BEHAVIORS
 from sysmlc.language.tree import Node
@@ -48,9 +48,9 @@ def lower_body(lowering: "Lowering", node: Node, activity: Element) -> None:
     """Lower the members of a behaviour: to a text, to an expression, or to steps and flows."""
     body = nodes.body_of(node)
     statements = expressions.list_statements(body)
-    effect = None if statements is None else expressions.write_effect(statements)
-    if statements is not None and effect is not None:
-        lowering.set_attributes(activity, subkind="opaque", body=effect)
+    if statements is not None and expressions.write_effect(statements) is not None:
+        lowering.set_attributes(activity, subkind="opaque")
+        set_effect(lowering, activity, statements)
         lowering.lower_all(list_members_beside(body, statements), activity)
         return
     result = nodes.result_of(node)

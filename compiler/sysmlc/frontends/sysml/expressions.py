@@ -1,6 +1,6 @@
 """Expressions and statements of KerML in the grammar of the compiler (grammars/expression.lark)."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import reduce
 
 from sysmlc.frontends.sysml import nodes
@@ -51,15 +51,23 @@ class NotExpressibleError(ValueError):
     """An expression that the grammar of the compiler cannot express."""
 
 
+ElementIds = Callable[[Node], str]
+"""Finds the id of the element of a node; empty if there is none, or none yet."""
+
+
+def _find_no_id(_node: Node) -> str:
+    return ""
+
+
 # -- expressions -------------------------------------------------------------------------------
 
 
-def write_expression(node: Node, source: str = "") -> str:
+def write_expression(node: Node, source: str = "", ids: ElementIds = _find_no_id) -> str:
     """Return an expression as text of our grammar, else its text in the document (*source*).
 
     A document in XMI has no such text: *source* is empty, and the expression is printed in KerML.
     """
-    expression = read_expression(node)
+    expression = read_expression(node, ids)
     text = None if expression is None else _print(expression)
     if text is not None:
         return text
@@ -78,64 +86,65 @@ def _print(expression: Expression) -> str | None:
     return text if is_nested_too_deeply(expression) else ExpressionText(text, expression)
 
 
-def read_expression(node: Node) -> Expression | None:
+def read_expression(node: Node, ids: ElementIds) -> Expression | None:
     """Return the expression as a syntax tree; None if it has none."""
     try:
-        return _read(node)
+        return _read(node, ids)
     except (NotExpressibleError, RecursionError):
         return None
 
 
-def _read(node: Node) -> Expression:
+def _read(node: Node, ids: ElementIds) -> Expression:
     reader = _EXPRESSION_READERS.get(node.kind)
     if reader is None:
         raise NotExpressibleError(node.kind)
-    return reader(node)
+    return reader(node, ids)
 
 
-def _read_literal(node: Node) -> Expression:
+def _read_literal(node: Node, _ids: ElementIds) -> Expression:
     value = node.attributes.get("value")
     if value is None:
         raise NotExpressibleError(node.kind)
     return Literal(value)
 
 
-def _read_operation(node: Node) -> Expression:
+def _read_operation(node: Node, ids: ElementIds) -> Expression:
     operator = str(node.attributes.get("operator", ""))
     arguments = nodes.list_arguments(node)
     if len(arguments) == 1 and operator in _UNARY:
-        return Unary(_UNARY[operator], _read(arguments[0]))
+        return Unary(_UNARY[operator], _read(arguments[0], ids))
     if len(arguments) == 2 and operator in _BINARY:
-        return Binary(_BINARY[operator], _read(arguments[0]), _read(arguments[1]))
+        return Binary(_BINARY[operator], _read(arguments[0], ids), _read(arguments[1], ids))
     if len(arguments) == 3 and operator == "if":
-        return Conditional(_read(arguments[0]), _read(arguments[1]), _read(arguments[2]))
+        condition, then, otherwise = (_read(argument, ids) for argument in arguments)
+        return Conditional(condition, then, otherwise)
     if len(arguments) == 2 and operator in ("#", "index"):
-        return Index(_read(arguments[0]), _read(arguments[1]))
+        return Index(_read(arguments[0], ids), _read(arguments[1], ids))
     raise NotExpressibleError(operator)
 
 
-def _read_index(node: Node) -> Expression:
+def _read_index(node: Node, ids: ElementIds) -> Expression:
     base, index = nodes.list_arguments(node)
-    return Index(_read(base), _read(index))
+    return Index(_read(base, ids), _read(index, ids))
 
 
-def _read_feature_reference(node: Node) -> Expression:
+def _read_feature_reference(node: Node, ids: ElementIds) -> Expression:
     reference = nodes.find_reference(node, "Membership")
     if reference is None:
         raise NotExpressibleError(node.kind)
-    return _read_reference(reference)
+    return _read_reference(reference, ids)
 
 
-def _read_reference(reference: Reference) -> Expression:
+def _read_reference(reference: Reference, ids: ElementIds) -> Expression:
     """Return the expression for a reference to a feature or to a chain of features."""
-    return _append_members(_read_first_link(reference), reference.chain[1:])
+    return _append_members(_read_first_link(reference, ids), reference.chain[1:])
 
 
 def _append_members(base: Expression, links: tuple[tuple[str, ...], ...]) -> Expression:
     return reduce(Member, (link[-1] for link in links), base) if links else base
 
 
-def _read_first_link(reference: Reference) -> Expression:
+def _read_first_link(reference: Reference, ids: ElementIds) -> Expression:
     """Return the name of the first feature of a chain.
 
     A feature of an action is often qualified by the name of the action (``Task::pallet``); the
@@ -143,11 +152,18 @@ def _read_first_link(reference: Reference) -> Expression:
     """
     names = reference.chain[0]
     target = reference.targets[0] if reference.targets else None
+    element = _find_first_id(reference, ids)
     if target is not None and target.kind == "EnumerationUsage" and len(names) > 1:
-        return Name(names[-2:])
+        return Name(names[-2:], element=element)
     if target is not None and _is_feature(target) and len(names) > 1:
-        return Name(names[-1:])
-    return Name(tuple(name for name in names if name != _GLOBAL_SCOPE))
+        return Name(names[-1:], element=element)
+    return Name(tuple(name for name in names if name != _GLOBAL_SCOPE), element=element)
+
+
+def _find_first_id(reference: Reference, ids: ElementIds) -> str:
+    """Return the id of the element that the first link of a chain denotes."""
+    target = reference.targets[0] if reference.targets else None
+    return "" if target is None else ids(target)
 
 
 def _is_feature(node: Node) -> bool:
@@ -156,21 +172,22 @@ def _is_feature(node: Node) -> bool:
     return owner is not None and not owner.kind.endswith(("Package", "Namespace"))
 
 
-def _read_feature_chain(node: Node) -> Expression:
+def _read_feature_chain(node: Node, ids: ElementIds) -> Expression:
     reference = nodes.find_reference(node, "Membership")
     arguments = nodes.list_arguments(node)
     if reference is None or not arguments:
         raise NotExpressibleError(node.kind)
-    return _append_members(_read(arguments[0]), reference.chain)
+    return _append_members(_read(arguments[0], ids), reference.chain)
 
 
-def _read_call(node: Node) -> Expression:
+def _read_call(node: Node, ids: ElementIds) -> Expression:
     reference = nodes.find_reference(node, "Membership", "FeatureTyping")
     if reference is None:
         raise NotExpressibleError(node.kind)
-    arguments = [_read(nodes.value_of(argument) or argument) for argument in _order_arguments(node)]
-    function = _append_members(Name(reference.chain[0]), reference.chain[1:])
-    return Call(function, tuple(arguments))
+    arguments = (nodes.value_of(argument) or argument for argument in _order_arguments(node))
+    first = Name(reference.chain[0], element=_find_first_id(reference, ids))
+    function = _append_members(first, reference.chain[1:])
+    return Call(function, tuple(_read(argument, ids) for argument in arguments))
 
 
 def list_arguments_by_parameter(node: Node) -> list[Node]:
@@ -236,9 +253,9 @@ _EXPRESSION_READERS = {
 # -- statements --------------------------------------------------------------------------------
 
 
-def write_effect(actions: Sequence[Node]) -> str | None:
+def write_effect(actions: Sequence[Node], ids: ElementIds = _find_no_id) -> str | None:
     """Return consecutive actions as the text of one effect; None if one is not expressible."""
-    readings = map(read_statement, actions)
+    readings = (read_statement(action, ids) for action in actions)
     statements = tuple(statement for statement in readings if statement is not None)
     if not statements or len(statements) < len(actions):
         return None
@@ -246,21 +263,21 @@ def write_effect(actions: Sequence[Node]) -> str | None:
     return text if is_nested_too_deeply(statements) else EffectText(text, statements)
 
 
-def read_statement(node: Node) -> Statement | None:
+def read_statement(node: Node, ids: ElementIds = _find_no_id) -> Statement | None:
     """Return an assignment, sending or performance as a statement; None if not expressible."""
     reader = _STATEMENT_READERS.get(node.kind)
-    return None if reader is None else reader(node)
+    return None if reader is None else reader(node, ids)
 
 
-def _read_assignment(node: Node) -> Statement | None:
+def _read_assignment(node: Node, ids: ElementIds) -> Statement | None:
     reference = nodes.find_reference(node, "Membership")
     inputs = [expression for expression in list_inputs(node) if expression is not None]
     if reference is None or not inputs:
         return None
-    value = read_expression(inputs[-1])
-    target = _read_reference(reference)
+    value = read_expression(inputs[-1], ids)
+    target = _read_reference(reference, ids)
     for expression in inputs[:-1]:
-        base = read_expression(expression)
+        base = read_expression(expression, ids)
         target = target if base is None else _prepend_base(base, target)
     return None if value is None else Assignment(target, value)
 
@@ -276,23 +293,23 @@ def _prepend_base(base: Expression, target: Expression) -> Expression:
             return target
 
 
-def _read_send(node: Node) -> Statement | None:
+def _read_send(node: Node, ids: ElementIds) -> Statement | None:
     payload, *ends = [*list_inputs(node), None, None, None][:3]
     if payload is None or payload.kind not in _SENDABLE:
         return None
-    call = read_expression(payload)
+    call = read_expression(payload, ids)
     signal = call.function if isinstance(call, Call) else call
     arguments = call.args if isinstance(call, Call) else ()
     receiver = next((end for end in ends if end is not None), None)
-    target = None if receiver is None else read_expression(receiver)
+    target = None if receiver is None else read_expression(receiver, ids)
     return Send(signal, arguments, target) if isinstance(signal, Name) else None
 
 
-def _read_performance(node: Node) -> Statement | None:
+def _read_performance(node: Node, ids: ElementIds) -> Statement | None:
     reference = nodes.find_reference(node, "ReferenceSubsetting")
     if reference is None or node.name or node.members:
         return None
-    return Invocation(_read_reference(reference))
+    return Invocation(_read_reference(reference, ids))
 
 
 _STATEMENT_READERS = {

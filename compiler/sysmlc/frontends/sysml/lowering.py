@@ -130,6 +130,11 @@ class Lowering(Verdicts):
             return self.element_of(nodes.find_target(node, "Redefinition"))
         return element
 
+    def id_of_node(self, node: Node) -> str:
+        """Return the id of the element of the node, or the empty string."""
+        element = self.element_of(node)
+        return "" if element is None else element.id
+
     def subject_of(self, node: Node) -> Subject:
         """Return the node as the subject of a diagnostic."""
         document = self._documents.get(id(node))

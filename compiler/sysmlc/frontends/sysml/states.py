@@ -189,7 +189,7 @@ def _lower_behaviour(lowering: "Lowering", node: Node, owner: Element, edge: Edg
     if expressions.read_statement(node) is not None:
         name = node.name or ""
         activity = lowering.add_element(node, Kind.ACTIVITY, name, owner, subkind="opaque")
-        lowering.set_attributes(activity, body=expressions.write_effect([node]))
+        values.set_effect(lowering, activity, [node])
         lowering.graph.connect(edge, owner, activity)
         return
     reference = _find_behaviour_reference(node)

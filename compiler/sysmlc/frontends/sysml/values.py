@@ -88,7 +88,18 @@ def _read_text(named: Node) -> str:
 
 def _write(expression: Node, lowering: "Lowering") -> str:
     document = lowering.document_of(expression)
-    return expressions.write_expression(expression, "" if document is None else document.text)
+    text = "" if document is None else document.text
+    return expressions.write_expression(expression, text, lowering.id_of_node)
+
+
+def set_effect(lowering: "Lowering", element: Element, actions: list[Node]) -> None:
+    """Set the body of an element to the effect of actions, which may name elements to come."""
+    lowering.set_attributes(element, body=expressions.write_effect(actions))
+    lowering.defer_until_elements(
+        lambda: lowering.set_attributes(
+            element, body=expressions.write_effect(actions, lowering.id_of_node)
+        )
+    )
 
 
 def _referenced_feature(expression: Node) -> Node | None:

@@ -127,7 +127,7 @@ def find_literal(context: Context, name: str) -> Symbol | None:
     """Return the symbol of an enumeration literal with a qualified name, or of a constant.
 
     ``Mode::auto`` is a literal. ``Limits::MAX`` is a constant of a package that is visible from the
-    classifier, as ``MAX`` in the packages around it.
+    classifier, as ``MAX`` in the packages around it. The id of a constant may stand for its name.
     """
     entry = context.literals.get(name)
     if entry is None or ("::" not in name and "." not in name):

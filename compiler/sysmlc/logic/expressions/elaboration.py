@@ -75,7 +75,7 @@ class Symbol(Struct, frozen=True):
 
 
 Scope = Callable[[str], Symbol | None]
-"""Looks up a name; None if it is unknown."""
+"""Looks up a name, or the id of a constant; None if it is unknown."""
 FINITE_ADVICE = "use Booleans, enumerations and Integers for a contract"
 EMPTY_ADVICE = "write the condition as its text, or delete it if there is none"
 """Advice on a condition without text."""
@@ -137,6 +137,16 @@ def _make_value(formula: Formula, domain: Domain) -> GuardedValue:
     return GuardedValue((Case(f.TRUE, formula),), domain)
 
 
+def find_symbol(expression: Expression, scope: Scope) -> Symbol | None:
+    """Return the symbol of a name or of a chain of features; None for any other expression.
+
+    The element that the front end has found takes precedence over the text of the name.
+    """
+    element = expression.element if isinstance(expression, Name) else ""
+    name = name_of(expression)
+    return (scope(element) if element else None) or (scope(name) if name else None)
+
+
 # -- operands ------------------------------------------------------------------------------------
 
 
@@ -169,7 +179,7 @@ def _elaborate_name(
     expression: Name | Member, scope: Scope, expected: Domain | None
 ) -> GuardedValue:
     name = name_of(expression) or print_expression(expression)
-    symbol = scope(name)
+    symbol = find_symbol(expression, scope)
     last = last_name(name)
     if isinstance(expected, EnumerationDomain) and last in expected.literals and not expected.texts:
         # A property, or a constant of the same type, hides a literal of the same name.

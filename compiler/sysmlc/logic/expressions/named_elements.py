@@ -296,12 +296,15 @@ class Enumerations:
 
     @cached_property
     def constants(self) -> dict[str, tuple[Literal, Domain] | None]:
-        """Value and domain of each attribute of a package with a bound value, by qualified name.
+        """Value and domain of each attribute of a package with a bound value, by name and by id.
 
         None stands for an attribute whose value may change, or has no finite type.
         """
-        attributes = self._graph.of_kind(Kind.INSTANCE)
-        return {self._graph.qualified_name(a): self._read_constant(a) for a in attributes}
+        constants: dict[str, tuple[Literal, Domain] | None] = {}
+        for attribute in self._graph.of_kind(Kind.INSTANCE):
+            constant = self._read_constant(attribute)
+            constants |= {self._graph.qualified_name(attribute): constant, attribute.id: constant}
+        return constants
 
     def _read_constant(self, attribute: Element) -> tuple[Literal, Domain] | None:
         value = attribute.attrs.get("value")

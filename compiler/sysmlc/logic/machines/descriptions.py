@@ -3,8 +3,10 @@
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
-from sysmlc.ir.expressions import Expression, dotted_name, print_expression
-from sysmlc.logic.formula import TRUE, Const, Formula, rename_variables
+from sysmlc.ir.expressions import Expression, Name, dotted_name, print_expression, walk_tree
+from sysmlc.logic.expressions.elaboration import Scope, find_symbol
+from sysmlc.logic.formula import TRUE, Const, Formula, const, rename_variables
+from sysmlc.logic.identifiers import identifier
 from sysmlc.logic.machines.machine import (
     AfterTicks,
     Machine,
@@ -71,7 +73,7 @@ def describe_transition(
     when = reasons or (
         f"'{source}' are complete" if transition.join_partners else f"'{source}' is complete"
     )
-    guards = [] if transition.guard is None else [f"[{_print_expression(transition.guard)}]"]
+    guards = [] if transition.guard is None else [_print_guard(transition.guard, machine.scope)]
     branch_conditions = [] if condition == TRUE else [_print_condition(machine, condition)]
     conditions = " and ".join([when, *guards, *branch_conditions])
     preempting_names = " or ".join(dict.fromkeys(name_transition(other) for other in preempting))
@@ -109,6 +111,20 @@ def _describe_occurrence(occurrence: Occurrence) -> str:
             return f"'{_print_expression(condition)}' becomes true"
         case OnInput(variable):
             return f"'{variable}' is reported"
+
+
+def _print_guard(guard: Expression, scope: Scope) -> str:
+    """Return a guard, and the values of the constants that it names."""
+    values: dict[str, str] = {}
+    for node in walk_tree(guard):
+        symbol = find_symbol(node, scope) if isinstance(node, Name) else None
+        value = symbol.formula if symbol is not None else None
+        # An enumeration literal is its own value.
+        is_own = isinstance(node, Name) and value == const(identifier(node.path[-1], "literal"))
+        if isinstance(node, Name) and isinstance(value, Const) and not is_own:
+            values["::".join(node.path)] = _print_value(value)
+    constants = ", ".join(f"{name} = {value}" for name, value in values.items())
+    return f"[{_print_expression(guard)}]" + (f" ({constants})" if constants else "")
 
 
 def _print_expression(expression: Expression) -> str:
