@@ -7,11 +7,64 @@ from typing import Protocol
 from msgspec import Struct
 from msgspec.structs import replace
 
-from sysmlc.diagnostics import Rule, Sink
+from sysmlc.diagnostics import Rule, Severity, Sink, rule
 from sysmlc.ir import Element, Graph, Kind, query
 from sysmlc.logic.identifiers import Names
-from sysmlc.robots import rules
 from sysmlc.robots.study import Grid, Order, Robot, Study, Target
+
+OFF_FLOOR = rule(
+    "SM564",
+    "place-off-floor",
+    Severity.ERROR,
+    "'{name}' is in row {row}, column {column}, which the floor '{floor}' does not have",
+    help="rows are 0 to {rows}, columns 0 to {columns}",
+)
+CELL_TAKEN = rule(
+    "SM565",
+    "cell-taken",
+    Severity.ERROR,
+    "'{name}' is in the cell of '{other}' (row {row}, column {column})",
+    help="give it another row or column",
+)
+NO_NUMBER = rule(
+    "SM566",
+    "floor-number",
+    Severity.ERROR,
+    "'{attribute}' of '{name}' {problem}",
+    help="give the attribute a whole number as its value",
+)
+CIRCULAR_ORDER = rule(
+    "SM567",
+    "targets-wait-for-one-another",
+    Severity.ERROR,
+    "target '{name}' would have to be reached before itself: {circle}",
+    help="remove one of these connections",
+)
+CARRIED_TWICE = rule(
+    "SM568",
+    "carried-twice",
+    Severity.ERROR,
+    "'Carry' connections send a robot {way} '{name}' {there} both '{one}' and '{other}'",
+    help="use 'Before' for one of them",
+)
+OUT_OF_REACH = rule(
+    "SM569",
+    "target-out-of-reach",
+    Severity.ERROR,
+    "no robot can reach target '{name}': obstacles are on every way",
+    help="move the target or an obstacle",
+)
+SAME_FLOOR = rule(
+    "SM577",
+    "floors-of-one-name",
+    Severity.ERROR,
+    "there is another floor '{name}': this one is not studied",
+    help="give one of the floors another name",
+)
+
+
+# -- reader ----------------------------------------------------------------------------------------
+
 
 LIBRARY = "Floors"
 MAX_CELLS = 400
@@ -64,7 +117,7 @@ class _FloorReader:
         """Return whether the floor's name is new, and add it to *names*."""
         name = query.component_name(self.graph, self.block)
         if name in names:
-            self.fail(rules.SAME_FLOOR, self.block, name=name)
+            self.fail(SAME_FLOOR, self.block, name=name)
         names.add(name)
         return self.is_good
 
@@ -190,7 +243,7 @@ class _FloorReader:
     def _report_attribute(
         self, place: Element, block: Element, attribute: str, problem: str
     ) -> None:
-        self.fail(rules.NO_NUMBER, place, attribute=attribute, name=block.name, problem=problem)
+        self.fail(NO_NUMBER, place, attribute=attribute, name=block.name, problem=problem)
 
     def _read_place(self, grid: Grid, part: Element, is_needed: bool = True) -> _PlacedPart:
         """Return a part with its cell; a missing or invalid cell is reported.
@@ -208,7 +261,7 @@ class _FloorReader:
             return _PlacedPart(part, None)
         if row >= grid.rows or column >= grid.columns:
             self.fail(
-                rules.OFF_FLOOR,
+                OFF_FLOOR,
                 part,
                 name=part.name,
                 row=row,
@@ -230,7 +283,7 @@ class _FloorReader:
                 continue
             row, column = divmod(part.cell, grid.columns)
             self.fail(
-                rules.CELL_TAKEN,
+                CELL_TAKEN,
                 part.element,
                 name=part.element.name,
                 other=parts_by_cell[part.cell].element.name,
@@ -257,7 +310,7 @@ class _FloorReader:
         for target in study.targets:
             reachable = study.grid.distances(target.cell)
             if None not in start_cells and start_cells.isdisjoint(reachable):
-                self.fail(rules.OUT_OF_REACH, self.graph[target.origin], name=target.name)
+                self.fail(OUT_OF_REACH, self.graph[target.origin], name=target.name)
 
 
 def _parse_whole_number(value: object) -> int | None:
@@ -316,7 +369,7 @@ def _check_circles(reader: Reader, orders: Sequence[Order], targets: Sequence[El
         if circle:
             names = " before ".join(f"'{targets[number].name}'" for number in circle)
             name = targets[start].name
-            reader.fail(rules.CIRCULAR_ORDER, targets[start], name=name, circle=names)
+            reader.fail(CIRCULAR_ORDER, targets[start], name=name, circle=names)
             return
 
 
@@ -350,7 +403,7 @@ def _check_carrying(reader: Reader, orders: Sequence[Order], targets: Sequence[E
             end, opposite_end = getattr(order, side), getattr(order, other)
             if order.is_carried and targets_by_end.setdefault(end, opposite_end) != opposite_end:
                 reader.fail(
-                    rules.CARRIED_TWICE,
+                    CARRIED_TWICE,
                     reader.graph[order.origin],
                     way=prepositions[0],
                     there=prepositions[1],
