@@ -15,6 +15,7 @@ import time
 from measuring import Report
 from msgspec.structs import replace
 
+from sysmlc.controllers.machine import Machine
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic.contract import Contract
 from sysmlc.robots.outcome import Outcome, allocate_mission
@@ -29,7 +30,6 @@ from sysmlc.robots.robot_controller import (
 from sysmlc.robots.study import Grid, Robot, Study, Target
 from sysmlc.robots.system_contract import system_contract
 from sysmlc.synthesis.controller_synthesis import Synthesis, synthesise_controller
-from sysmlc.synthesis.controllers.forms import Machine
 from sysmlc.synthesis.decision import Options
 
 ROWS = {

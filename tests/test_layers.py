@@ -13,7 +13,8 @@ LAYERS = [
     {"diagnostics"},
     {"ir", "config"},
     {"logic", "overlay", "language"},
-    {"recipe", "synthesis", "simulation"},
+    {"controllers", "recipe"},
+    {"synthesis", "simulation"},
     {"robots"},
     {"frontends", "passes"},
     {"analyses"},
@@ -33,7 +34,7 @@ SUBLAYERS = {
         {"syntax", "infix", "printing", "simplification", "classification", "violations"},
         {"expressions"},
         {"property_patterns", "structured_sentences", "sentences", "formal_texts", "basis"},
-        {"formats", "reduction", "monitors"},
+        {"formats", "reduction"},
         # behaviours
         {"feature_writes", "activities", "machines"},
         {"composition", "services"},

@@ -11,13 +11,14 @@ import pytest
 
 from backend_runs import refine_and_emit
 from machine_samples import arrow, machine
+from sysmlc import compile_texts
 from sysmlc.backends.monitor import BACKEND
+from sysmlc.controllers.monitor import build_monitor, find_first_violation
 from sysmlc.diagnostics import Sink
 from sysmlc.logic import domains
 from sysmlc.logic.contract import Contract, EnumerationDomain
 from sysmlc.logic.machines import interpreter
 from sysmlc.logic.machines.reader import read_machine
-from sysmlc.logic.monitors import build_monitor, find_first_violation
 from sysmlc.synthesis import contract_checks
 
 GATE = machine(
@@ -248,7 +249,9 @@ def test_words_of_c_and_macros_of_its_headers_are_no_names_of_c(tmp_path, standa
 
 def test_a_contract_that_no_finite_run_breaks_has_no_monitor():
     text = contract_checks.ASSUMES.read_page().right
-    _, files, diagnostics = refine_and_emit(BACKEND, text)
+    compilation = compile_texts({"gate.sysml": text}, emit=["monitor"])
+    files = [artefact.path for artefact in compilation.artefacts]
+    diagnostics = compilation.diagnostics
     (finding,) = [item for item in diagnostics if item.rule.code == "SM579"]
     assert finding.message == (
         "the contract of 'Plant::Gate.requirements' has no monitor: no finite run breaks it"

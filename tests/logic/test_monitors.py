@@ -7,6 +7,7 @@ from msgspec.structs import replace
 from random_contracts import VARIABLES, contracts
 
 from long_runs import examples
+from sysmlc.controllers.monitor import build_monitor, find_first_violation
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.classification import classify
@@ -14,7 +15,6 @@ from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owne
 from sysmlc.logic.evaluate import find_violation
 from sysmlc.logic.formula import Apply, Op
 from sysmlc.logic.infix import parse_formula
-from sysmlc.logic.monitors import build_monitor, find_first_violation
 
 LETTERS = ("a", "b", "c")
 DOMAINS = dict.fromkeys(LETTERS, BooleanDomain())

@@ -1,12 +1,12 @@
 """A hand-written machine of a robot: it takes an offered way that leads nearer, or stays."""
 
+from sysmlc.controllers.machine import Machine, Move
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Owner
 from sysmlc.robots import contract_terms as terms
 from sysmlc.robots.answers import Answers
 from sysmlc.robots.robot_controller import ANY, controller_contract
 from sysmlc.robots.study import STAY, WAYS
-from sysmlc.synthesis.controllers.forms import Machine, Move
 
 
 def greedy_machine(study):

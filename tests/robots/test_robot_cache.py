@@ -3,6 +3,7 @@
 import pytest
 from small_floors import floor
 
+from sysmlc.controllers.table import Table
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic.reduction.contract_reduction import reduce_contract
 from sysmlc.robots import claims
@@ -15,7 +16,6 @@ from sysmlc.robots.robot_controller import ANY, controller_contract, measure_tra
 from sysmlc.support.cache import Cache
 from sysmlc.synthesis import Limits
 from sysmlc.synthesis.controller_synthesis import Form, synthesise_controller
-from sysmlc.synthesis.controllers.forms import Table
 from sysmlc.synthesis.decision import Options
 
 FIRST = floor(3, None, None, targets=(0, 8), deadline=40)

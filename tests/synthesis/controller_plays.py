@@ -6,13 +6,13 @@ import networkx as nx
 from explicit import list_evaluations, list_viable_inputs
 from msgspec.structs import replace
 
+from sysmlc.controllers.machine import Machine
 from sysmlc.logic import domains
 from sysmlc.logic.contract import Class
 from sysmlc.logic.evaluate import compile_evaluation, find_violation
 from sysmlc.logic.formula import Const, negate
 from sysmlc.synthesis import Manager, make_game
 from sysmlc.synthesis.controller_synthesis import Form, build_controller_form
-from sysmlc.synthesis.controllers.forms import Machine
 from sysmlc.synthesis.controllers.strategy import extract_strategy
 from sysmlc.synthesis.controllers.verification import find_faults
 from sysmlc.synthesis.games.arena import build_plain_arena

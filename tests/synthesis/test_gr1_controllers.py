@@ -6,11 +6,12 @@ from pathlib import Path
 import pytest
 
 from long_runs import quick_first
+from sysmlc.controllers.machine import Machine
+from sysmlc.controllers.table import Table
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic import formats
 from sysmlc.synthesis import Limits
 from sysmlc.synthesis.controller_synthesis import Form, synthesise_controller
-from sysmlc.synthesis.controllers.forms import Machine, Table
 from sysmlc.synthesis.decision import Options
 
 CORPUS = os.environ.get("SYSMLC_CORPUS")

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
+from sysmlc.controllers.machine import Machine
 from sysmlc.diagnostics import Sink, Subject
 from sysmlc.logic import formats
 from sysmlc.synthesis import Limits
 from sysmlc.synthesis.controller_synthesis import synthesise_controller
-from sysmlc.synthesis.controllers.forms import Machine
 from sysmlc.synthesis.decision import Options
 
 CORPUS = os.environ.get("SYSMLC_CORPUS")

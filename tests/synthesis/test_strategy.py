@@ -8,6 +8,7 @@ import small_games
 from contracts_in_lines import parse_contract
 from msgspec.structs import replace
 
+from sysmlc.controllers.machine import Move
 from sysmlc.logic.contract import Class
 from sysmlc.logic.formula import TRUE, Const, Var
 from sysmlc.logic.printing import print_formula
@@ -17,10 +18,10 @@ from sysmlc.synthesis.bdd.limits import TooLargeError
 from sysmlc.synthesis.controller_synthesis import Form
 from sysmlc.synthesis.controllers.conditions import build_machine
 from sysmlc.synthesis.controllers.explicit_states import enumerate_states
-from sysmlc.synthesis.controllers.forms import Move, rebuild_in_variable_order
 from sysmlc.synthesis.controllers.minimisation import minimise
 from sysmlc.synthesis.controllers.strategy import extract_strategy
 from sysmlc.synthesis.controllers.strategy_memory import choose_registers, explore_strategy
+from sysmlc.synthesis.controllers.tables import rebuild_in_variable_order
 from sysmlc.synthesis.games.arena import nodes_of
 
 SUITE = 200

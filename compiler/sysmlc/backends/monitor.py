@@ -1,23 +1,24 @@
 """Back end ``monitor``: a runtime monitor for each contract, in C99 and in Python.
 
-Both need no library and constant memory. They are printed from ``logic.monitors``, and name the
-broken conjunct and its element.
+Both need no library and constant memory. They are printed from ``controllers.monitor``, and name
+the broken conjunct and its element.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 
 from msgspec import Struct
 
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.contracts import list_traced_elements
 from sysmlc.backends.templates import Templates
+from sysmlc.controllers.languages import PYTHON, Language, make_c_language, print_expression
+from sysmlc.controllers.monitor import Check, Monitor, build_monitor
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Graph
 from sysmlc.logic.contract import BooleanDomain, Class, Contract, EnumerationDomain, Owner, Variable
 from sysmlc.logic.domains import describe
-from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var, has_primes
+from sysmlc.logic.formula import Apply, Formula, Op, has_primes
 from sysmlc.logic.identifiers import identifier, make_unique
-from sysmlc.logic.monitors import Check, Monitor, build_monitor
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import as_ltl
 from sysmlc.support.output import Output
@@ -114,7 +115,7 @@ def _build_page(graph: Graph, monitor: Monitor, prefix: str) -> _Page:
     names = [variable.name for variable in contract.variables] + [b.name for b in monitor.bits]
     fields = dict(zip(names, _name_in_c(names, "value"), strict=True))
     constants = _name_literals(contract, prefix)
-    c_language = _make_c_language(fields, constants)
+    c_language = make_c_language(fields, constants)
     rules = [bit.rule for bit in monitor.bits]
     formulas = [*rules, *(check.conjunct.formula for check in monitor.checks)]
     return _Page(
@@ -128,7 +129,7 @@ def _build_page(graph: Graph, monitor: Monitor, prefix: str) -> _Page:
                 field=fields[bit.name],
                 is_true_first=bit.start,
                 c_rule=print_expression(bit.rule, c_language, is_about_two_steps=True),
-                python_rule=print_expression(bit.rule, _PYTHON, is_about_two_steps=True),
+                python_rule=print_expression(bit.rule, PYTHON, is_about_two_steps=True),
             )
             for bit in monitor.bits
         ),
@@ -177,7 +178,7 @@ def _describe_variable(variable: Variable) -> str:
     return f"{variable.name}: {describe(variable.domain)}{wording}"
 
 
-def _build_check(graph: Graph, check: Check, c_language: "_Language") -> _Check:
+def _build_check(graph: Graph, check: Check, c_language: "Language") -> _Check:
     conjunct = check.conjunct
     is_about_two_steps = has_primes(conjunct.formula)
     condition = "first" if conjunct.class_ is Class.INIT else "each"
@@ -188,7 +189,7 @@ def _build_check(graph: Graph, check: Check, c_language: "_Language") -> _Check:
     return _Check(
         condition="later" if is_about_two_steps else condition,
         c_test=print_expression(conjunct.formula, c_language, is_about_two_steps),
-        python_test=print_expression(conjunct.formula, _PYTHON, is_about_two_steps),
+        python_test=print_expression(conjunct.formula, PYTHON, is_about_two_steps),
         c_description=", ".join(map(quote_c, description)),
         python_description=", ".join(map(quote_python, description)),
     )
@@ -198,88 +199,6 @@ def _has_division(formula: Formula) -> bool:
     if not isinstance(formula, Apply):
         return False
     return formula.op in (Op.DIV, Op.MOD) or any(map(_has_division, formula.args))
-
-
-# -- expressions -----------------------------------------------------------------------------------
-
-
-class _Language(Struct, frozen=True):
-    """How a programming language spells the parts of an expression."""
-
-    negation: str
-    conjunction: str
-    disjunction: str
-    print_constant: Callable[[Literal], str]
-    print_variable: Callable[[str, str], str]
-    """Prints a step, ``before`` or ``now``, and the name of a variable."""
-
-
-_OPERATORS = {
-    Op.IFF: "({0} == {1})",
-    Op.EQ: "({0} == {1})",
-    Op.NE: "({0} != {1})",
-    # The model divides towards zero, x / 0 is 0, and x mod 0 is x (logic.evaluate).
-    Op.DIV: "divide({0}, {1})",
-    Op.MOD: "({0} - {1} * divide({0}, {1}))",
-}
-"""Operators that C and Python spell differently from formulas, but in the same way."""
-
-
-def _make_c_language(fields: Mapping[str, str], constants: Mapping[str, str]) -> _Language:
-    def print_constant(value: Literal) -> str:
-        if isinstance(value, str):
-            return constants[value]
-        return str(value).lower() if isinstance(value, bool) else f"{value}L"
-
-    return _Language(
-        "!", " && ", " || ", print_constant, lambda step, name: f"{step}->{fields[name]}"
-    )
-
-
-def _print_python_constant(value: Literal) -> str:
-    return quote_python(value) if isinstance(value, str) else str(value)
-
-
-_PYTHON = _Language(
-    "not ",
-    " and ",
-    " or ",
-    _print_python_constant,
-    lambda step, name: f"{step}[{quote_python(name)}]",
-)
-
-
-def print_expression(formula: Formula, language: _Language, is_about_two_steps: bool) -> str:
-    """Return a formula without temporal operators as an expression in parentheses.
-
-    If it *is_about_two_steps*, variables without primes have the values of the step before.
-    """
-
-    def print_part(part: Formula) -> str:
-        match part:
-            case Const(value):
-                return language.print_constant(value)
-            case Var(name, primed):
-                is_past = is_about_two_steps and not primed
-                return language.print_variable("before" if is_past else "now", name)
-            case Apply(op, args):
-                return _join_operands(op, [print_part(arg) for arg in args], language)
-
-    return print_part(formula)
-
-
-def _join_operands(op: Op, operands: list[str], language: _Language) -> str:
-    match op:
-        case Op.NOT:
-            return f"({language.negation}{operands[0]})"
-        case Op.AND:
-            return f"({language.conjunction.join(operands)})"
-        case Op.OR:
-            return f"({language.disjunction.join(operands)})"
-        case Op.IMPLIES:
-            return f"(({language.negation}{operands[0]}){language.disjunction}{operands[1]})"
-        case _:
-            return _OPERATORS.get(op, f"({{0}} {op} {{1}})").format(*operands)
 
 
 BACKEND = MonitorBackend()

@@ -11,9 +11,9 @@ from sysmlc.support.escapes import escape_undecodable
 
 if TYPE_CHECKING:
     from sysmlc.cli.contract_files import ContractFile
+    from sysmlc.controllers.monitor import Monitor, Violation
     from sysmlc.diagnostics import Place
     from sysmlc.logic.contract import Contract
-    from sysmlc.logic.monitors import Monitor, Violation
 
 
 @click.command(
@@ -84,10 +84,10 @@ def _accept_run(
     The summary of an unreadable run is empty.
     """
     from sysmlc.cli.session import fail
+    from sysmlc.controllers.monitor import build_monitor, find_first_violation
     from sysmlc.diagnostics import Place
     from sysmlc.logic.contract import Owner
     from sysmlc.logic.formats.recorded_runs import read_run
-    from sysmlc.logic.monitors import build_monitor, find_first_violation
     from sysmlc.sources import Source, SourceError
     from sysmlc.sources.files import read_whole
     from sysmlc.sources.source import DOCUMENT_LIMITS

@@ -64,3 +64,11 @@ def count(domains: Mapping[str, Domain]) -> int:
     for domain in domains.values():
         total *= size(domain)
     return total
+
+
+def width(domain: Domain) -> int:
+    """Return the number of bits of a variable with these values.
+
+    A variable with a single value has a bit too, so that the support of diagrams can show it.
+    """
+    return max(1, (size(domain) - 1).bit_length())

@@ -3,11 +3,12 @@
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
+from sysmlc.controllers.machine import Machine
+from sysmlc.controllers.table import Table
 from sysmlc.logic.evaluate import compile_evaluation
 from sysmlc.logic.formula import Literal
 from sysmlc.robots import contract_terms as terms
 from sysmlc.robots.study import WAYS, Grid, Robot, next_move
-from sysmlc.synthesis.controllers.forms import Machine, Table
 
 
 class Memory(NamedTuple):

@@ -13,6 +13,8 @@ import msgspec
 from msgspec import Struct, field
 from msgspec.structs import replace
 
+from sysmlc.controllers.machine import Machine, Move
+from sysmlc.controllers.table import Bit, Entry, Table
 from sysmlc.logic.contract import Variable
 from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
 from sysmlc.logic.reduction.contract_reduction import reduce_contract
@@ -22,7 +24,6 @@ from sysmlc.robots.study import Study
 from sysmlc.support.cache import Cache
 from sysmlc.synthesis.controller_synthesis import Synthesis
 from sysmlc.synthesis.controllers.closed_loop import Controller
-from sysmlc.synthesis.controllers.forms import Bit, Entry, Machine, Move, Table
 from sysmlc.synthesis.decision import Verdict
 
 EncodedController = Mapping[str, Any]

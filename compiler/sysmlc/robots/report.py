@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from msgspec.structs import replace
 
+from sysmlc.controllers.machine import Machine
 from sysmlc.logic.formats import write
 from sysmlc.robots.mission_contract import mission_contract
 from sysmlc.robots.mission_run import describe_cell, describe_moments, sequence_diagram
@@ -14,7 +15,6 @@ from sysmlc.support.counts import count
 from sysmlc.support.escapes import escape_markdown
 from sysmlc.support.output import assign_file_names
 from sysmlc.synthesis.controller_files import controller_files
-from sysmlc.synthesis.controllers.forms import Machine
 
 
 def study_files(outcome: Outcome) -> Iterator[tuple[str, str]]:

@@ -12,6 +12,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from msgspec import Struct
 from msgspec.structs import replace
 
+from sysmlc.controllers.machine import Machine, Move
+from sysmlc.controllers.table import Entry, Table
 from sysmlc.diagnostics import Sink
 from sysmlc.logic import domains
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Variable
@@ -25,7 +27,6 @@ from sysmlc.synthesis import rules
 from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.controller_synthesis import Synthesis
 from sysmlc.synthesis.controllers.closed_loop import Controller
-from sysmlc.synthesis.controllers.forms import Entry, Machine, Move, Table
 from sysmlc.synthesis.decision import Place
 
 OWN, TABLE, GR1C = FORMS = ("own", "table", "gr1c")

@@ -14,6 +14,8 @@ from math import prod
 from msgspec import Struct
 from msgspec.structs import replace
 
+from sysmlc.controllers.machine import Machine
+from sysmlc.controllers.table import Table
 from sysmlc.diagnostics import Sink
 from sysmlc.logic.contract import Contract, Owner
 from sysmlc.logic.printing import print_formula
@@ -27,15 +29,10 @@ from sysmlc.synthesis.bdd.symbols import Symbols
 from sysmlc.synthesis.controllers.closed_loop import Controller
 from sysmlc.synthesis.controllers.conditions import build_machine
 from sysmlc.synthesis.controllers.explicit_states import enumerate_states
-from sysmlc.synthesis.controllers.forms import (
-    Machine,
-    Table,
-    build_table,
-    rebuild_in_variable_order,
-)
 from sysmlc.synthesis.controllers.minimisation import minimise
 from sysmlc.synthesis.controllers.strategy import Functions, Mode, Strategy, extract_strategy
 from sysmlc.synthesis.controllers.strategy_memory import choose_registers, explore_strategy
+from sysmlc.synthesis.controllers.tables import build_table, rebuild_in_variable_order
 from sysmlc.synthesis.controllers.verification import Fault, find_faults
 from sysmlc.synthesis.decision import Options, Place, Verdict, decide_game
 from sysmlc.synthesis.games.arena import Arena, nodes_of

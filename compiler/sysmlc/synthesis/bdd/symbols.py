@@ -254,16 +254,8 @@ def next_bit(bit: str) -> str:
     return f"{bit}'"
 
 
-def width(variable: Variable) -> int:
-    """Return the number of bits of a variable.
-
-    A variable with a single value has a bit too, so that the support of diagrams can show it.
-    """
-    return max(1, (domains.size(variable.domain) - 1).bit_length())
-
-
 def _bit_names(variable: Variable) -> tuple[str, ...]:
-    return tuple(f"{variable.name}.{index}" for index in range(width(variable)))
+    return tuple(f"{variable.name}.{index}" for index in range(domains.width(variable.domain)))
 
 
 def _decode_value(variable: Variable, bits: list[bool]) -> Literal:

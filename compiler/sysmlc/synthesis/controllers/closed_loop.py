@@ -9,11 +9,13 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from msgspec import Struct
 
+from sysmlc.controllers.machine import Machine, Move
+from sysmlc.controllers.table import Entry, Table
 from sysmlc.logic.contract import Contract, IntegerDomain, Owner, Variable
 from sysmlc.logic.formula import Var, eq
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.bdd.symbols import Symbols, next_bit
-from sysmlc.synthesis.controllers.forms import Entry, Machine, Move, Table, table_diagrams
+from sysmlc.synthesis.controllers.tables import table_diagrams
 from sysmlc.synthesis.games.arena import domain_constraint
 
 Controller = Machine | Table

@@ -14,6 +14,7 @@ from sys import maxsize
 
 from msgspec import Struct
 
+from sysmlc.controllers.machine import Machine, Move
 from sysmlc.logic import domains
 from sysmlc.logic.contract import BooleanDomain, Contract, IntegerDomain, Owner
 from sysmlc.logic.formula import (
@@ -35,7 +36,6 @@ from sysmlc.synthesis.bdd.manager import Node
 from sysmlc.synthesis.bdd.skolem_functions import find_least_assignment
 from sysmlc.synthesis.bdd.symbols import Symbols
 from sysmlc.synthesis.controllers.explicit_states import Answer, DraftMachine
-from sysmlc.synthesis.controllers.forms import Machine, Move
 
 MAX_CASES = 5_000
 """Cases in all conditions of a machine together; a machine with more of them is unreadable."""
