@@ -51,6 +51,7 @@ def test_a_time_in_the_text_of_a_requirement_is_decided(text, least, most, verdi
         "A plate is tried at most three times.",
         "The gripper closes within 1 ms after the plate has arrived.",
         "The robot moves at most 5 m.",
+        "The belt needs at most 5 s/m.",
         "Mounting is safe.",
     ],
 )

@@ -8,6 +8,7 @@ give a separate contract, and so do the pre- and postconditions of a service.
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from functools import cached_property
+from math import inf
 from typing import ClassVar
 
 from msgspec import Struct
@@ -58,8 +59,8 @@ _IN_FILES = "packages of two files have one name: rename one, or compile the fil
 class Contracts(Struct, frozen=True):
     """Derive contracts.
 
-    ``tick_seconds`` is the length of a step, for durations with a unit. ``assumed_low`` and
-    ``assumed_high`` are the range of Integers without a declared range.
+    ``tick_seconds`` is the length of a step in seconds. ``assumed_low`` and ``assumed_high`` are
+    the range of Integers without a declared range.
     """
 
     tick_seconds: float = 1.0
@@ -68,12 +69,16 @@ class Contracts(Struct, frozen=True):
 
     name: ClassVar[str] = "contracts"
 
+    def __post_init__(self) -> None:
+        """Raise ValueError if steps have no length."""
+        if not 0 < self.tick_seconds < inf:
+            raise ValueError(f"tick_seconds: {self.tick_seconds} is no length of a step")
+
     def run(self, graph: Graph, sink: Sink) -> None:
         """Store the Contracts of behaviours, of subjects of requirements and of services."""
-        assumed_range = self.assumed_low, self.assumed_high
-        options = MachineOptions(self.tick_seconds, assumed_range)
+        options = MachineOptions(self.tick_seconds, (self.assumed_low, self.assumed_high))
         # `_add_formulas` finds contracts by component, so that these names must be distinct before.
-        drawn = (*self._derive_machines(graph, sink), *_derive_activities(graph))
+        drawn = (*_derive_machines(graph, options, sink), *_derive_activities(graph))
         derived = list(map(mark_derived, drawn))
         derived = _number_components(graph, derived, sink)
         report_unread_restrictions(graph, derived, sink)
@@ -89,7 +94,7 @@ class Contracts(Struct, frozen=True):
         components = [contract.component for contract in derived]
         derived = _number_components(
             graph,
-            [*derived, *services.derive_contracts(graph, components, assumed_range, sink)],
+            [*derived, *services.derive_contracts(graph, components, options.assumed_range, sink)],
             sink,
         )
         given = [entry.contract for entry in graph.derived(GivenContract)]
@@ -97,24 +102,18 @@ class Contracts(Struct, frozen=True):
         contracts = [*given, *(c for c in derived if c.component not in names)]
         graph.store(Contract, sorted(contracts, key=lambda contract: contract.component))
 
-    def _derive_machines(self, graph: Graph, sink: Sink) -> Iterator[Contract]:
-        writers = WriterIndex(graph)
-        for element in graph.of_kind(Kind.STATE_MACHINE):
-            contract = self._derive_machine(graph, element, writers, sink)
+
+def _derive_machines(graph: Graph, options: MachineOptions, sink: Sink) -> Iterator[Contract]:
+    writers = WriterIndex(graph)
+    for element in graph.of_kind(Kind.STATE_MACHINE):
+        if not _is_behaviour(graph, element):
+            continue
+        machine = read_machine(graph, element, sink, options, writers)
+        name = query.component_name(graph, element)
+        if machine is not None:
+            contract = statemachine.derive_contract(graph, machine, name, sink)
             if contract is not None:
                 yield contract
-
-    def _derive_machine(
-        self, graph: Graph, element: Element, writers: WriterIndex, sink: Sink
-    ) -> Contract | None:
-        if not _is_behaviour(graph, element):
-            return None
-        options = MachineOptions(self.tick_seconds, (self.assumed_low, self.assumed_high))
-        machine = read_machine(graph, element, sink, options, writers)
-        if machine is None:
-            return None
-        name = query.component_name(graph, element)
-        return statemachine.derive_contract(graph, machine, name, sink)
 
 
 def _is_behaviour(graph: Graph, element: Element) -> bool:

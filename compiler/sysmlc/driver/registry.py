@@ -210,7 +210,10 @@ def _set_options(step: _Step, options: Mapping[str, object]) -> _Step:
         if not _has_type_of(value, default):
             raise ConfigError(f"{where}: {value!r} is no {type(default).__name__}", path)
     replace = structs.replace if isinstance(step, Struct) else dataclasses.replace
-    return cast("_Step", replace(cast("Any", step), **options))
+    try:
+        return cast("_Step", replace(cast("Any", step), **options))
+    except ValueError as error:
+        raise ConfigError(f"passes.{step.name}: {error}", ("passes", step.name)) from error
 
 
 def _list_option_names(step: Pass | Analysis) -> list[str]:

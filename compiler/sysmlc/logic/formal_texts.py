@@ -27,6 +27,7 @@ from sysmlc.logic.syntax import (
     line_and_column,
     tokenize,
 )
+from sysmlc.support.units import list_time_words
 
 _BOUND = "write 'always if P then Q holds within 5 steps' with the language 'pattern'"
 _CALLS = (
@@ -107,8 +108,8 @@ _PATTERN_WORD = re.compile(
 )
 _REQUIREMENT = re.compile(
     r"\bshall(?:\s+the\s+\w+)?(?:\s+|\s*,\s*)(always|never|immediately|eventually|finally|until|before"
-    r"|at\s+the\s+(next|last)\s+timepoint|(within|for|after)\s+\d+\s*"
-    r"(tick|step|(micro|milli)?sec(ond)?|minute|hour|[mµu]?s|min|hr?)s?)\b",
+    r"|at\s+the\s+(next|last)\s+timepoint"
+    rf"|(within|for|after)\s+\d+\s*({'|'.join(list_time_words())}))\b",
     re.IGNORECASE,
 )
 """Words that only a structured requirement contains, before the word "satisfy"."""

@@ -5,7 +5,6 @@ present in the neutral form.
 """
 
 from collections.abc import Collection, Mapping
-from fractions import Fraction
 from typing import NoReturn
 
 from msgspec.structs import replace
@@ -25,7 +24,7 @@ from sysmlc.logic.structured_sentences import (
 )
 from sysmlc.logic.syntax import AUTHOR_SYNTAX, Cursor, FormulaError, Token, tokenize
 from sysmlc.support.suggestions import find_similar
-from sysmlc.support.units import find_unit
+from sysmlc.support.units import Duration, find_time_unit
 
 SENTENCE_SYNTAX = replace(AUTHOR_SYNTAX, signs=(",", "."))
 
@@ -35,7 +34,6 @@ QUALIFIERS = ("when", "if", "upon", "where", "whenever", "unless")
 MAX_STEPS = 64
 """Most steps of a duration; the formula has an X or a Y for each."""
 _MAX_DURATION = 10**9
-_STEP_UNITS = ("tick", "ticks", "step", "steps")
 _PREDICATES = {"persisted": formalize_persisted, "occurred": formalize_occurred}
 _NO_PREDICATES = {
     "persists": "write a timing, 'for 3 ticks', or persisted(3, p) about the past",
@@ -149,14 +147,11 @@ class WordReader:
     def _count_steps(self, number: int, start: int) -> int:
         """Read a unit; return the number of steps in *number* of these units."""
         token = self._cursor.next
-        if token.text.lower() in _STEP_UNITS:
-            self._cursor.take()
-            return number
-        unit = find_unit(token.text.lower())
-        if unit is None or unit.quantity != "time":
+        unit = find_time_unit(token.text)
+        if unit is None:
             self._fail("a unit of time such as 'ticks', 'ms', 'seconds' or 'minutes'")
         self._cursor.take()
-        steps = number * Fraction(unit.factor) / Fraction(str(self._tick_seconds))
+        steps = Duration(str(number), unit).count_steps(self._tick_seconds)
         if steps.denominator != 1:
             reason = (
                 f"{number} {token.text} are no whole number of steps of {self._tick_seconds:g} s: "

@@ -16,7 +16,7 @@ from sysmlc.recipe.model import Range
 
 
 class NodeCost(Struct, frozen=True):
-    """The duration of a step, and the machines or resources of which it occupies one.
+    """The milliseconds that a step takes, and the machines or resources of which it occupies one.
 
     If the step occupies nothing else, ``is_exclusive`` states that other steps on these machines
     cannot run meanwhile. Functions of one service may share a resource that their service holds.

@@ -41,9 +41,28 @@ _NO_DURATION = Range(0, 0)
 # -- tasks, services and nodes -----------------------------------------------------------------
 
 
-def _find_node_duration(node: Node, tables: Tables, machines: tuple[str, ...] = ()) -> Range | None:
+def _find_node_duration(  # noqa: PLR0911 - one for each kind
+    node: Node, tables: Tables, machines: tuple[str, ...] = ()
+) -> Range | None:
     """Return the duration of a node on *machines*, or on any machine if none is given."""
-    return _DURATIONS_BY_KIND.get(node.kind, _find_no_duration)(node, tables, machines)
+    match node.kind, node.expression:
+        case "service", _:
+            service = tables.find_service(node)
+            return None if service is None else _find_service_duration(service, tables, machines)
+        case "function", _:
+            function = tables.functions.get(node.ref)
+            return None if function is None else function.duration
+        case "call", _:
+            return _find_helper_duration(node, tables, machines)
+        case "delay", Literal(int(value)):
+            return Range(value, value)
+        case "delay", _:
+            return None
+        case "wait", _:
+            # Nothing in the recipe bounds how long a signal can take.
+            return Range(0, None)
+        case _:
+            return _NO_DURATION
 
 
 def _find_service_duration(
@@ -154,22 +173,6 @@ def _find_service_cost(node: Node, tables: Tables, machines: tuple[str, ...]) ->
     return NodeCost(duration, (offering & frozenset(machines)) or offering)
 
 
-def _find_no_duration(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range | None:
-    return _NO_DURATION
-
-
-def _find_called_service_duration(
-    node: Node, tables: Tables, machines: tuple[str, ...]
-) -> Range | None:
-    service = tables.find_service(node)
-    return None if service is None else _find_service_duration(service, tables, machines)
-
-
-def _find_function_duration(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range | None:
-    function = tables.functions.get(node.ref)
-    return None if function is None else function.duration
-
-
 def _find_helper_duration(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range | None:
     """Return the duration of the function graph of a helper; without a graph it takes no time."""
     graph = tables.function_graphs.get(node.ref)
@@ -184,29 +187,6 @@ def _compute_helper_duration(
     graph: FlowGraph, tables: Tables, machines: tuple[str, ...]
 ) -> Range | None:
     return _compute_functions_duration(graph, tables.without_graph(graph.id), machines)
-
-
-def _find_wait_duration(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range | None:
-    # Nothing in the recipe bounds how long a signal can take.
-    return Range(0, None)
-
-
-def _find_delay_duration(node: Node, tables: Tables, machines: tuple[str, ...]) -> Range | None:
-    match node.expression:
-        case Literal(int(value)):
-            return Range(value, value)
-        case _:
-            return None
-
-
-_NodeDuration = Callable[[Node, Tables, tuple[str, ...]], Range | None]
-_DURATIONS_BY_KIND: dict[str, _NodeDuration] = {
-    "service": _find_called_service_duration,
-    "function": _find_function_duration,
-    "call": _find_helper_duration,
-    "wait": _find_wait_duration,
-    "delay": _find_delay_duration,
-}
 
 
 # -- graphs ------------------------------------------------------------------------------------
@@ -226,9 +206,9 @@ _PRECISIONS = (
 class Timing(Struct, frozen=True):
     """The times of the executions of a graph, and how often each step runs.
 
-    ``duration`` has no maximum for the reason ``because``; ``ends`` has the times of the final
-    nodes if there are several. ``endless`` has the nodes that executions may repeat without a
-    bound, None if there are too many situations to find them.
+    Times are in milliseconds. ``duration`` has no maximum for the reason ``because``; ``ends`` has
+    the times of the final nodes if there are several. ``endless`` has the nodes that executions may
+    repeat without a bound, None if there are too many situations to find them.
     """
 
     duration: Range

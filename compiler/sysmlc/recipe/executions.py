@@ -62,7 +62,7 @@ class Precision(Struct, frozen=True):
 
 
 class Result(Struct, frozen=True):
-    """The cost of the executions that end at each final node, and the expected time of all.
+    """The cost of the executions that end at each final node, and their expected milliseconds.
 
     ``endless`` has the nodes that executions may repeat without a bound.
     """

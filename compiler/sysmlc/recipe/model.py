@@ -64,6 +64,7 @@ class OpcUa(Struct, frozen=True):
     namespace_uri: str = ""
     done_when: Expression | None = None
     timeout: int | None = None
+    """In milliseconds."""
     element: str = ""
 
 
@@ -120,6 +121,7 @@ class Mode(Struct, frozen=True):
 
     machines: tuple[str, ...]
     duration: int | None = None
+    """In milliseconds."""
     power: Range | None = None
     tools: tuple[str, ...] = ()
     available: bool | None = None
@@ -163,6 +165,7 @@ class EndTime(Struct, frozen=True):
 
     node: str
     duration: Range
+    """In milliseconds."""
     is_early: bool = False
 
 
@@ -186,6 +189,7 @@ class Derived(Struct, frozen=True):
     same_machine: tuple[SameMachine, ...] = ()
     duration: Range | None = None
     expected: Number | None = None
+    """In milliseconds, as ``duration``."""
     because: str = ""
     ends: tuple[EndTime, ...] = ()
 
@@ -196,6 +200,7 @@ class Task(Struct, frozen=True):
     id: str
     name: str = ""
     max_duration: int | None = None
+    """In milliseconds."""
     materials: tuple[MaterialUse, ...] = ()
     equipment: tuple[Mode, ...] = ()
     implementation: str = ""
@@ -247,6 +252,7 @@ class Provider(Struct, frozen=True):
 
     machine: str
     duration: int | None = None
+    """In milliseconds."""
     power: Range | None = None
     tools: tuple[str, ...] = ()
     opcua: OpcUa | None = None
@@ -264,6 +270,7 @@ class Service(Struct, frozen=True):
     materials: tuple[MaterialUse, ...] = ()
     providers: tuple[Provider, ...] = ()
     duration: int | None = None
+    """In milliseconds."""
     implementation: str = ""
     pre: Expression | None = None
     post: Expression | None = None
@@ -286,6 +293,7 @@ class Function(Struct, frozen=True):
     inputs: tuple[Parameter, ...] = ()
     outputs: tuple[Parameter, ...] = ()
     duration: Range | None = None
+    """In milliseconds."""
     resources: tuple[Resource, ...] = ()
     interruptible: bool = False
     opcua: OpcUa | None = None

@@ -100,7 +100,7 @@ class Robot(Struct, frozen=True):
 
 
 class Target(Struct, frozen=True):
-    """A cell to be reached, and the step by which it must be reached."""
+    """A cell to be reached, and ``deadline``, the step by which it must be reached."""
 
     name: str
     word: str

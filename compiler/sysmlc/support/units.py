@@ -1,6 +1,7 @@
-"""Units of measurement: symbols, spellings, codes of UN/ECE Rec. 20, factors.
+"""Units of measurement and times: symbols, spellings, codes of UN/ECE Rec. 20, factors.
 
 CAEX declares no system of units: the XML attribute Unit is free text. MTP files write the codes.
+All notations share the times: a number without a unit is in seconds.
 """
 
 import re
@@ -31,6 +32,7 @@ UNITS = (
     Unit("cm", "centimetre", "length", "CMT", "1/100"),
     Unit("mm", "millimetre", "length", "MMT", "1/1000"),
     Unit("µm", "micrometre", "length", "4H", "1/1000000"),
+    Unit("nm", "nanometre", "length", "C45", "1/1000000000"),
     Unit("m²", "square metre", "area", "MTK"),
     Unit("mm²", "square millimetre", "area", "MMK", "1/1000000"),
     Unit("m³", "cubic metre", "volume", "MTQ"),
@@ -57,6 +59,8 @@ UNITS = (
     Unit("rpm", "revolutions per minute", "rotational frequency", "RPM", "1/60"),
     Unit("Hz", "hertz", "frequency", "HTZ"),
     Unit("kHz", "kilohertz", "frequency", "KHZ", "1000"),
+    Unit("MHz", "megahertz", "frequency", "MHZ", "1000000"),
+    Unit("GHz", "gigahertz", "frequency", "A86", "1000000000"),
     Unit("N", "newton", "force", "NEW"),
     Unit("kN", "kilonewton", "force", "B47", "1000"),
     Unit("N·m", "newton metre", "torque", "NU"),
@@ -76,6 +80,7 @@ UNITS = (
     Unit("MW", "megawatt", "power", "MAW", "1000000"),
     Unit("V", "volt", "electric potential", "VLT"),
     Unit("mV", "millivolt", "electric potential", "2Z", "1/1000"),
+    Unit("kV", "kilovolt", "electric potential", "KVT", "1000"),
     Unit("A", "ampere", "electric current", "AMP"),
     Unit("mA", "milliampere", "electric current", "4K", "1/1000"),
     Unit("Ω", "ohm", "electric resistance", "OHM"),
@@ -92,6 +97,10 @@ UNITS = (
     Unit("bit/s", "bit per second", "transfer rate", "B10"),
     Unit("Mbit/s", "megabit per second", "transfer rate", "E20", "1000000"),
     Unit("B", "byte", "storage capacity", "AD"),
+    Unit("bit", "bit", "storage capacity", "A99", "1/8"),
+    Unit("mol", "mole", "amount of substance", "C34"),
+    Unit("cd", "candela", "luminous intensity", "CDL"),
+    Unit("lx", "lux", "illuminance", "LUX"),
 )
 
 _SPELLINGS = {
@@ -105,6 +114,8 @@ _SPELLINGS = {
     "m^2": "m²",
     "m2": "m²",
     "m/s^2": "m/s²",
+    "m·s^-2": "m/s²",
+    "m·s^-1": "m/s",
     "m/s2": "m/s²",
     "kg/m^3": "kg/m³",
     "l": "L",
@@ -117,6 +128,10 @@ _SPELLINGS = {
     "sec": "s",
     "secs": "s",
     "msec": "ms",
+    "millisec": "ms",
+    "millisecs": "ms",
+    "microsec": "µs",
+    "microsecs": "µs",
     "us": "µs",
     "μs": "µs",
     "mins": "min",
@@ -125,6 +140,8 @@ _SPELLINGS = {
     "kW·h": "kWh",
     "W·h": "Wh",
     "um": "µm",
+    "meter": "m",
+    "millimeter": "mm",
     "μm": "µm",
     "1/min": "rpm",
     "mbps": "Mbit/s",
@@ -173,7 +190,9 @@ def convert(number: Fraction, unit: str, target: str) -> Fraction | None:
     """Return the number in the unit *target*; None for units of other quantities or without."""
     if unit == target:
         return number
-    source, goal = find_unit(unit), find_unit(target)
+    goal = find_unit(target)
+    is_time = goal is not None and goal.quantity == "time"
+    source = find_time_unit(unit) if is_time else find_unit(unit)
     if source is None or goal is None or source.quantity != goal.quantity:
         return None
     if source.symbol == goal.symbol:
@@ -181,3 +200,82 @@ def convert(number: Fraction, unit: str, target: str) -> Fraction | None:
     if not (source.factor and goal.factor):
         return None
     return number * Fraction(source.factor) / Fraction(goal.factor)
+
+
+# -- times -------------------------------------------------------------------------------------
+
+STEP = Unit("tick", "step", "time", factor="")
+"""A step of a contract; the option ``tick_seconds`` states its length."""
+_STEP_WORDS = ("tick", "ticks", "step", "steps")
+_TIME_WORD = re.compile(r"\s*(after|at)(?=[\s(])", re.IGNORECASE)
+_PARENTHESES = re.compile(r"\(([^()]*)\)")
+
+
+def find_time_unit(word: str) -> Unit | None:
+    """Return the unit of time or the step that a word means in any letter case."""
+    if word.lower() in _STEP_WORDS:
+        return STEP
+    unit = find_unit(word) or find_unit(word.lower())
+    return unit if unit is not None and unit.quantity == STEP.quantity else None
+
+
+def list_time_words() -> list[str]:
+    """Return the words that ``find_time_unit`` knows, in lower case, the longest first."""
+    words = {word.lower() for word in (*_SPELLINGS, *_UNITS_BY_TEXT, *_PLURALS, *_STEP_WORDS)}
+    return sorted(filter(find_time_unit, words), key=lambda word: (-len(word), word))
+
+
+class Duration(NamedTuple):
+    """A number, as it is written, of units of time or of steps."""
+
+    digits: str
+    unit: Unit
+
+    def count_steps(self, tick_seconds: float) -> Fraction:
+        """Return the number of steps of *tick_seconds* seconds, which may be no whole number."""
+        if self.unit is STEP:
+            return Fraction(self.digits)
+        return Fraction(self.digits) * Fraction(self.unit.factor) / Fraction(str(tick_seconds))
+
+    @property
+    def milliseconds(self) -> Fraction | None:
+        """The duration in milliseconds; None if it counts steps."""
+        return convert(Fraction(self.digits), self.unit.symbol, "ms")
+
+
+class Time(NamedTuple):
+    """A time at which something occurs; ``text`` lacks the words ``after`` and ``at``.
+
+    A relative time counts from the moment at which the wait for it begins. Without ``duration`` it
+    is not constant.
+    """
+
+    text: str
+    is_relative: bool
+    duration: Duration | None
+
+    def __str__(self) -> str:
+        text = f"{self.duration.digits} {self.duration.unit.symbol}" if self.duration else self.text
+        return f"{'after' if self.is_relative else 'at'} {text}"
+
+
+def read_duration(text: str) -> Duration | None:
+    """Return the duration in a text such as ``5 s``, ``5s`` or ``5``, which is in seconds."""
+    text = text.strip()
+    number = _NUMBER.match(text)
+    if number is None or number[0].startswith("-"):
+        return None
+    quantity = split_quantity(text if number.end() < len(text) else f"{text} s")
+    unit = None if quantity is None else find_time_unit(quantity[1])
+    return None if unit is None else Duration(number[0], unit)
+
+
+def read_time(text: str, *, is_relative: bool = False) -> Time:
+    """Return the time of a text; a text that begins with ``after`` is relative."""
+    word = _TIME_WORD.match(text)
+    content = text[word.end() :].strip() if word else text.strip()
+    inner = _PARENTHESES.fullmatch(content)
+    if inner is not None and read_duration(inner[1]) is not None:
+        content = inner[1].strip()
+    is_relative = is_relative or (word is not None and word[1].lower() == "after")
+    return Time(content, is_relative, read_duration(content) if is_relative else None)

@@ -10,7 +10,6 @@ from msgspec import Struct
 from sysmlc.analyses.recipe.context import Context, is_inlined
 from sysmlc.analyses.recipe.expressions import (
     build_parameter,
-    convert_value,
     find_feature,
     is_data,
     is_input,
@@ -18,6 +17,7 @@ from sysmlc.analyses.recipe.expressions import (
     resolve_literals,
     unit_name,
 )
+from sysmlc.analyses.recipe.profile import convert_value
 from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.ir.expressions import Expression, Literal
 from sysmlc.ir.query.classifiers import name_value_unit

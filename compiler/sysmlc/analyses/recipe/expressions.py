@@ -4,15 +4,13 @@ A dotted name refers to a feature, which has a type, a unit and a default value.
 """
 
 from collections.abc import Iterator
-from fractions import Fraction
 
 from sysmlc.analyses.recipe.context import Context
-from sysmlc.analyses.recipe.profile import shorten
+from sysmlc.analyses.recipe.profile import convert_value
 from sysmlc.ir import Element, Kind, query
 from sysmlc.ir import expressions as source
 from sysmlc.ir.query.classifiers import name_value_unit, unit_of
 from sysmlc.logic.expressions.parsing import statements_of, tree_of
-from sysmlc.logic.machines.transitions import parse_milliseconds
 from sysmlc.recipe.expression import (
     make_opaque,
     make_variable,
@@ -21,7 +19,7 @@ from sysmlc.recipe.expression import (
     variable_name,
 )
 from sysmlc.recipe.model import EnumType, ListType, Parameter, ReferenceType, Scalar, ValueType
-from sysmlc.support.units import convert
+from sysmlc.support.units import Time
 
 # Recipe expressions have no xor; on Booleans it equals !=.
 _OPERATORS = {"%": "mod", "xor": "!="}
@@ -35,10 +33,17 @@ def read_expression(text: str) -> source.Expression:
         return make_opaque(text)
 
 
-def read_time(text: str) -> source.Expression:
-    """Return the duration of a text in milliseconds, or its expression if it has no unit."""
-    duration = parse_milliseconds(text)
-    return read_expression(text) if duration is None else source.Literal(duration)
+def read_delay(time: Time) -> source.Expression:
+    """Return a time to wait in milliseconds, or its expression if it is not constant.
+
+    An absolute time, and one that is not a whole number of milliseconds, is opaque.
+    """
+    if time.duration is None:
+        return read_expression(time.text) if time.is_relative else make_opaque(str(time))
+    milliseconds = time.duration.milliseconds
+    if milliseconds is None or milliseconds.denominator != 1:
+        return make_opaque(time.text)
+    return source.Literal(int(milliseconds))
 
 
 def read_optional(text: str) -> source.Expression | None:
@@ -216,14 +221,6 @@ def read_default(
         return unit, value
     converted = convert_value(value, own_unit, unit or "ms")
     return (own_unit, value) if converted is None else (unit or "ms", converted)
-
-
-def convert_value(value: object, unit: str, target: str) -> int | float | None:
-    """Return a number in the unit *target*, or None if it cannot be converted."""
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return None
-    number = convert(Fraction(str(value)), unit, target)
-    return None if number is None else shorten(number)
 
 
 def is_data(context: Context, element: Element) -> bool:

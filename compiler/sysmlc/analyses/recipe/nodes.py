@@ -6,9 +6,10 @@ from msgspec.structs import replace
 
 from sysmlc.analyses.recipe.context import SERVICES, Context, is_block, is_for_each
 from sysmlc.analyses.recipe.data_flow import DataFlow
-from sysmlc.analyses.recipe.expressions import read_assignments, read_optional, read_time
+from sysmlc.analyses.recipe.expressions import read_assignments, read_delay, read_optional
 from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.recipe.model import Node
+from sysmlc.support.units import read_time
 
 CONTROL_KINDS = {
     "initial": "initial",
@@ -203,8 +204,8 @@ def _build_delay(context: Context, node: Element, base: Node, data: DataFlow) ->
     if duration is not None:
         return [_change(base, expression=duration)]
     trigger = next(_list_triggers(context, node), None)
-    when = "" if trigger is None else str(trigger.attrs.get("when", ""))
-    return [_change(base, expression=read_time(when), text=when)]
+    time = read_time("after ") if trigger is None else query.time_of(trigger)
+    return [_change(base, expression=read_delay(time), text=time.text)]
 
 
 def _change(node: Node, **changes: object) -> Node:

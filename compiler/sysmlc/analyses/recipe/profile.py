@@ -187,10 +187,7 @@ class Tags(Struct, frozen=True):
         text, stated, target = self.text(name), self.unit(name), self.target_unit(name)
         quantity = split_quantity(text)
         number = read_number(text) if quantity is None else shorten(quantity[0])
-        if number is not None and stated and stated != target:
-            converted = convert(Fraction(str(number)), stated, target)
-            number = None if converted is None else shorten(converted)
-        return number
+        return convert_value(number, stated, target) if stated else number
 
     def integer(self, name: str) -> int | None:
         """Return a whole number that is not negative, in the unit of the recipe, or None."""
@@ -256,6 +253,14 @@ def _format_constant(graph: Graph, element: Element, attribute: str) -> str:
 def shorten(number: Fraction) -> int | float:
     """Return a number as an integer if it is whole, else as a float."""
     return int(number) if number.denominator == 1 else float(number)
+
+
+def convert_value(value: object, unit: str, target: str) -> int | float | None:
+    """Return a number in the unit *target*, or None if it cannot be converted."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return None
+    number = convert(Fraction(str(value)), unit, target)
+    return None if number is None else shorten(number)
 
 
 def read_number(text: str) -> int | float | None:

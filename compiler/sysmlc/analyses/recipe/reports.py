@@ -147,9 +147,10 @@ def _check_tag(
         "value": value if unit in value else f"{value} {unit}",
     }
     expected, read_value = expectation
-    if unit and unit != target and find_unit(unit) is None:
+    is_misfit = bool(unit) and convert(Fraction(1), unit, target) is None
+    if is_misfit and find_unit(unit) is None:
         sink.report(UNKNOWN_UNIT, subject, **facts, unit=unit)
-    elif unit and convert(Fraction(1), unit, target) is None:
+    elif is_misfit:
         problem, advice = _describe_misfit(unit, target)
         sink.report(UNIT_MISFIT, subject, **facts, problem=problem, advice=advice)
     elif expectation in _NUMBERS and tags.is_too_large(name):

@@ -2,6 +2,8 @@
 
 import re
 from collections.abc import Iterator
+from fractions import Fraction
+from math import ceil, floor
 
 from msgspec import Struct
 from msgspec.structs import replace
@@ -21,8 +23,8 @@ from sysmlc.analyses.recipe.machines import (
 from sysmlc.analyses.recipe.nodes import find_flow_ends, find_refinement, list_flows
 from sysmlc.analyses.recipe.profile import read_number
 from sysmlc.ir import Edge, Element, Kind, query
-from sysmlc.logic.machines.transitions import parse_milliseconds
 from sysmlc.recipe.model import MaterialUse, Task, TimeLimit
+from sysmlc.support.units import read_duration
 
 
 class Step(Struct, frozen=True):
@@ -214,7 +216,7 @@ def _find_next_tasks(
 
 # -- times that requirements state -------------------------------------------------------------
 
-_NUMBER = r"(\d+(?:\.\d+)?)\s*([a-z]+)\b"
+_NUMBER = r"(\d+(?:\.\d+)?\s*[a-z\u00b5\u03bc]+)\b(?!/)"
 _MOST = re.compile(
     rf"\b(?:at most|within|in less than|no longer than|not longer than|no more than|not more than"
     rf"|less than|up to)\s+{_NUMBER}",
@@ -253,17 +255,18 @@ def _read_limit(context: Context, requirement: Element) -> TimeLimit | None:
     most = list(_iter_times(_MOST, text))
     if len(least) > 1 or len(most) > 1 or not (least or most):
         return None
+    # Derived times are whole numbers, so that they reach a limit just when they reach these.
     return TimeLimit(
         context.name(requirement),
-        least[0] if least else None,
-        most[0] if most else None,
+        ceil(least[0]) if least else None,
+        floor(most[0]) if most else None,
         requirement.id,
     )
 
 
-def _iter_times(pattern: re.Pattern[str], text: str) -> Iterator[int]:
-    for number, unit in pattern.findall(text):
-        # In prose, "5 m" are metres rather than minutes.
-        time = None if unit.lower() == "m" else parse_milliseconds(f"{number} {unit}")
-        if time is not None:
-            yield time
+def _iter_times(pattern: re.Pattern[str], text: str) -> Iterator[Fraction]:
+    """Yield the times in milliseconds that follow the words of *pattern*."""
+    for quantity in pattern.findall(text):
+        duration = read_duration(quantity)
+        if duration is not None and duration.milliseconds is not None:
+            yield duration.milliseconds

@@ -6,7 +6,7 @@ from sysmlc.backends.plantuml import labels, partitioning
 from sysmlc.backends.plantuml.labels import make_notes
 from sysmlc.backends.plantuml.partitioning import split_view
 from sysmlc.backends.plantuml.views import Aliases, Diagram, GraphView, Line, Node
-from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.support.plantuml_text import escape_line, format_label, join_rows, shrink, wrap_lines
 
 VERTICES = (Kind.STATE, Kind.PSEUDOSTATE, Kind.FINAL_STATE)
@@ -253,8 +253,8 @@ def format_trigger(graph: Graph, trigger: Element) -> str:
     """
     event = ", ".join(labels.name(item) for item in graph.targets(trigger, Edge.TYPED_BY))
     if trigger.subkind == "time":
-        word = "after" if trigger.attrs.get("relative") else "at"
-        return f"{word} ({trigger.attrs.get('when', trigger.name)})"
+        time = query.time_of(trigger)
+        return f"{'after' if time.is_relative else 'at'} ({time.text})"
     if trigger.subkind == "change":
         return f"when ({trigger.attrs.get('condition', trigger.name)})"
     if trigger.subkind == "any":

@@ -4,32 +4,17 @@ A text that is not an expression over the model becomes the name of a feature, w
 namespace declares.
 """
 
-import re
-
 from sysmlc.backends.sysml.annotations import make_annotation
 from sysmlc.backends.sysml.expressions import format_expression, is_condition
-from sysmlc.backends.sysml.library import IMPORTED, ROOTS, UNITS
+from sysmlc.backends.sysml.library import IMPORTED, ROOTS, name_unit
 from sysmlc.backends.sysml.plan import Member
 from sysmlc.backends.sysml.printing import Line, quote_name
 from sysmlc.backends.sysml.references import look_up
 from sysmlc.backends.sysml.rules import TEXT_AS_NAME
 from sysmlc.backends.sysml.shapes import Shape
 from sysmlc.backends.sysml.writer import Writer
-from sysmlc.ir import Edge, Element
+from sysmlc.ir import Edge, Element, query
 
-_DURATION = re.compile(r"\s*(\d+(?:\.\d+)?)\s*([a-zµ]*)\s*", re.IGNORECASE)
-_TIME_UNITS = {
-    "": "s",
-    "sec": "s",
-    "secs": "s",
-    "second": "s",
-    "seconds": "s",
-    "msec": "ms",
-    "minute": "min",
-    "minutes": "min",
-    "hour": "h",
-    "hours": "h",
-}
 _WITHOUT_DECLARATIONS = frozenset({"transition", "succession", "flow", "constraint"})
 """Keywords of namespaces that declare no features; the namespace around them does."""
 _ACCEPTING = frozenset({"accept", "accept-call"})
@@ -51,27 +36,19 @@ def format_condition(writer: Writer, scope: Member | None, element: Element, tex
     return declare_condition(writer, scope, element, text)
 
 
-def _format_duration(writer: Writer, scope: Member | None, element: Element, text: str) -> str:
-    """Return a duration as a quantity; a number without a unit means seconds."""
-    match = _DURATION.fullmatch(text)
-    if match is not None:
-        unit = _TIME_UNITS.get(match[2].lower(), match[2])
-        if UNITS.get(unit, ("", ""))[0] == "DurationValue":
-            package = "SysMLC::Units" if unit in ("ms", "µs") else "SI"
-            return f"{match[1]} [{writer.refer_to_library(scope, f'{package}::{unit}')}]"
-    return _format(writer, scope, element, text, "ISQ::DurationValue")
-
-
-def _format_instant(writer: Writer, scope: Member | None, element: Element, text: str) -> str:
-    return _format(writer, scope, element, text, "Time::TimeInstantValue")
-
-
-def _format(writer: Writer, scope: Member | None, element: Element, text: str, type_: str) -> str:
-    """Return an expression, else the name of an attribute with this type."""
-    expression = format_expression(writer, scope, text)
-    if expression is not None:
-        return expression
-    return _declare(writer, scope, element, text, type_)
+def _format_time(writer: Writer, scope: Member, trigger: Element) -> str:
+    """Return a time as a quantity or an expression, else as the name of an attribute."""
+    time = query.time_of(trigger)
+    word, type_ = (
+        ("after", "ISQ::DurationValue") if time.is_relative else ("at", "Time::TimeInstantValue")
+    )
+    unit = None if time.duration is None else name_unit(time.duration.unit.symbol)
+    if time.duration is not None and unit is not None:
+        if time.text == time.duration.digits:
+            writer.record_approximation(trigger, "a time without a unit", "seconds")
+        return f"{word} {time.duration.digits} [{writer.refer_to_library(scope, unit)}]"
+    expression = format_expression(writer, scope, time.text)
+    return f"{word} {expression or _declare(writer, scope, trigger, time.text, type_)}"
 
 
 def declare_condition(writer: Writer, scope: Member | None, element: Element, text: str) -> str:
@@ -135,12 +112,7 @@ def format_trigger(writer: Writer, scope: Member, trigger: Element) -> str:
 
 def _format_payload(writer: Writer, scope: Member, trigger: Element) -> str:
     if trigger.subkind == "time":
-        when = str(trigger.attrs.get("when", ""))
-        if when.replace(".", "", 1).isdigit():
-            writer.record_approximation(trigger, "a time without a unit", "seconds")
-        if trigger.attrs.get("relative"):
-            return f"after {_format_duration(writer, scope, trigger, when)}"
-        return f"at {_format_instant(writer, scope, trigger, when)}"
+        return _format_time(writer, scope, trigger)
     if trigger.subkind == "change":
         text = str(trigger.attrs.get("condition", ""))
         return f"when {format_condition(writer, scope, trigger, text)}"

@@ -6,9 +6,9 @@ from sysmlc.backends.sysml.declarations import list_visibility, make_definition_
 from sysmlc.backends.sysml.edge_coverage import has_own_measure
 from sysmlc.backends.sysml.library import (
     find_quantity,
-    find_quantity_of_kind,
     find_scalar_type,
     find_unit_name,
+    find_value_type,
 )
 from sysmlc.backends.sysml.plan import Member
 from sysmlc.backends.sysml.printing import Line, format_comment, quote_name
@@ -192,7 +192,7 @@ def _record_other_quantity(writer: Writer, element: Element, quantity: str) -> N
     quantity_kind = quantity_kind_of(writer.graph, element)
     if quantity_kind is None:
         return
-    if find_quantity_of_kind(quantity_kind) not in (None, quantity):
+    if find_value_type(quantity_kind.name) not in (None, quantity):
         construct = "a quantity kind that has other units"
         writer.record_approximation(element, construct, "that of the unit")
 

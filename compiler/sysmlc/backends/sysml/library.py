@@ -9,7 +9,7 @@ from functools import cache
 
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.query.classifiers import quantity_kind_of, unit_of
-from sysmlc.support import resources
+from sysmlc.support import resources, units
 
 SHIPPED = "sysmlc:"
 """Prefix of the sources of elements that come from the libraries of sysmlc."""
@@ -22,99 +22,54 @@ SCALARS = {
     "Number": "ScalarValues::Number",
     "Complex": "ScalarValues::Complex",
 }
-_UNITS = """
-    m LengthValue m | km LengthValue km | dm LengthValue dm | cm LengthValue cm
-    mm LengthValue mm | µm LengthValue 'µm' | nm LengthValue nm
-    m² AreaValue m² | m³ VolumeValue m³ | L VolumeValue L | l VolumeValue L
-    kg MassValue kg | g MassValue g | t MassValue tonne | mg MassValue mg
-    s DurationValue s | ms DurationValue ms | µs DurationValue 'µs' | min DurationValue min
-    h DurationValue h | d DurationValue d
-    m/s SpeedValue m/s | km/h SpeedValue km/h | m·s^-1 SpeedValue m/s
-    m/s² AccelerationValue m/s² | m·s^-2 AccelerationValue m/s²
-    rad AngularMeasureValue rad | ° AngularMeasureValue ° | deg AngularMeasureValue °
-    mm/s SpeedValue mm/s | m/min SpeedValue m/min
-    rad/s AngularVelocityValue rad/s | Hz FrequencyValue Hz | kHz FrequencyValue kHz
-    MHz FrequencyValue MHz | GHz FrequencyValue GHz
-    N ForceValue N | kN ForceValue kN | N·m TorqueValue N⋅m | Nm TorqueValue N⋅m
-    Pa PressureValue Pa | kPa PressureValue kPa | MPa PressureValue MPa | bar PressureValue bar
-    mbar PressureValue mbar | kWh EnergyValue kWh | °C CelsiusTemperatureValue °C
-    J EnergyValue J | kJ EnergyValue kJ | W PowerValue W | kW PowerValue kW | MW PowerValue MW
-    V ElectricPotentialValue V | mV ElectricPotentialValue mV | kV ElectricPotentialValue kV
-    A ElectricCurrentValue A | mA ElectricCurrentValue mA | Ω ResistanceValue Ω
-    K ThermodynamicTemperatureValue K | mol AmountOfSubstanceValue mol
-    cd LuminousIntensityValue cd | C ElectricChargeValue C | F CapacitanceValue F
-    T MagneticFluxDensityValue T | lx IlluminanceValue lx | bit StorageCapacityValue bit
+_SI_UNIT_NAMES = """
+    m km cm mm nm m² m³ L kg g t s min h d m/s km/h m/s² rad ° Hz N N·m Pa J kJ W kW V A Ω K
+    mol cd lx bit
 """
-
-
-def _read_units() -> dict[str, tuple[str, str]]:
-    units = {}
-    for row in _UNITS.replace("\n", " | ").split(" | "):
-        if row.split():
-            symbol, value_type, name = row.split()
-            units[symbol] = (value_type, name.strip("'"))
-    return units
-
-
-UNITS = _read_units()
-"""Value type of ISQ and name of the unit, by the symbol of the unit."""
 _SYSMLC_UNIT_NAMES = """
     dm µm mg ms µs kHz MHz GHz kN kPa MPa MW mV kV mA bar mbar rad/s kWh mm/s m/min °C
 """
+_NAMED_UNITS = """
+    m km cm mm kg g s ms min h m/s N N·m Pa bar J W kW V A K Hz rad ° Ω
+"""
+"""Units that are found by their names; other names without a symbol are units of the model."""
 _SYSMLC_UNITS = frozenset(_SYSMLC_UNIT_NAMES.split())
 """Units of ``SysMLC::Units``: SI lacks them, or defines them in a way that models cannot use."""
-_VALUE_TYPES_BY_QUANTITY = {
-    "length": "LengthValue",
-    "area": "AreaValue",
-    "volume": "VolumeValue",
-    "mass": "MassValue",
-    "time": "DurationValue",
-    "duration": "DurationValue",
-    "speed": "SpeedValue",
-    "velocity": "SpeedValue",
-    "acceleration": "AccelerationValue",
-    "angle": "AngularMeasureValue",
-    "angular velocity": "AngularVelocityValue",
-    "frequency": "FrequencyValue",
-    "force": "ForceValue",
-    "torque": "TorqueValue",
-    "pressure": "PressureValue",
-    "energy": "EnergyValue",
-    "power": "PowerValue",
-    "electric potential": "ElectricPotentialValue",
-    "electric current": "ElectricCurrentValue",
-    "resistance": "ResistanceValue",
-    "thermodynamic temperature": "ThermodynamicTemperatureValue",
+_VALUE_TYPES = """
+    Length Area Volume Mass Duration Speed Acceleration AngularMeasure AngularVelocity Frequency
+    Force Torque Pressure Energy Power ElectricPotential ElectricCurrent Resistance
+    ThermodynamicTemperature AmountOfSubstance LuminousIntensity Illuminance StorageCapacity
+"""
+_QUANTITIES_IN_ISQ = {
+    "time": "duration",
+    "velocity": "speed",
+    "angle": "angular measure",
+    "electric resistance": "resistance",
 }
-_SYMBOLS_BY_UNIT_NAME = {
-    "metre": "m",
-    "meter": "m",
-    "millimetre": "mm",
-    "millimeter": "mm",
-    "centimetre": "cm",
-    "kilometre": "km",
-    "kilogram": "kg",
-    "gram": "g",
-    "second": "s",
-    "millisecond": "ms",
-    "minute": "min",
-    "hour": "h",
-    "metre per second": "m/s",
-    "newton": "N",
-    "newton metre": "N·m",
-    "pascal": "Pa",
-    "bar": "bar",
-    "joule": "J",
-    "watt": "W",
-    "kilowatt": "kW",
-    "volt": "V",
-    "ampere": "A",
-    "kelvin": "K",
-    "hertz": "Hz",
-    "radian": "rad",
-    "degree": "°",
-    "ohm": "Ω",
+"""Names of quantities in ISQ that differ."""
+
+
+def find_value_type(quantity: str) -> str | None:
+    """Return the value type of ISQ for the name of a quantity."""
+    name = _QUANTITIES_IN_ISQ.get(quantity.lower(), quantity).title().replace(" ", "")
+    return f"{name}Value" if name in _VALUE_TYPES.split() else None
+
+
+_NAMES_IN_SI = {"t": "tonne", "N·m": "N⋅m"}
+"""Names of units in SI that differ from their symbols."""
+UNITS = {
+    unit.symbol: (value_type, _NAMES_IN_SI.get(unit.symbol, unit.symbol))
+    for unit in units.UNITS
+    if unit.symbol in _SYSMLC_UNITS.union(_SI_UNIT_NAMES.split())
+    and (value_type := find_value_type(unit.quantity))
+} | {
+    "°C": ("CelsiusTemperatureValue", "°C"),
+    # Files of CAEX have C and F as units of temperature, so that `units` omits these.
+    "C": ("ElectricChargeValue", "C"),
+    "F": ("CapacitanceValue", "F"),
+    "T": ("MagneticFluxDensityValue", "T"),
 }
+"""Value type of ISQ and name of the unit, by the symbol of the unit."""
 _ROOTS = """
     ActionPerformances Actions Allocations AnalysisCases AnalysisTooling Attributes Base
     BooleanFunctions Calculations Cases CausationConnections CauseAndEffect Clocks
@@ -215,18 +170,26 @@ def find_scalar_type(element: Element) -> str | None:
 
 def find_unit_name(unit: Element | None) -> str | None:
     """Return the qualified name of a unit in SI or ``SysMLC``, found by its symbol or its name."""
-    row = _find_unit(unit)
-    if row is None:
-        return None
-    return f"{'SysMLC::Units' if row[1] in _SYSMLC_UNITS else 'SI'}::{row[1]}"
+    return name_unit("" if unit is None else _find_symbol(unit))
 
 
-def _find_unit(unit: Element | None) -> tuple[str, str] | None:
-    """Return value type and name of a unit."""
-    if unit is None:
-        return None
-    symbol = str(unit.attrs.get("symbol", "")).replace("*", "·")
-    return UNITS.get(symbol) or UNITS.get(_SYMBOLS_BY_UNIT_NAME.get(unit.name.lower(), unit.name))
+def name_unit(symbol: str) -> str | None:
+    """Return the qualified name of the unit with a symbol in SI or ``SysMLC``."""
+    row = UNITS.get(symbol)
+    package = "SysMLC::Units" if symbol in _SYSMLC_UNITS else "SI"
+    return None if row is None else f"{package}::{row[1]}"
+
+
+def _find_symbol(unit: Element) -> str:
+    """Return the symbol of a unit, found by its symbol or its name, or the empty string."""
+    symbol = str(unit.attrs.get("symbol", ""))
+    known_unit = units.find_unit(symbol)
+    for text in (symbol if known_unit is None else known_unit.symbol, unit.name):
+        if text in UNITS:
+            return text
+    named_unit = units.find_unit(unit.name.lower())
+    symbol = "" if named_unit is None else named_unit.symbol
+    return symbol if symbol in _NAMED_UNITS.split() else ""
 
 
 def find_quantity(graph: Graph, type_: Element) -> str | None:
@@ -236,15 +199,10 @@ def find_quantity(graph: Graph, type_: Element) -> str | None:
     """
     unit = unit_of(graph, type_)
     if unit is not None:
-        row = _find_unit(unit)
+        row = UNITS.get(_find_symbol(unit))
         return None if row is None else row[0]
     quantity_kind = quantity_kind_of(graph, type_)
-    return None if quantity_kind is None else find_quantity_of_kind(quantity_kind)
-
-
-def find_quantity_of_kind(quantity_kind: Element) -> str | None:
-    """Return the value type of ISQ for a quantity kind."""
-    return _VALUE_TYPES_BY_QUANTITY.get(quantity_kind.name.lower())
+    return None if quantity_kind is None else find_value_type(quantity_kind.name)
 
 
 # -- names that members inherit ------------------------------------------------------------------

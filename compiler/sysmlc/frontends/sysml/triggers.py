@@ -1,17 +1,18 @@
 """Triggers of accept actions and transitions: signals, calls, times and changes."""
 
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import nodes, values
+from sysmlc.frontends.sysml.quantities import read_unit
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.language.tree import Node
+from sysmlc.support.units import find_time_unit
 
 if TYPE_CHECKING:
     from sysmlc.frontends.sysml.lowering import Lowering
 
 _CALL = "SysMLC::Call"
-_IS_RELATIVE = {"after": True, "at": False}
-"""Kinds of time triggers."""
 
 
 def lower_trigger(lowering: "Lowering", accept: Node, owner: Element) -> Element:
@@ -35,10 +36,9 @@ def _describe_invocation(lowering: "Lowering", trigger: Element, invocation: Nod
     """Describe a trigger by ``after``, ``at`` or ``when``."""
     kind = str(invocation.attributes.get("kind", ""))
     argument = next(iter(nodes.list_arguments(invocation)), None)
-    if kind in _IS_RELATIVE:
+    if kind in ("after", "at"):
         when = "" if argument is None else _write_time(lowering, argument)
-        is_relative = _IS_RELATIVE[kind]
-        lowering.set_attributes(trigger, subkind="time", when=when, relative=is_relative)
+        lowering.set_attributes(trigger, subkind="time", when=when, relative=kind == "after")
         return
     lowering.set_attributes(trigger, subkind="change")
     lowering.defer_until_elements(
@@ -48,11 +48,10 @@ def _describe_invocation(lowering: "Lowering", trigger: Element, invocation: Nod
 
 def _write_time(lowering: "Lowering", expression: Node) -> str:
     """Return a point in time or a duration as text: ``5 s``."""
-    unit = values.unit_of(expression)
+    unit, factor = read_unit(lowering, expression)
     number = values.constant_of(expression)
-    # In a text of SysML v1 "m" is a minute, here it is the metre.
-    if unit and unit != "m" and number is not None:
-        return f"{number} {unit}"
+    if isinstance(number, int | float) and find_time_unit(unit) is not None:
+        return f"{number if factor == 1 else float(Fraction(str(number)) * factor)} {unit}"
     return values.expression_text(expression, lowering)
 
 

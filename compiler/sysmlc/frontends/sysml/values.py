@@ -157,15 +157,6 @@ def _append(value: AttrValue, sequence: list[AttrValue]) -> bool:
     return True
 
 
-def unit_of(expression: Node) -> str:
-    """Return the name of the unit of a quantity (``mm`` of ``5 [SI::mm]``), or ''."""
-    if expression.kind == "OperatorExpression" and expression.attributes.get("operator") == "[":
-        arguments = nodes.list_arguments(expression)
-        unit = nodes.find_reference(arguments[1], "Membership") if len(arguments) == 2 else None
-        return "" if unit is None else nodes.last_name(unit)
-    return ""
-
-
 # -- multiplicities ----------------------------------------------------------------------------
 
 

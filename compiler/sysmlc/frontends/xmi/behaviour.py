@@ -17,6 +17,7 @@ from sysmlc.frontends.xmi.value_features import (
 from sysmlc.frontends.xmi.values import Value, read_opaque, read_value
 from sysmlc.frontends.xmi.vocabulary import TRUE
 from sysmlc.ir import AttrValue, Edge, Element, list_items
+from sysmlc.support.units import read_time
 
 _RECORD_COLUMNS = {
     "clauses": ("test", "body"),
@@ -29,9 +30,6 @@ _RECORD_FEATURES = frozenset(name for names in _RECORD_COLUMNS.values() for name
 
 _EVENT_VALUES = {"when": "when", "changeExpression": "condition"}
 """Attributes of triggers, by the feature of the event that holds the value."""
-
-_WORDS_OF_EVENTS = {"time": ("after", "at"), "change": ("when",)}
-"""Words before the time or the condition in the name of an event, by the subkind of triggers."""
 
 _ANY_EVENT = re.compile(
     r"(any|all|any ?receive( ?event)?)[ _]?\d*|\*|else|otherwise", re.IGNORECASE
@@ -223,13 +221,13 @@ def _read_text_in_name(trigger: Element, event_name: str) -> None:
     """Set the time or condition of an event that has it only in its name (``after 5 s``)."""
     for name in (event_name, trigger.name):
         word, _, text = name.strip().partition(" ")
-        if not text or word not in _WORDS_OF_EVENTS.get(trigger.subkind, ()):
-            continue
-        if trigger.subkind == "change":
+        if trigger.subkind == "change" and word == "when" and text:
             trigger.attrs.setdefault("condition", text.strip())
-        elif "when" not in trigger.attrs:
-            trigger.attrs["when"] = text.strip()
-            if word == "after":
+        time = read_time(name)
+        is_time = trigger.subkind == "time" and time.text != name.strip()
+        if is_time and "when" not in trigger.attrs:
+            trigger.attrs["when"] = time.text
+            if time.is_relative:
                 trigger.attrs["relative"] = True
 
 

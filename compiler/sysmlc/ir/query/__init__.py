@@ -30,6 +30,7 @@ from sysmlc.ir.query.classifiers import (
     redefined_features,
     stereotypes,
     tag,
+    time_of,
     type_of,
 )
 from sysmlc.ir.query.names import (
@@ -111,5 +112,6 @@ __all__ = [
     "runs_both_ways",
     "stereotypes",
     "tag",
+    "time_of",
     "type_of",
 ]

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from sysmlc.ir.element import AttrValue, Element
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
+from sysmlc.support.units import Time, read_time
 
 CLASSIFIERS = (
     Kind.CLASS,
@@ -180,6 +181,12 @@ def name_value_unit(graph: Graph, element: Element, key: str) -> str:
 def strip_qualifiers(unit: str) -> str:
     """Return the expression of a unit without qualifiers and quotes: ``m/s`` for ``SI::'m/s'``."""
     return _QUALIFIER.sub("", unit).replace("'", "")
+
+
+def time_of(trigger: Element) -> Time:
+    """Return the time of a time trigger."""
+    text = str(trigger.attrs.get("when") or trigger.name)
+    return read_time(text, is_relative=trigger.attrs.get("relative") is True)
 
 
 def quantity_kind_of(graph: Graph, feature: Element) -> Element | None:

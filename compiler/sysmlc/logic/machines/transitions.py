@@ -4,14 +4,13 @@ Triggers are events, times and changes; the reader creates the variables that th
 transitions that lead to a join are combined into one.
 """
 
-import re
 from itertools import combinations
 from math import ceil
 
 from msgspec.structs import replace
 
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.ir.expressions import Binary, Expression, Unary
 from sysmlc.ir.expressions import Literal as Written
 from sysmlc.logic.contract import (
@@ -19,7 +18,6 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.identifiers import make_unique
 from sysmlc.logic.machines.actions import (
-    ReadingContext,
     read_behaviours,
     read_condition,
 )
@@ -39,6 +37,8 @@ from sysmlc.logic.machines.machine import (
 from sysmlc.logic.machines.supported_constructs import JOIN_BESIDE, collect_submachines
 from sysmlc.logic.machines.vertices import MachineDraft, list_outgoing
 from sysmlc.logic.machines.well_formedness import find_common_state
+from sysmlc.support.counts import count as count_nouns
+from sysmlc.support.units import Time, split_quantity
 
 
 def _read_occurrences(
@@ -104,15 +104,6 @@ def _read_event(draft: MachineDraft, key: str, name: str) -> str:
     return draft.events[key]
 
 
-def _read_time(draft: MachineDraft, trigger: Element, vertex: Vertex) -> Occurrence:
-    """Return the occurrence of a time trigger; an input replaces a time that is not constant."""
-    count = _count_ticks(draft.reading, trigger)
-    if count is None:
-        return OnInput(_make_time_input(draft.reading, trigger))
-    draft.bounds[vertex.id] = max(count, draft.bounds.get(vertex.id, 0))
-    return AfterTicks(count)
-
-
 def _read_change(draft: MachineDraft, trigger: Element) -> Occurrence:
     text = str(trigger.attrs.get("condition", "")).strip() or trigger.name
     condition = read_condition(draft.reading, text, "change condition", trigger)
@@ -129,81 +120,56 @@ OPAQUE_TIME = rule(
     "SM417",
     "opaque-time",
     Severity.WARNING,
-    "{time} {reason}; the contract treats the event as the input '{variable}'",
+    "{time} {reason}; the contract {treatment}",
     help="{advice}",
 )
-_SECONDS = {
-    "ms": 0.001,
-    "msec": 0.001,
-    "millisecond": 0.001,
-    "milliseconds": 0.001,
-    "s": 1.0,
-    "sec": 1.0,
-    "second": 1.0,
-    "seconds": 1.0,
-    "min": 60.0,
-    "minute": 60.0,
-    "minutes": 60.0,
-    "m": 60.0,
-    "h": 3600.0,
-    "hour": 3600.0,
-    "hours": 3600.0,
-}
-_TIME = re.compile(r"^\s*(?:after\b)?\s*\(?\s*(\d+(?:\.\d+)?)\s*([A-Za-z]*)\s*\)?\s*$")
 
 
-def _count_ticks(reading: ReadingContext, trigger: Element) -> int | None:
-    """Return the number of steps after which a time trigger occurs, at least 1.
-
-    The result is None if the time is not constant. A number without a unit counts steps; with a
-    unit, a step lasts ``tick_seconds``.
-    """
-    text = str(trigger.attrs.get("when", ""))
-    is_relative = _is_relative(trigger, text)
-    match = _TIME.match(text)
-    if not is_relative or match is None or (match[2] and match[2].lower() not in _SECONDS):
-        return None
-    number = float(match[1])
-    if match[2]:
-        number = number * _SECONDS[match[2].lower()] / reading.tick_seconds
-    # Rounded up, so that a time trigger never occurs early; a reaction takes at least one step.
-    return max(1, ceil(number))
-
-
-def _is_relative(trigger: Element, text: str) -> bool:
-    """Whether the time counts from the entry of the source state."""
-    return trigger.attrs.get("relative") is True or text.strip().startswith("after")
-
-
-def parse_milliseconds(text: str) -> int | None:
-    """Return a duration with a unit, such as ``5 s``, in milliseconds; None for any other text."""
-    match = _TIME.match(text)
-    if match is None or match[2].lower() not in _SECONDS:
-        return None
-    return round(float(match[1]) * _SECONDS[match[2].lower()] * 1000)
-
-
-def _make_time_input(reading: ReadingContext, trigger: Element) -> str:
-    """Report a time that is not constant and return the Boolean input that replaces it."""
-    text = str(trigger.attrs.get("when", "")) or trigger.name
-    variable = reading.input_for(f"time {text}", f"time_{text}", trigger.id)
-    if not text:
-        reason, advice = "is not stated", "write 'after' and a duration"
-    elif _is_relative(trigger, text):
-        reason = "is not a number"
-        advice = "write a number, or a number with a unit, if the duration is constant"
+def _read_time(draft: MachineDraft, trigger: Element, vertex: Vertex) -> Occurrence:
+    """Return the occurrence of a time trigger; an input replaces a time that is not constant."""
+    reading, time = draft.reading, query.time_of(trigger)
+    if time.duration is None:
+        variable = reading.input_for(f"time {time}", f"time_{time.text}", trigger.id)
+        reason, advice = _explain_input(time)
+        treatment = f"treats the event as the input '{variable}'"
+        occurrence: Occurrence = OnInput(variable)
     else:
-        reason = "is absolute"
-        advice = "write 'after' and a duration if the time counts from the entry of the state"
+        steps = time.duration.count_steps(reading.tick_seconds)
+        # Rounded up, so that a time trigger never occurs early; a reaction takes at least one step.
+        count = max(1, ceil(steps))
+        draft.bounds[vertex.id] = max(count, draft.bounds.get(vertex.id, 0))
+        occurrence = AfterTicks(count)
+        if steps.denominator == 1:
+            return occurrence
+        reason = f"is not a whole number of steps of {reading.tick_seconds:g} s"
+        advice = "set the option 'tick_seconds' of the pass 'contracts' to a length that divides it"
+        treatment = f"counts {count_nouns(count, 'step')}"
     reading.sink.report(
         OPAQUE_TIME,
         reading.graph.subject(trigger),
-        time=f"time '{text}'" if text else "the time of a trigger",
+        time=f"time '{time.text}'" if time.text else "the time of a trigger",
         reason=reason,
         advice=advice,
-        variable=variable,
+        treatment=treatment,
     )
-    return variable
+    return occurrence
+
+
+def _explain_input(time: Time) -> tuple[str, str]:
+    """Return why a time is not a number of steps, and what to do."""
+    if not time.text:
+        return "is not stated", "write 'after' and a duration"
+    if not time.is_relative:
+        advice = "write 'after' and a duration if the time counts from the entry of the state"
+        return "is absolute", advice
+    quantity = split_quantity(time.text)
+    if quantity is not None and quantity[0] >= 0:
+        return (
+            f"is in '{quantity[1]}', which is not a known unit of time",
+            "write ms, s, min, h or ticks",
+        )
+    advice = "write a number, or a number with a unit, if the duration is constant"
+    return "is not a number", advice
 
 
 # -- transitions -------------------------------------------------------------------------------
