@@ -1,29 +1,30 @@
 """Draw random mutants of the code, and count those that the tests notice: ``make mutants``.
 
-A mutant is the code with one small change: another comparison, a negated condition, a statement or
-an entry of a table less. Each one is tested in a copy of the project, with the tests that import
-its module, those of its package and those of commands, until the first failure. A mutant that no
-test notices is printed with its place: write the test that fails, unless the mutant means the same.
+A mutant is the code with one small change. It is tested in a copy of the project, with the tests
+that import its module, those of its package and those of commands, until the first failure. For a
+mutant that no test notices, write the test that fails, unless the mutant means the same.
 """
 
 import argparse
 import ast
-import copy
 import os
 import queue
 import random
+import re
 import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from operator import setitem
 from pathlib import Path
 from typing import NamedTuple
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = Path("compiler", "sysmlc")
-SECONDS = 600
+SECONDS = 900
 """Time after which a mutant counts as noticed: it probably does not terminate."""
 WITH_COMMANDS = ("tests/cli", "tests/examples")
 """Folders of tests that run all packages."""
@@ -39,11 +40,11 @@ NOT_MUTATED = frozenset({"annotation", "returns", "decorator_list", "keywords", 
 
 
 class Mutation(NamedTuple):
-    """A change of a syntax tree, in words, and the function that makes it."""
+    """A change of a syntax tree, in words, and the calls that make it."""
 
     line: int
     text: str
-    apply: Callable[[], None]
+    calls: Sequence[Callable[[], object]]
 
 
 class Mutant(NamedTuple):
@@ -66,40 +67,33 @@ def iter_mutations(node: ast.AST) -> Iterator[Mutation]:
     if isinstance(node, ast.Dict):
         for index, (key, value) in enumerate(zip(node.keys, node.values, strict=True)):
             text = f"without the entry {'**' if key is None else _print(key)}"
-            yield Mutation(value.lineno, text, lambda index=index: _remove(node, index))
+            pops = (partial(node.keys.pop, index), partial(node.values.pop, index))
+            yield Mutation(value.lineno, text, pops)
 
 
 def _iter_replacements(
     parent: ast.AST, field: str, index: int, node: ast.AST
 ) -> Iterator[Mutation]:
     """Yield the mutations that replace *node* in a field of its parent by another node."""
+    value = getattr(parent, field)
+    is_list = isinstance(value, list)
+    replace = partial(setitem, value, index) if is_list else partial(setattr, parent, field)
     for substitute in _iter_substitutes(node):
-
-        def apply(substitute: ast.AST = substitute) -> None:
-            value = getattr(parent, field)
-            if isinstance(value, list):
-                value[index] = substitute
-            else:
-                setattr(parent, field, substitute)
-
         text = f"{_print(node)}  ->  {_print(substitute)}"
-        yield Mutation(getattr(node, "lineno", 0), text, apply)
+        yield Mutation(getattr(node, "lineno", 0), text, [partial(replace, substitute)])
 
 
 def _iter_substitutes(node: ast.AST) -> Iterator[ast.AST]:
     match node:
         case ast.Compare(ops=[operator, *_]):
-            changed = copy.deepcopy(node)
-            changed.ops[0] = OPPOSITES[type(operator)]()
-            yield changed
+            operators = [OPPOSITES[type(operator)](), *node.ops[1:]]
+            yield ast.Compare(node.left, operators, node.comparators)
         case ast.BoolOp():
             yield ast.BoolOp(ast.And() if isinstance(node.op, ast.Or) else ast.Or(), node.values)
         case ast.UnaryOp(op=ast.Not()):
             yield node.operand
-        case ast.Constant(value=bool(value)):
-            yield ast.Constant(not value)
         case ast.Constant(value=int(value)):
-            yield ast.Constant(value + 1)
+            yield ast.Constant(not value if isinstance(value, bool) else value + 1)
         case ast.Return(value=ast.expr() as value) if not isinstance(value, ast.Constant):
             yield ast.Return(ast.Constant(None))
         case ast.Expr(value=ast.Call()) | ast.AugAssign():
@@ -108,10 +102,6 @@ def _iter_substitutes(node: ast.AST) -> Iterator[ast.AST]:
             yield type(node)(ast.UnaryOp(ast.Not(), node.test), node.body, node.orelse)
         case ast.Slice(lower=ast.expr()):
             yield ast.Slice(None, node.upper, node.step)
-
-
-def _remove(table: ast.Dict, index: int) -> None:
-    del table.keys[index], table.values[index]
 
 
 def _print(node: ast.AST) -> str:
@@ -129,7 +119,8 @@ def draw_mutants(count: int, seed: int) -> list[Mutant]:
         mutations = list(iter_mutations(tree))
         if mutations:
             mutation = dice.choice(mutations)
-            mutation.apply()
+            for call in mutation.calls:
+                call()
             module = path.relative_to(ROOT)
             place = f"{module.as_posix()}:{mutation.line}: {mutation.text}"
             mutants.append(Mutant(module, place, ast.unparse(ast.fix_missing_locations(tree))))
@@ -153,14 +144,26 @@ def list_tests(module: Path) -> list[str]:
     return list(dict.fromkeys([*files, folder.as_posix(), *WITH_COMMANDS]))
 
 
-def run_tests(mutant: Mutant, copies: "queue.Queue[Path]") -> str:
-    """Return the first failure that the tests of a mutant report, or an empty text."""
+def try_mutant(mutant: Mutant, copies: "queue.Queue[Path]") -> str:
+    """Return the first test that a mutant fails, or an empty text."""
     project = copies.get()
     file = project / mutant.path
     original = file.read_text("utf-8")
-    file.write_text(mutant.text, "utf-8")
+    try:
+        file.write_text(mutant.text, "utf-8")
+        failure = _find_failure(project, list_tests(mutant.path))
+        file.write_text(original, "utf-8")
+        if "::" in failure and _find_failure(project, [failure]):
+            raise RuntimeError(f"the tests must succeed without mutants: {failure}")
+    finally:
+        copies.put(project)
+    return failure
+
+
+def _find_failure(project: Path, tests: list[str]) -> str:
+    """Return the first of the tests that fails, another reason to fail, or an empty text."""
     options = ("-x", "-q", "-p", "no:cacheprovider", "-m", "not long and not slow")
-    command = [sys.executable, "-m", "pytest", *options, *list_tests(mutant.path)]
+    command = [sys.executable, "-m", "pytest", *options, *tests]
     environment = os.environ | {"PYTHONPATH": str(project / "compiler"), "CI": "true"}
     try:
         run = subprocess.run(
@@ -168,12 +171,8 @@ def run_tests(mutant: Mutant, copies: "queue.Queue[Path]") -> str:
         )
     except subprocess.TimeoutExpired:
         return f"not ended after {SECONDS} seconds"
-    finally:
-        file.write_text(original, "utf-8")
-        copies.put(project)
-    lines = [line for line in run.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
-    failure = " ".join(lines).partition(" - ")[0]
-    return failure or (f"exit code {run.returncode}" if run.returncode else "")
+    failed = re.search(r"^(?:FAILED|ERROR) (.*?)(?: - .*)?$", run.stdout, re.MULTILINE)
+    return failed[1] if failed else f"exit code {run.returncode}" if run.returncode else ""
 
 
 def main() -> None:
@@ -189,7 +188,7 @@ def main() -> None:
         for name in "ab":
             ignored = shutil.ignore_patterns(".venv*", ".git", ".demo", ".*_cache", "__pycache__")
             copies.put(Path(shutil.copytree(ROOT, Path(folder, name), ignore=ignored)))
-        failures = pool.map(lambda mutant: run_tests(mutant, copies), mutants)
+        failures = pool.map(lambda mutant: try_mutant(mutant, copies), mutants)
         for mutant, failure in zip(mutants, failures, strict=True):
             noticed += bool(failure)
             print(f"{mutant.place}  ({failure or 'NOT NOTICED'})", flush=True)

@@ -141,6 +141,6 @@ Package p "P"
 """)
     )
     assert [loss for loss in losses if loss.startswith("SM736")] == [
-        "SM736 'flow-target' of ControlFlow leads to an element without a name in the text "
+        "SM736 'flow-target' of control flow leads to an element without a name in the text "
         "(1 omitted)"
     ]
