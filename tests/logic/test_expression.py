@@ -61,11 +61,6 @@ def test_equality_binds_weaker_than_comparison_and_stronger_than_and():
     )
 
 
-def test_offsets_count_characters():
-    comparison = parse_expression("free and bay == 3").right
-    assert (comparison.offset, comparison.right.offset) == (9, 16)
-
-
 @pytest.mark.parametrize(
     ("text", "offset"), [("a and", 5), ("a b", 2), ("", 0), ("x > 3 °C", 6), ("((a)", 4)]
 )

@@ -1,7 +1,7 @@
 """Syntax trees of expressions and effects, and their printer.
 
 The grammar is ``grammars/expression.lark``. Printing a tree and parsing the text gives an equal
-tree: offsets are not compared.
+tree.
 """
 
 import re
@@ -28,7 +28,6 @@ class Literal(Struct, frozen=True, eq=False):
     """A Boolean, an integer, a real number, or a string; 1 equals neither ``true`` nor 1.0."""
 
     value: bool | int | float | str
-    offset: int = 0
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Literal) and self._key() == other._key()
@@ -49,7 +48,6 @@ class Name:
     """
 
     path: tuple[str, ...]
-    offset: int = field(default=0, compare=False)
     element: str = field(default="", compare=False)
 
 
@@ -59,7 +57,6 @@ class Member:
 
     base: "Expression"
     name: str
-    offset: int = field(default=0, compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +65,6 @@ class Unary:
 
     op: str
     operand: "Expression"
-    offset: int = field(default=0, compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +74,6 @@ class Binary:
     op: str
     left: "Expression"
     right: "Expression"
-    offset: int = field(default=0, compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +83,6 @@ class Conditional:
     condition: "Expression"
     then: "Expression"
     otherwise: "Expression"
-    offset: int = field(default=0, compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +91,6 @@ class Call:
 
     function: "Expression"
     args: tuple["Expression", ...]
-    offset: int = field(default=0, compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +99,6 @@ class Index:
 
     base: "Expression"
     index: "Expression"
-    offset: int = field(default=0, compare=False)
 
 
 Expression = Literal | Name | Member | Unary | Binary | Conditional | Call | Index
@@ -118,7 +110,6 @@ class Assignment:
 
     target: Expression
     value: Expression
-    offset: int = field(default=0, compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,7 +119,6 @@ class Send:
     signal: Name
     args: tuple[Expression, ...] = ()
     receiver: Expression | None = None
-    offset: int = field(default=0, compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,7 +126,6 @@ class Invocation:
     """A call, or the name of an operation or a behaviour to perform."""
 
     call: Expression
-    offset: int = field(default=0, compare=False)
 
 
 Statement = Assignment | Send | Invocation

@@ -38,11 +38,10 @@ class Fault(StrEnum):
 class ElaborationError(ValueError):
     """An expression has no formula; ``name`` is the name or value at fault."""
 
-    def __init__(self, fault: Fault, message: str, name: str, offset: int) -> None:
+    def __init__(self, fault: Fault, message: str, name: str) -> None:
         super().__init__(message)
         self.fault = fault
         self.name = name
-        self.offset = offset
 
 
 class Case(Struct, frozen=True):
@@ -128,9 +127,7 @@ def elaborate_value(
             return _elaborate_conditional(expression, scope, expected)
         case _:
             text = print_expression(expression)
-            raise ElaborationError(
-                Fault.UNSUPPORTED, describe_unsupported(expression), text, expression.offset
-            )
+            raise ElaborationError(Fault.UNSUPPORTED, describe_unsupported(expression), text)
 
 
 def _make_value(formula: Formula, domain: Domain) -> GuardedValue:
@@ -160,7 +157,7 @@ def _elaborate_literal(
     if isinstance(value, str) and isinstance(expected, EnumerationDomain):
         return _elaborate_string(expression, value, expected)
     text = print_expression(expression)
-    raise ElaborationError(Fault.UNSUPPORTED, f"{text} is not an Integer", text, expression.offset)
+    raise ElaborationError(Fault.UNSUPPORTED, f"{text} is not an Integer", text)
 
 
 def _elaborate_string(
@@ -171,7 +168,7 @@ def _elaborate_string(
         return _make_value(Const(expected.literals[expected.texts.index(value)]), expected)
     if expected.texts or value not in expected.literals:
         message = f"'{value}' is none of {domains.describe(expected)}"
-        raise ElaborationError(Fault.OUTSIDE, message, value, expression.offset)
+        raise ElaborationError(Fault.OUTSIDE, message, value)
     return _make_value(Const(value), expected)
 
 
@@ -189,13 +186,13 @@ def _elaborate_name(
             return _make_value(Const(last), expected)
     if symbol is None:
         fault = Fault.UNKNOWN if dotted_name(expression) else Fault.UNSUPPORTED
-        raise ElaborationError(fault, f"'{name}' is not known", name, expression.offset)
+        raise ElaborationError(fault, f"'{name}' is not known", name)
     if isinstance(expected, IntegerDomain) and symbol.number is not None:
         return _make_value(Const(symbol.number), IntegerDomain(symbol.number, symbol.number))
     if symbol.domain is None:
         obstacle = "several values" if symbol.has_several_values else "no finite type"
         message = f"'{name}' has {obstacle}"
-        raise ElaborationError(Fault.UNSUPPORTED, message, name, expression.offset)
+        raise ElaborationError(Fault.UNSUPPORTED, message, name)
     return _make_value(symbol.formula, symbol.domain)
 
 
@@ -306,7 +303,7 @@ def _check_range(expression: Binary, left: GuardedValue, right: GuardedValue) ->
         ):
             text = print_expression(operand)
             message = f"{text} is outside {domains.describe(other_domain)}"
-            raise ElaborationError(Fault.OUTSIDE, message, text, operand.offset)
+            raise ElaborationError(Fault.OUTSIDE, message, text)
 
 
 def _is_constant(value: GuardedValue) -> bool:
@@ -326,7 +323,7 @@ def _check_texts(expression: Binary, left: GuardedValue, right: GuardedValue) ->
     if is_text and not has_constant:
         text = print_expression(expression)
         message = f"'{text}' compares texts of which neither is known"
-        raise ElaborationError(Fault.UNSUPPORTED, message, text, expression.offset)
+        raise ElaborationError(Fault.UNSUPPORTED, message, text)
 
 
 def _combine(op: Op, left: GuardedValue, right: GuardedValue) -> GuardedValue:
@@ -400,4 +397,4 @@ def _describe_kind(domain: Domain) -> str:
 def _mismatch(expression: Expression, expected: str, actual: Domain) -> ElaborationError:
     text = print_expression(expression)
     message = f"'{text}' is {_describe_kind(actual)}, not {expected}"
-    return ElaborationError(Fault.TYPE, message, text, expression.offset)
+    return ElaborationError(Fault.TYPE, message, text)

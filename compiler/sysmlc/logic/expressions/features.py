@@ -156,15 +156,15 @@ def check_assignable(value_domain: Domain, target_domain: Domain, value: Express
     text = print_expression(value)
     if type(value_domain) is not type(target_domain):
         message = f"'{text}' is {describe(value_domain)}, not {describe(target_domain)}"
-        raise ElaborationError(Fault.TYPE, message, text, value.offset)
+        raise ElaborationError(Fault.TYPE, message, text)
     if isinstance(value_domain, EnumerationDomain) and value_domain != target_domain:
         message = f"'{text}' is one of {describe(value_domain)}, not of {describe(target_domain)}"
-        raise ElaborationError(Fault.TYPE, message, text, value.offset)
+        raise ElaborationError(Fault.TYPE, message, text)
     lower_bounds = getattr(value_domain, "low", 0), getattr(target_domain, "low", 0)
     upper_bounds = getattr(value_domain, "high", 0), getattr(target_domain, "high", 0)
     if lower_bounds[0] > upper_bounds[1] or upper_bounds[0] < lower_bounds[1]:
         message = f"{text} is outside {describe(target_domain)}"
-        raise ElaborationError(Fault.OUTSIDE, message, text, value.offset)
+        raise ElaborationError(Fault.OUTSIDE, message, text)
 
 
 # -- strings -----------------------------------------------------------------------------------

@@ -134,89 +134,92 @@ def _make_parser() -> "Lark":
 class _TreeBuilder:
     """Builds the syntax tree from the parse tree of Lark, with one method for each grammar rule.
 
-    A method takes the offset of the rule's text and the values of its children.
+    A method takes the values of the children; ``_offset`` is the position of the rule's text.
     """
+
+    _offset = 0
 
     def build(self, tree: "Tree[Token]") -> Any:  # noqa: ANN401 - the type depends on the rule
         children = [
             child if isinstance(child, str) else self.build(child) for child in tree.children
         ]
         # An empty effect has no position.
-        return getattr(self, tree.data)(getattr(tree.meta, "start_pos", 0), children)
+        self._offset = getattr(tree.meta, "start_pos", 0)
+        return getattr(self, tree.data)(children)
 
-    def expression(self, _offset: int, children: list[Expression]) -> Expression:
+    def expression(self, children: list[Expression]) -> Expression:
         return children[0]
 
-    def literal(self, offset: int, children: "list[Token]") -> Literal:
+    def literal(self, children: "list[Token]") -> Literal:
         (token,) = children
         match token.type:
             case "TRUE" | "FALSE":
-                return Literal(token.type == "TRUE", offset)
+                return Literal(token.type == "TRUE")
             case "REAL":
-                return Literal(float(token), offset)
+                return Literal(float(token))
             case "STRING":
-                return Literal(unquote(token), offset)
+                return Literal(unquote(token))
         try:
-            return Literal(int(token), offset)
+            return Literal(int(token))
         except ValueError:
             # Python limits the digits of a number (sys.set_int_max_str_digits).
-            raise ExpressionError("the number has too many digits", offset) from None
+            raise ExpressionError("the number has too many digits", self._offset) from None
 
-    def name(self, _offset: int, children: "list[Token]") -> str:
+    def name(self, children: "list[Token]") -> str:
         (token,) = children
         return unquote(token) if token.type == "QUOTED_NAME" else str(token)
 
-    def qualified_name(self, offset: int, children: list[str]) -> Name:
-        return Name(tuple(children), offset)
+    def qualified_name(self, children: list[str]) -> Name:
+        return Name(tuple(children))
 
-    def member(self, offset: int, children: list[Any]) -> Member:
+    def member(self, children: list[Any]) -> Member:
         base, name = children
-        return Member(base, name, offset)
+        return Member(base, name)
 
-    def call(self, offset: int, children: list[Expression]) -> Call:
+    def call(self, children: list[Expression]) -> Call:
         function, *arguments = children
-        return Call(function, tuple(arguments), offset)
+        return Call(function, tuple(arguments))
 
-    def index(self, offset: int, children: list[Expression]) -> Index:
+    def index(self, children: list[Expression]) -> Index:
         base, index = children
-        return Index(base, index, offset)
+        return Index(base, index)
 
-    def unary(self, offset: int, children: list[Any]) -> Unary:
+    def unary(self, children: list[Any]) -> Unary:
         operator, operand = children
-        return Unary(_normalise(operator), operand, offset)
+        return Unary(_normalise(operator), operand)
 
-    def binary(self, offset: int, children: list[Any]) -> Binary:
+    def binary(self, children: list[Any]) -> Binary:
         left, operator, right = children
-        return Binary(_normalise(operator), left, right, offset)
+        return Binary(_normalise(operator), left, right)
 
-    def conditional(self, offset: int, children: list[Expression]) -> Conditional:
+    def conditional(self, children: list[Expression]) -> Conditional:
         condition, then, otherwise = children
-        return Conditional(condition, then, otherwise, offset)
+        return Conditional(condition, then, otherwise)
 
-    def effect(self, _offset: int, children: list[Statement]) -> tuple[Statement, ...]:
+    def effect(self, children: list[Statement]) -> tuple[Statement, ...]:
         return tuple(children)
 
-    def assignment(self, offset: int, children: list[Any]) -> Assignment:
+    def assignment(self, children: list[Any]) -> Assignment:
         target, value = children[0], children[-1]
         if not isinstance(target, Name | Member | Index):
-            raise ExpressionError("only a feature can be assigned to", offset)
-        return Assignment(target, value, offset)
+            raise ExpressionError("only a feature can be assigned to", self._offset)
+        return Assignment(target, value)
 
-    def receiver(self, _offset: int, children: list[Expression]) -> "_Receiver":
+    def receiver(self, children: list[Expression]) -> "_Receiver":
         return _Receiver(children[0])
 
-    def send(self, offset: int, children: list[Any]) -> Send:
+    def send(self, children: list[Any]) -> Send:
         signal, *arguments = children
         receiver = None
         if arguments and isinstance(arguments[-1], _Receiver):
             receiver = arguments.pop().expression
-        return Send(signal, tuple(arguments), receiver, offset)
+        return Send(signal, tuple(arguments), receiver)
 
-    def invocation(self, offset: int, children: list[Expression]) -> Invocation:
+    def invocation(self, children: list[Expression]) -> Invocation:
         (target,) = children
         if not isinstance(target, Name | Member | Call):
-            raise ExpressionError("this is a value and does nothing", offset)
-        return Invocation(target, offset)
+            raise ExpressionError("this is a value and does nothing", self._offset)
+        return Invocation(target)
 
 
 class _Receiver:
