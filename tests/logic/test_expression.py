@@ -177,6 +177,7 @@ def _find_fault(parse, text):
 
 def test_a_boolean_equals_no_number():
     assert len({Literal(True), Literal(1), Literal(1.0)}) == 3
+    assert (Literal(1) != Literal(1)) is False
     assert Binary("==", Name(("x",)), Literal(1)) != Binary("==", Name(("x",)), Literal(True))
 
 

@@ -3,11 +3,11 @@
 A contract without them can promise more than the model does, so that each is reported.
 """
 
-import re
 from collections.abc import Iterable, Iterator
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.expressions import list_names
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.formal_texts import is_formal
 
@@ -63,7 +63,7 @@ def _find_restricted(
 
 
 def _names_feature(graph: Graph, constraint: Element, element: Element) -> bool:
-    words = set(re.findall(r"\w+", str(constraint.attrs.get("body", ""))))
+    names = set(list_names(str(constraint.attrs.get("body", ""))))
     return any(
-        feature.name in words for feature in graph.owned(element) if feature.kind in _FEATURES
+        feature.name in names for feature in graph.owned(element) if feature.kind in _FEATURES
     )

@@ -8,8 +8,6 @@ import re
 from dataclasses import dataclass, field
 from typing import Generic, Self, TypeVar
 
-from msgspec import Struct
-
 _WORDS = "if else implies or OR xor XOR and AND not NOT true TRUE false FALSE send to"
 _KEYWORDS = frozenset(_WORDS.split(" "))
 """Names that are spelled with quotes."""
@@ -24,7 +22,8 @@ class ExpressionError(ValueError):
         self.offset = offset
 
 
-class Literal(Struct, frozen=True, eq=False):
+@dataclass(frozen=True, slots=True, eq=False)
+class Literal:
     """A Boolean, an integer, a real number, or a string; 1 equals neither ``true`` nor 1.0."""
 
     value: bool | int | float | str
