@@ -2,6 +2,7 @@
 
 import pytest
 
+from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text
 from sysmlc.logic.contract import BooleanDomain, EnumerationDomain, IntegerDomain
 from sysmlc.logic.expressions.context import context_of
@@ -14,6 +15,7 @@ from sysmlc.logic.expressions.elaboration import (
 from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.formula import Const, Var
 from sysmlc.logic.printing import print_formula
+from sysmlc.passes import pipeline
 
 CLASS = """\
 Class g "General"
@@ -117,6 +119,27 @@ def test_ranges_come_from_tagged_values_of_the_type():
 def test_an_assumed_range_contains_the_default_value():
     features = read_features(default=" default=40")
     assert features["bay"].domain == IntegerDomain(0, 40)
+
+
+@pytest.mark.parametrize(
+    ("guard", "low", "high"),
+    [
+        ("bay < 20", 0, 20),
+        ("open and self.bay > 20", 0, 21),
+        ("20 <= bay", 0, 20),
+        ("0 <= bay <= 20", -1, 21),
+        ("not (bay == -1 or bay == 20)", -1, 20),
+        ("bay < 300", 0, 15),
+        ("bay < 4 * 5", 0, 15),
+        ("until bay >= 20 holds", 0, 15),
+    ],
+)
+def test_an_assumed_range_reaches_beyond_the_thresholds_of_guards(guard, low, high):
+    machine = f'  StateMachine s\n    Region r\n      Transition t guard="{guard}"\n'
+    graph = parse_text(CLASS.replace("{members}", machine).replace("{default}", ""))
+    pipeline.load("expressions").run(graph, Sink())
+    features = context_of(graph, graph["c"], behaviour=graph["s"]).features
+    assert features["bay"].domain == IntegerDomain(low, high)
 
 
 # -- elaboration -------------------------------------------------------------------------------
