@@ -8,8 +8,10 @@ from sysmlc.frontends.sysml import FRONTEND
 from sysmlc.frontends.sysml.rules import SEVERITIES
 from sysmlc.ir import Graph
 from sysmlc.logic.contract import Contract, EnumerationDomain, IntegerDomain
+from sysmlc.logic.domains import describe
 from sysmlc.logic.printing import print_formula
 from sysmlc.passes import pipeline
+from sysmlc.simulation import run_scenarios
 from sysmlc.sources import Source
 
 STEPS = ("resolve", "inherit", "classify", "ports", "flows", "behaviours", "activities")
@@ -406,6 +408,69 @@ def test_a_constant_is_the_one_that_its_name_means_in_the_text(declaration):
     assert print_formula(taken.formula) == "level<9 & mode=slow -> state'=x & level'=2"
     guard = "[level < top and mode == fast] (top = 9, fast = slow)"
     assert taken.text.startswith(f"In 'x', when 'x' is complete and {guard}: ")
+
+
+IMPORTED_CONSTANTS = """
+package Limits {
+    private import ScalarValues::*;
+    attribute top : Integer = 20;
+    attribute 'half way' : Integer = 10;
+    attribute open : Integer;
+    attribute on : Boolean = true;
+}
+package Plant {
+    private import ScalarValues::*;
+    private import Limits::*;
+    attribute def Go;
+    part def Tank {
+        attribute level : Integer = top;
+        attribute valve : Boolean = on;
+        attribute tank : Integer = 0;
+        assert constraint { 0 <= tank and tank <= top }
+        exhibit state life {
+            entry; then x;
+            state x;
+            transition first x accept Go if level >= 'half way' and valve
+                do action { assign level := 0; assign tank := top; } then x;
+            transition first x accept Go if level < 'half way' do assign valve := false then y;
+            state y;
+            OPEN
+        }
+    }
+}
+"""
+
+
+def test_constants_give_defaults_bounds_and_thresholds():
+    reading = read(IMPORTED_CONSTANTS.replace("OPEN", ""), passes=ALL)
+    (contract,) = reading.graph.derived(Contract)
+    assert [d.rule.code for d in reading.sink if d.severity != "info"] == []
+    texts = [print_formula(g.formula) for g in contract.guarantees]
+    assert {"level=20", "valve", "tank=0"} <= set(texts)
+    assert "state=x & event=Go & level>=10 & valve -> state'=x & level'=0 & tank'=20" in texts
+    assert {v.name: describe(v.domain) for v in contract.variables}["tank"] == "0..20"
+    assert any("('half way' = 10)" in g.text for g in contract.guarantees)
+
+
+def test_scenarios_play_behaviours_with_imported_constants():
+    graph = read(IMPORTED_CONSTANTS.replace("OPEN", ""), passes=ALL).graph
+    steps = (
+        "{expect: {state: x, level: 20}}, {inputs: {event: Go}}, {inputs: {event: Go}, expect: "
+        "{state: x, level: 0, tank: 20}}, {expect: {state: y, valve: false}}"
+    )
+    scenario = f"name: twice\ncomponent: Tank\nsteps: [{steps}]\n"
+    report = run_scenarios(graph, Source("scenario.yaml", scenario.encode()), Sink())
+    assert [result.difference for result in report.results] == [None]
+
+
+def test_a_constant_without_a_value_hides_the_constants_around_it():
+    text = IMPORTED_CONSTANTS.replace("package Plant {", "package Plant { package Inner {") + "}"
+    text = text.replace("OPEN", "transition first y accept Go if level > open then x;")
+    text = text.replace(
+        "package Inner {", "attribute open : ScalarValues::Integer = 2; package Inner {"
+    )
+    reading = read(text, passes=ALL)
+    assert "guard 'level > open' has no formula" in "".join(d.message for d in reading.sink)
 
 
 def test_components_of_one_name_in_two_files_are_reported_once_with_both():

@@ -128,7 +128,11 @@ def find_literal(context: Context, name: str) -> Symbol | None:
 
     ``Mode::auto`` is a literal. ``Limits::MAX`` is a constant of a package that is visible from the
     classifier, as ``MAX`` in the packages around it. The id of a constant may stand for its name.
+    The symbol has no domain if the id is that of a constant whose value is not known.
     """
+    if name in context.enumerations.constants_by_id:
+        value, domain = context.enumerations.constants_by_id[name] or (True, None)
+        return Symbol(const(value), domain)
     entry = context.literals.get(name)
     if entry is None or ("::" not in name and "." not in name):
         return _find_constant(context, name)
@@ -320,9 +324,10 @@ class _FeatureTable(Mapping[str, Feature]):
 
     @cached_property
     def _constants(self) -> dict[str, int]:
-        """The Integers that never change, by the names of their elements."""
+        """The Integers that never change, by name; those of packages by id."""
         values = ((element.name, read_constant(element)) for element in self._elements.values())
-        return {name: value for name, value in values if value is not None}
+        names = {name: value for name, value in values if value is not None}
+        return {**self._enumerations.integers, **names}
 
     @cached_property
     def _mentioned_values(self) -> "_MentionedValues":
@@ -375,13 +380,14 @@ def _find_mentioned_values(
     """
     texts: dict[str, None] = {}
     numbers: dict[str, dict[int, None]] = {}
+    numbers_by_name = {**enumerations.numbers, **enumerations.integers}
     for element, node in _iter_nodes(graph, behaviour):
         if isinstance(node, LiteralExpression) and isinstance(node.value, str):
             texts[node.value] = None
         for name, op, value in _iter_comparisons(node):
             # A computed threshold widens no range.
             is_plain = not isinstance(value, Binary)
-            number = evaluate_integer(value, enumerations.numbers) if is_plain else None
+            number = evaluate_integer(value, numbers_by_name) if is_plain else None
             if number is not None and abs(number) <= _GREATEST:
                 step = 0 if element.kind is Kind.CONSTRAINT else _NEXT.get(op, 0)
                 numbers.setdefault(name, {}).update({number: None, number + step: None})

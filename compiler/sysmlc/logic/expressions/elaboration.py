@@ -13,6 +13,7 @@ from sysmlc.ir.expressions import (
     Literal,
     Member,
     Name,
+    Statement,
     Unary,
     describe_unsupported,
     dotted_name,
@@ -134,14 +135,18 @@ def _make_value(formula: Formula, domain: Domain) -> GuardedValue:
     return GuardedValue((Case(f.TRUE, formula),), domain)
 
 
-def find_symbol(expression: Expression, scope: Scope) -> Symbol | None:
+def find_symbol(expression: Expression | Statement, scope: Scope) -> Symbol | None:
     """Return the symbol of a name or of a chain of features; None for any other expression.
 
     The element that the front end has found takes precedence over the text of the name.
     """
     element = expression.element if isinstance(expression, Name) else ""
+    symbol = scope(element) if element else None
+    if symbol is not None:
+        # A constant without a known value hides whatever has the same name.
+        return None if symbol.domain is None else symbol
     name = name_of(expression)
-    return (scope(element) if element else None) or (scope(name) if name else None)
+    return scope(name) if name else None
 
 
 # -- operands ------------------------------------------------------------------------------------

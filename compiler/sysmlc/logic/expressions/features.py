@@ -25,7 +25,7 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.domains import contains, describe
 from sysmlc.logic.expressions.elaboration import ElaborationError, Fault
-from sysmlc.logic.expressions.named_elements import literals_of
+from sysmlc.logic.expressions.named_elements import constant_value, literals_of
 from sysmlc.logic.expressions.parsing import tree_of
 from sysmlc.logic.expressions.ranges import (
     Access,
@@ -87,7 +87,7 @@ def make_feature(
     """Return the feature of an element.
 
     An Integer without a range gets *assumed_range*. *constants* are the Integers that never change,
-    by name; the bounds of ranges may name them. *access* is given if the name is dotted.
+    by name or by id; the bounds of ranges may name them. *access* is given if the name is dotted.
     """
     multiplicity = query.bounds(element.attrs.get("multiplicity"))
     if multiplicity is not None and multiplicity[1] != 1:
@@ -98,7 +98,7 @@ def make_feature(
     type_names = list_type_names(family)
     is_integer = bool(type_names & _INTEGER) or _has_untyped_default(element, type_, int)
     domain = _find_literals(graph, element, family, type_names)
-    value = _evaluate_default(element, constants)
+    value = _evaluate_default(graph, element, constants)
     is_assumed = False
     if domain is None and is_integer:
         bounds = find_bounds(graph, element, family, constants, access)
@@ -202,8 +202,11 @@ def read_constant(element: Element) -> int | None:
     return parse_integer(element.attrs.get("default")) if element.attrs.get("readonly") else None
 
 
-def _evaluate_default(element: Element, constants: Mapping[str, int]) -> AttrValue:
-    """Return the default value of an element; the number if it is a constant expression."""
+def _evaluate_default(graph: Graph, element: Element, constants: Mapping[str, int]) -> AttrValue:
+    """Return the default value of an element; that of the constant if it names or computes one."""
+    instance = graph.get(str(element.attrs.get("default_instance")))
+    if instance is not None and instance.kind is Kind.INSTANCE:
+        return constant_value(instance)
     default = element.attrs.get("default")
     expression = _parse_default(element)
     number = None if expression is None else evaluate_integer(expression, constants)

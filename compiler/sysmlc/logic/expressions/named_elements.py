@@ -7,7 +7,7 @@ literal (``Mode::auto``).
 from collections.abc import Iterable, Iterator
 from functools import cached_property
 
-from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, query
 from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, IntegerDomain
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.identifiers import make_unique
@@ -274,6 +274,13 @@ def literals_of(graph: Graph, enumeration: Element) -> dict[str, str]:
     return dict(zip(names, make_unique(names, "literal"), strict=True))
 
 
+def constant_value(attribute: Element) -> AttrValue:
+    """Return the value of an attribute of a package; None if it may change or has a unit."""
+    if "value_kind" in attribute.attrs or "value_unit" in attribute.attrs:
+        return None
+    return attribute.attrs.get("value")
+
+
 class Enumerations:
     """Enumeration literals and constants of a model, collected when the first one is looked up.
 
@@ -296,27 +303,34 @@ class Enumerations:
 
     @cached_property
     def constants(self) -> dict[str, tuple[Literal, Domain] | None]:
-        """Value and domain of each attribute of a package with a bound value, by name and by id.
+        """Value and domain of each attribute of a package with a bound value, by qualified name.
 
         None stands for an attribute whose value may change, or has no finite type.
         """
-        constants: dict[str, tuple[Literal, Domain] | None] = {}
-        for attribute in self._graph.of_kind(Kind.INSTANCE):
-            constant = self._read_constant(attribute)
-            constants |= {self._graph.qualified_name(attribute): constant, attribute.id: constant}
-        return constants
+        constants = self.constants_by_id.items()
+        return {self._graph.qualified_name(self._graph[id]): value for id, value in constants}
+
+    @cached_property
+    def constants_by_id(self) -> dict[str, tuple[Literal, Domain] | None]:
+        """The same values by the ids of the attributes."""
+        attributes = self._graph.of_kind(Kind.INSTANCE)
+        return {attribute.id: self._read_constant(attribute) for attribute in attributes}
+
+    @cached_property
+    def integers(self) -> dict[str, int]:
+        """The constants that are Integers, by id."""
+        values = ((id, constant[0]) for id, constant in self.constants_by_id.items() if constant)
+        return {id: value for id, value in values if type(value) is int}
 
     def _read_constant(self, attribute: Element) -> tuple[Literal, Domain] | None:
-        value = attribute.attrs.get("value")
-        if "value_kind" in attribute.attrs or "value_unit" in attribute.attrs:
-            return None
+        value = constant_value(attribute)
         if isinstance(value, bool):
             return value, BooleanDomain()
         if isinstance(value, int):
             return value, IntegerDomain(value, value)
         literal = self._graph.get(str(attribute.attrs.get("value_instance")))
         enumeration = None if literal is None else self._graph.owner(literal)
-        if enumeration is None or enumeration.kind is not Kind.ENUMERATION:
+        if value is None or enumeration is None or enumeration.kind is not Kind.ENUMERATION:
             return None
         identifiers = literals_of(self._graph, enumeration)
         return identifiers[str(value)], EnumerationDomain(tuple(identifiers.values()))

@@ -186,10 +186,15 @@ def _match_bound(
 
 
 def evaluate_integer(expression: Expression, constants: Mapping[str, int]) -> int | None:
-    """Return the value of an expression over numbers and constants, else None."""
+    """Return the value of an expression over numbers and constants, else None.
+
+    The keys of *constants* are names, or ids of elements.
+    """
     match expression:
         case LiteralExpression(value) if isinstance(value, int) and not isinstance(value, bool):
             return value
+        case Name(element=element) if element in constants:
+            return constants[element]
         case Name() | Member():
             return constants.get(name_of(expression) or "")
         case Unary("-", operand):

@@ -122,7 +122,7 @@ def _print_guard(guard: Expression, scope: Scope) -> str:
         # An enumeration literal is its own value.
         is_own = isinstance(node, Name) and value == const(identifier(node.path[-1], "literal"))
         if isinstance(node, Name) and isinstance(value, Const) and not is_own:
-            values["::".join(node.path)] = _print_value(value)
+            values[print_expression(node)] = _print_value(value)
     constants = ", ".join(f"{name} = {value}" for name, value in values.items())
     return f"[{_print_expression(guard)}]" + (f" ({constants})" if constants else "")
 

@@ -21,6 +21,7 @@ from sysmlc.ir.expressions import (
 )
 from sysmlc.ir.expressions import Literal as LiteralExpression
 from sysmlc.logic.contract import IntegerDomain
+from sysmlc.logic.expressions.elaboration import find_symbol
 from sysmlc.logic.formula import Const, Literal, Var
 from sysmlc.logic.machines.machine import (
     HISTORIES,
@@ -63,15 +64,14 @@ def evaluate_expression(
 
 
 def _evaluate_name(machine: Machine, name: Name | Member, store: Mapping[str, Literal]) -> Literal:
-    text = name_of(name) or ""
-    symbol = machine.scope(text)
+    symbol = find_symbol(name, machine.scope)
     match None if symbol is None else symbol.formula:
         case Var(variable):
             return store[variable]
         case Const(value):
             return value
         case _:
-            return last_name(text)
+            return last_name(name_of(name) or "")
 
 
 def _divide(left: int, right: int) -> int:
