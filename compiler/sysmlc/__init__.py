@@ -11,9 +11,11 @@ TYPE_CHECKING = False
 """Type checkers take it as true, like the name in ``typing``."""
 if TYPE_CHECKING:
     from sysmlc.api.compiling import (
+        BackendError,
         Change,
         Compilation,
         Config,
+        ConfigError,
         Contract,
         Diagnostic,
         Edge,
@@ -50,11 +52,13 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "BackendError",
     "Change",
     "CheckedContract",
     "Compilation",
     "CompositionVerdict",
     "Config",
+    "ConfigError",
     "Contract",
     "ContractChecks",
     "Diagnostic",

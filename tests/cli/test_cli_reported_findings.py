@@ -300,3 +300,10 @@ def test_requirements_with_one_id_are_one_finding(tmp_path):
     result = CliRunner().invoke(sysmlc, ["check", "--no-cache", str(path)])
     assert list_heads(result.stderr.splitlines()) == ["warning[SM213"]
     assert "requirement 'Fast' has the id R1, as 'NoJam' has (2 places)" in result.stderr
+
+
+def test_print_after_runs_an_analysis_that_no_back_end_needs(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "tank.sysml").write_text("package Plant;")
+    command = ["tank.sysml", "--no-cache", "--emit", "ir", "--print-after", "contracts"]
+    assert CliRunner().invoke(sysmlc, command).stdout.startswith("// after contracts")

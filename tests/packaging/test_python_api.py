@@ -100,6 +100,18 @@ def test_findings_of_texts_in_memory_have_locations():
     assert sysmlc.list_findings(sysmlc.compile_texts(fixed)) == []
 
 
+def test_texts_in_memory_may_have_any_name_and_any_characters():
+    texts = {"/home/a.sysml": "package A;", "../a.sysml": "package B;", "a.sysml": "package C;"}
+    compilation = sysmlc.compile_texts(texts, emit="sysml")
+    assert sysmlc.list_findings(compilation) == []
+    assert [artefact.path for artefact in compilation.artefacts] == [
+        "sysml/%2E%2E/a.sysml",
+        "sysml/%2F/home/a.sysml",
+        "sysml/a.sysml",
+    ]
+    assert sysmlc.compile_texts({"a.sysml": "package \ud800;"}).exit_code() == 1
+
+
 def test_elements_are_found_by_qualified_name():
     graph = sysmlc.compile_texts({"gate.sysml": GATE.replace("part bolt : Bolt;", "")}).graph
     assert graph.find("Plant::Gate::open").name == "open"
@@ -134,6 +146,8 @@ def test_two_models_are_compared(tmp_path):
     assert [(change.what, change.before, change.after) for change in changes] == [
         ("renamed", "open", "opened")
     ]
+    with pytest.raises(ValueError, match="there is no file or folder"):
+        sysmlc.diff("lost.sysml", tmp_path / "new.sysml")
 
 
 def test_a_request_can_be_compiled(tmp_path):

@@ -11,10 +11,11 @@ from os import PathLike
 from pathlib import Path
 
 from sysmlc.backends.base import Backend
-from sysmlc.config import Config, find_config_file, read_config
+from sysmlc.config import Config, ConfigError, find_config_file, read_config
 from sysmlc.diagnostics import Diagnostic, Rule, Severity, Sink, rule
 from sysmlc.diagnostics.renderers import Finding, Report, make_report, render
 from sysmlc.driver import (
+    BackendError,
     Compilation,
     Publication,
     Request,
@@ -34,9 +35,11 @@ from sysmlc.passes.pipeline import Pass
 from sysmlc.recipe.model import Model as RecipeModel
 
 __all__ = [
+    "BackendError",
     "Change",
     "Compilation",
     "Config",
+    "ConfigError",
     "Contract",
     "Diagnostic",
     "Edge",
@@ -114,7 +117,7 @@ def compile_texts(
 
 def _load_backends(emit: Iterable[str | Backend]) -> tuple[Backend, ...]:
     """Return the back ends, those with a name loaded. Raises BackendError."""
-    items = list(emit)
+    items = [emit] if isinstance(emit, str) else list(emit)
     names = [item for item in items if isinstance(item, str)]
     values = [item for item in items if not isinstance(item, str)]
     return (*(select_backends(names) if names else ()), *values)
@@ -185,11 +188,15 @@ def diff(
 ) -> list[Change]:
     """Return the differences of two models as they are written, each one compile unit.
 
-    *ignore* names attributes that do not count; ``id`` matches elements without their ids.
+    *ignore* names attributes that do not count; ``id`` matches elements without their ids. Raises
+    ValueError, with the findings, if a file cannot be read.
     """
     return compare(_read_as_written(old), _read_as_written(new), ignore)
 
 
 def _read_as_written(path: str | PathLike[str]) -> Graph:
     passes = tuple(map(pipeline.load, pipeline.READING))
-    return compile_request(Request((Path(path),), passes=passes), analyses=()).graph
+    compilation = compile_request(Request((Path(path),), passes=passes), analyses=())
+    if not compilation.is_complete:
+        raise ValueError(format_findings(list_findings(compilation), "concise"))
+    return compilation.graph

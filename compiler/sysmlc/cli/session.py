@@ -304,7 +304,8 @@ def _compile(
         names = [*(step.name for step in request.load_passes()), *analysis.NAMES]
         _check_pass_names(names, settings.print_after)
         wanted = analysis.NAMES if analyses is None else analyses
-        return compile_model(request, progress, opened, wanted)
+        printed = [name for name in settings.print_after if name in analysis.NAMES]
+        return compile_model(request, progress, opened, [*wanted, *printed])
     except ConfigError as problem:
         from sysmlc.config import locate_key
 

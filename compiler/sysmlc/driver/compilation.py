@@ -166,7 +166,7 @@ def open_texts(texts: Mapping[str, str | bytes], request: Request) -> OpenedUnit
     sink = Sink(request.config.rules)
     frontends = request.frontends or tuple(registry.load_frontends(request.library))
     sources = [
-        Source(name, text.encode() if isinstance(text, str) else text)
+        Source(name, text.encode(errors="surrogatepass") if isinstance(text, str) else text)
         for name, text in sorted(texts.items())
     ]
     recognised = tuple(recognise(sources, frontends, faults.UNRECOGNISED, sink))

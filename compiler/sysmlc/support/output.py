@@ -99,9 +99,12 @@ def make_path_of_input(name: str) -> str:
     """Return the output path for an input file, whose name is relative to the unit's root.
 
     An archive becomes a folder. What an output path may not contain (backslashes, repositories of
-    git) is percent-encoded.
+    git; the start of an absolute path and ``..``, which names of texts in memory may have) is
+    percent-encoded.
     """
-    path = name.replace("!", "/").replace("\\", "%5C")
+    parts = ["%2F" if part == "" else part for part in name.split("/")]
+    parts = [part.replace(".", "%2E") if part in (".", "..") else part for part in parts]
+    path = "/".join(parts).replace("!", "/").replace("\\", "%5C")
     return _REPOSITORY.sub(r"\1%2E\2", path)
 
 
