@@ -142,11 +142,10 @@ def _has_type_of_template(difference: Difference) -> bool:
 # -- activities ------------------------------------------------------------------------------------
 
 
-def _is_flow_past_control_nodes(difference: Difference) -> bool:
-    """Whether an object flow leads to or from a control node in the model, or past one in the text.
+def _is_moved_object_flow(difference: Difference) -> bool:
+    """Whether an object flow has another owner or other ends.
 
-    Bindings join each source with each target behind the node. The comparison pairs them with the
-    flows of the model that are most similar.
+    The comparison pairs the flows of a namespace with those that are most similar.
     """
     if difference.kind is not Kind.OBJECT_FLOW:
         return False
@@ -535,9 +534,15 @@ REASONS: list[Reason] = [
         "SM730 TemplateBinding",
     ),
     Reason(
-        "control nodes of SysML v2 have no objects: bindings lead past them",
-        _is_flow_past_control_nodes,
-        "SM734 an object flow between a store and a control node",
+        "a flow of SysML v2 stands where the text can name both its ends",
+        _is_moved_object_flow,
+        "SM734 (a flow that another node owns|the owner of an object flow)",
+        is_in_behaviour=True,
+    ),
+    Reason(
+        "a parameter of SysML v2 is one feature: all flows of an inout parameter have one node",
+        _is_moved_object_flow,
+        "SM734 the second node of an inout parameter",
         is_in_behaviour=True,
     ),
     Reason(

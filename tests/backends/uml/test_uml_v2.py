@@ -113,3 +113,32 @@ def test_a_model_is_saved_with_the_shipped_libraries_that_it_uses(library, text,
 def list_formulas(outcome):
     """Return the formulas of each contract by its file."""
     return {path: text for path, text in outputs(outcome).items() if path.endswith(".spin.ltl")}
+
+
+PAYLOADS = """package Cells {
+    private import ScalarValues::*;
+    item def Order { attribute urgent : Boolean; }
+    item def Rush :> Order;
+    part def Gate {
+        in attribute limit : Boolean;
+        out attribute open : Boolean := false;
+        exhibit state Run {
+            entry; then Idle;
+            state Idle;
+            transition first Idle accept o : Order if o.urgent then Busy;
+            state Busy;
+            transition first Busy accept r : Rush if not r.urgent or limit
+                do assign open := r.urgent then Idle;
+        }
+    }
+}
+"""
+
+
+def test_guards_and_effects_read_the_payload_of_an_event_by_the_name_of_its_trigger(tmp_path):
+    original = compile_text(tmp_path, "model.sysml", PAYLOADS.encode(), "uml", "contracts")
+    formulas = list_formulas(original)
+    assert "o_urgent" in next(iter(formulas.values()))
+    (saved,) = [text for path, text in outputs(original).items() if path.startswith("uml/")]
+    copy = compile_text(tmp_path, "model.uml", saved.encode(), "contracts")
+    assert list_formulas(copy) == formulas

@@ -8,7 +8,6 @@ from sysmlc.analyses.activities.inputs import DecisionInput, Inputs
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, Kind, query
 from sysmlc.ir.element import derived_id
-from sysmlc.ir.pending import TextFile
 from sysmlc.logic.activities.token_nodes import Guard, NodeKind, TokenEdge, TokenNode
 from sysmlc.logic.identifiers import identifier
 
@@ -37,7 +36,7 @@ class Draft:
         self, graph: Graph, drawing: Drawing, inputs: Inputs, raising: Raising, sink: Sink
     ) -> None:
         self.graph = graph
-        self.follows_v2 = TextFile(drawing.activity.source) in graph.derived(TextFile)
+        self.follows_v2 = query.follows_v2(graph, drawing.activity)
         self.raising = raising
         self.drawing = drawing
         self.inputs = inputs

@@ -5,7 +5,7 @@ from sysmlc.analyses.activities.draft import Draft, lower_bound
 from sysmlc.analyses.activities.drawing import Flow, flow_label
 from sysmlc.analyses.activities.implied_control import ROUND
 from sysmlc.analyses.activities.inputs import DecisionInput
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.ir.element import derived_id
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.token_nodes import Guard, NodeKind
@@ -15,7 +15,7 @@ def add_flow(draft: Draft, flow: Flow) -> None:
     """Add the edge of a flow, and the merges, choices and waiting guards that it implies."""
     target = _find_entry(draft, flow)
     source, marked, choice = _find_exit(draft, flow)
-    if choice is None and _has_no_guard(draft, flow):
+    if choice is None and not query.has_guard(draft.graph, flow.element):
         _add_edge(draft, flow, source, target, marked, None)
         return
     if choice is None:
@@ -168,13 +168,6 @@ def _ensure_exit_choice(
     return choice.id
 
 
-def _has_no_guard(draft: Draft, flow: Flow) -> bool:
-    """Whether the flow has no guard, or the literal ``true`` that tools write by default."""
-    attributes = flow.element.attrs
-    is_default = _guard_text(flow) == "true" and attributes.get("guard_literal") is True
-    return "guard" not in attributes or is_default
-
-
 def _add_waiting_guard(draft: Draft, flow: Flow, source: str, marked: bool) -> str:
     """Add a decision with one branch, for a guard on a flow that does not leave a decision."""
     source_label = draft.nodes[source].label
@@ -213,17 +206,10 @@ def _read_literal_guard(draft: Draft, flow: Flow, decision: str, text: str) -> G
 
 
 def _find_decision_input(draft: Draft, node: Element, decision: str) -> DecisionInput | None:
-    """Return the input that a decision compares with its literal guards, or None.
-
-    The input stands for the decision input of UML, or else for the object that the decision passes
-    on.
-    """
+    """Return the input that a decision compares with its literal guards, or None."""
     if decision in draft.decision_inputs:
         return draft.decision_inputs[decision]
-    if node.subkind != "decision":
-        return None
-    has_input = bool(node.attrs.get("decision_input") or node.attrs.get("decision_input_flow"))
-    if not has_input and not _passes_objects(draft, node):
+    if not query.has_decision_input(draft.graph, node):
         return None
     literals = [
         _guard_text(g) for g in draft.outgoing[node.id] if g.element.attrs.get("guard_literal")
@@ -253,10 +239,6 @@ def add_default_branch(draft: Draft, node: Element) -> None:
     draft.add_edge(node.id, rest.id, node, region, guard=Guard("else", None))
     subject, guards = draft.graph.subject(node), ", ".join(texts)
     draft.sink.report(rules.OTHER_VALUES, subject, node=label, guards=guards)
-
-
-def _passes_objects(draft: Draft, node: Element) -> bool:
-    return any(flow.element.kind is Kind.OBJECT_FLOW for flow in draft.incoming[node.id])
 
 
 def _guard_text(flow: Flow) -> str:

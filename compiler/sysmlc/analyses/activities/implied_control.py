@@ -185,7 +185,6 @@ def add_implied_start(draft: Draft, node: Element) -> None:
     if is_started or node.id in draft.chained or not (is_executable or (needs_token and incoming)):
         return
     # An accept action without incoming flows listens again after each event (UML 2.5.1, 16.10.3).
-    # In SysML v2 it is a step like others: it happens once in each performance of its owner.
     if node.subkind in ACCEPTS and not incoming and not draft.follows_v2:
         region = draft.listening_regions.get(node.id, "")
         draft.add_edge(node.id, node.id, node, token_node.region, marked=not region, listens=region)

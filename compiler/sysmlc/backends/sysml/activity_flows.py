@@ -1,12 +1,14 @@
 """Flows of an activity: successions between nodes, and flows of objects between pins and stores.
 
 A control node of SysML v2 has no pins. An object flow that passes a control node therefore becomes
-a succession, for the order, and flows from its source to all targets behind the node.
+a succession, for the order, and flows from its source to all targets behind the node. Metadata
+states an object flow between a control node and a store, because a store cannot end a succession.
 """
 
 from collections.abc import Iterator
 
 from sysmlc.backends.sysml.annotations import make_annotation
+from sysmlc.backends.sysml.comments import annotate_element
 from sysmlc.backends.sysml.conditions import format_condition
 from sysmlc.backends.sysml.declarations import list_visibility
 from sysmlc.backends.sysml.definitions import write_contents
@@ -25,12 +27,11 @@ from sysmlc.backends.sysml.relocation import (
     find_object_node,
     iter_reaching_namespaces,
 )
-from sysmlc.backends.sysml.rules import UNSAID_ATTRIBUTE
+from sysmlc.backends.sysml.shapes import is_succession
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.ir.query import has_decision_input, has_guard
 
-_WAITING = "a step that waits for several flows, one of them with a guard,"
-_PAST_CONTROL = "an object flow between a store and a control node"
 _ScopedLine = tuple[Member | None, Line]
 """The line of a flow, and the namespace in which it is written."""
 _STORES = (Kind.OBJECT_NODE, Kind.DATA_STORE, Kind.ACTIVITY_PARAMETER)
@@ -61,9 +62,9 @@ def write_initial_successions(writer: Writer, member: Member, initial: Element) 
         words = ["first start"]
         if flow_member is not None and flow_member.name:
             words.insert(0, f"succession {quote_name(flow_member.name)}")
-        guard = flow.attrs.get("guard")
-        if guard is not None:
-            words.append(f"if {format_condition(writer, scope, flow, str(guard))}")
+        if has_guard(writer.graph, flow):
+            guard = str(flow.attrs["guard"])
+            words.append(f"if {format_condition(writer, scope, flow, guard)}")
         body = [] if flow_member is None else write_contents(writer, flow_member)
         lines.append(Line(" ".join([*words, f"then {end}"]), body))
     return lines
@@ -73,23 +74,13 @@ def _list_outgoing_flows(writer: Writer, element: Element) -> list[Element]:
     """Return the control flows that leave a node, and the object flows that order nodes."""
     graph = writer.graph
     flows = [
-        flow
-        for flow in graph.sources(element, Edge.FLOW_SOURCE)
-        if flow.kind is Kind.CONTROL_FLOW or _orders_nodes(writer, flow)
+        flow for flow in graph.sources(element, Edge.FLOW_SOURCE) if is_succession(graph, flow)
     ]
     for pin in graph.owned(element):
         if pin.kind is Kind.PIN:
             pin_flows = graph.sources(pin, Edge.FLOW_SOURCE)
-            flows += [flow for flow in pin_flows if _orders_nodes(writer, flow)]
+            flows += [flow for flow in pin_flows if is_succession(graph, flow)]
     return flows
-
-
-def _orders_nodes(writer: Writer, flow: Element) -> bool:
-    """Whether an object flow starts or ends at a control node."""
-    if flow.kind is not Kind.OBJECT_FLOW:
-        return False
-    ends = [writer.graph.target(flow, edge) for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)]
-    return any(end is not None and end.kind is Kind.CONTROL for end in ends)
 
 
 def _write_succession(writer: Writer, member: Member, flow: Element) -> Line | None:
@@ -115,8 +106,6 @@ def _write_succession(writer: Writer, member: Member, flow: Element) -> Line | N
         body = [_annotate_pins(writer, member, flow), *body]
     is_decision = member.shape.keyword == "decide"
     guard = _format_guard(writer, member, scope, flow)
-    if guard is not None:
-        _record_waiting(writer, target)
     if scope is not None and scope is not member.parent:
         if guard == "else":
             guard = format_condition(writer, scope, flow, guard)
@@ -158,18 +147,6 @@ def _take_name(writer: Writer, scope: Member, flow: Member) -> bool:
     return visible_members(writer.plan, scope).setdefault(flow.name, flow) is flow
 
 
-def _record_waiting(writer: Writer, step: Element | None) -> None:
-    """Record a step with several flows: in SysML v2 it does not wait for false guards."""
-    if step is None or step.kind not in (Kind.ACTION, Kind.STRUCTURED):
-        return
-    incoming = writer.graph.sources(step, Edge.FLOW_TARGET)
-    control_flows = [flow for flow in incoming if flow.kind is Kind.CONTROL_FLOW]
-    recorded = (facts.get("construct") for _, facts in writer.losses.by_element.get(step.id, ()))
-    if len(control_flows) > 1 and _WAITING not in recorded:
-        written = "one that waits for those whose guards hold"
-        writer.record_approximation(step, _WAITING, written)
-
-
 def _annotate_pins(writer: Writer, member: Member, flow: Element) -> Line:
     """Return metadata with the pins at the ends of a succession along which objects flow."""
     facts: dict[str, AttrValue] = {}
@@ -188,12 +165,13 @@ def _format_guard(
 ) -> str | None:
     """Return the guard of a flow; a literal is compared with the input of the decision."""
     guard = flow.attrs.get("guard")
-    if guard is None:
+    if guard is None or not has_guard(writer.graph, flow):
         return None
     if isinstance(guard, str) and guard.strip() == "else":
         return "else"
-    if flow.attrs.get("guard_literal") and member.element is not None:
-        decision_input = _format_decision_input(writer, scope, member.element)
+    decision = member.require_element()
+    if flow.attrs.get("guard_literal") and has_decision_input(writer.graph, decision):
+        decision_input = _format_decision_input(writer, scope, decision)
         if decision_input is not None:
             return f"{decision_input} == {_format_guard_literal(writer, member, guard)}"
     if not isinstance(guard, str):
@@ -286,13 +264,9 @@ def _list_flow_lines(writer: Writer, member: Member) -> list[_ScopedLine]:
         writer.drop(member, "flow ends")
         return []
     if source.kind is Kind.CONTROL:
-        if target.kind in _STORES:
-            writer.record_approximation(element, _PAST_CONTROL, "bindings past it")
-        return []
+        return _annotate_flow(writer, member, target)
     if target.kind is Kind.CONTROL:
         return _list_lines_over_control_nodes(writer, member, source, target)
-    if "guard" in element.attrs:
-        writer.losses.record(UNSAID_ATTRIBUTE, element, attribute="guard", kind="ObjectFlow")
     return _add_contents(writer, member, source, [target])
 
 
@@ -301,19 +275,29 @@ def _list_lines_over_control_nodes(
 ) -> list[_ScopedLine]:
     """Return the flows from a source to all object nodes behind a control node.
 
-    Together with successions, flows from pin to pin express the object flow completely. The
-    succession then has its name and annotations.
+    Metadata marks them, because they follow from the flows to and from the control nodes: a
+    succession expresses such a flow, with its name and annotations, or metadata if it has no step
+    at its other end.
     """
     targets = list(_iter_targets_behind(writer, control_node))
-    if targets and all(end.kind is Kind.PIN for end in (source, *targets)):
-        lines = _format_flow_lines(writer, member, source, targets, "")
-        for _, line in lines:
-            line.body.append(make_annotation(writer, member, "Through", {}))
-        return lines
-    writer.record_approximation(member.require_element(), _PAST_CONTROL, "bindings past it")
-    if source.kind not in _STORES:
-        return _format_flow_lines(writer, member, source, targets, "")
-    return _add_contents(writer, member, source, targets)
+    lines = _format_flow_lines(writer, member, source, targets, "")
+    for _, line in lines:
+        line.body.append(make_annotation(writer, member, "Through", {}))
+    return [*_annotate_flow(writer, member, source), *lines]
+
+
+def _annotate_flow(writer: Writer, member: Member, end: Element) -> list[_ScopedLine]:
+    """Return metadata for the flow between a control node and *end* if that is no step or pin."""
+    if end.kind not in _STORES:
+        return []
+    flow = member.require_element()
+    annotation = annotate_element(writer, member, flow)
+    for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET):
+        for node in writer.graph.targets(flow, edge):
+            if (edge, flow.id, node.id) not in writer.stored_edges:
+                writer.record_unreachable(flow, str(edge.value))
+                return []
+    return [(member.parent, annotation)]
 
 
 def _add_contents(

@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 from sysmlc.backends.sysml.expressions import format_bounds, format_literal
 from sysmlc.backends.sysml.plan import Member
 from sysmlc.backends.sysml.profiles import is_standard
+from sysmlc.backends.sysml.shapes import is_succession
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.ir.expressions import ExpressionError, print_expression
@@ -138,9 +139,11 @@ _SUBKIND_CHECKS = {
 }
 
 
-def _has_unexpressed_guard(_writer: Writer, _member: Member | None, element: Element) -> bool:
-    is_empty = element.attrs.get("guard") in ("", None)
-    return element.kind in _FLOWS and ("guard_literal" in element.attrs or is_empty)
+def _has_unexpressed_guard(writer: Writer, _member: Member | None, element: Element) -> bool:
+    """Whether the text lacks the guard: successions have guards, flows from pin to pin do not."""
+    is_expression = element.attrs.get("guard") and "guard_literal" not in element.attrs
+    has_notation = bool(is_expression) and is_succession(writer.graph, element)
+    return element.kind in _FLOWS and not has_notation
 
 
 def _is_flow(_writer: Writer, _member: Member | None, element: Element) -> bool:

@@ -99,7 +99,7 @@ def write_document(writer: Writer, member: Member) -> list[Line]:
     """
     element = member.require_element()
     if _is_below_member(member) and not writer.graph.owned(element):
-        return [_annotate_element(writer, member, element)]
+        return [annotate_element(writer, member, element)]
     attributes = sorted(
         (key, value) for key, value in element.attrs.items() if key not in _UNLISTED_ATTRIBUTES
     )
@@ -124,11 +124,12 @@ def _is_below_member(member: Member) -> bool:
     return member.parent is not None and member.parent.shape.keyword != "comment"
 
 
-def _annotate_element(writer: Writer, member: Member, element: Element) -> Line:
+def annotate_element(writer: Writer, member: Member, element: Element) -> Line:
     """Return metadata that states kind, name and all facts of an element."""
     facts: dict[str, AttrValue] = {"kind": str(element.kind), "name": element.name}
-    if member.parent is not None and member.parent.element is not writer.graph.owner(element):
-        # The owner is the property-specific class of the feature that the parent stands for.
+    owner = writer.graph.owner(element)
+    if owner is not None and owner.attrs.get("property_specific"):
+        # The parent stands for the feature that is typed by the class.
         facts["isOfType"] = True
     attributes = list_all_facts(writer, element)
     return make_annotation(writer, member, "Element", facts | {"attributes": attributes})

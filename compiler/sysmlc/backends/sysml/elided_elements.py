@@ -7,6 +7,7 @@ elided if its members become members of the feature that it types.
 from collections.abc import Iterator
 
 from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.query import follows_v2, has_guard
 
 _STEPS = (Kind.ACTION, Kind.STRUCTURED)
 _CLASSES = (Kind.CLASS, Kind.DATA_TYPE)
@@ -28,6 +29,10 @@ def find_step_after_merge(graph: Graph, element: Element | None) -> Element | No
     """
     if element is None or element.subkind != "merge" or element.name or len(element.attrs) > 1:
         return None
+    owners = graph.ancestors(element)
+    activity = next((owner for owner in owners if owner.kind is Kind.ACTIVITY), None)
+    if activity is None or not follows_v2(graph, activity):
+        return None
     incoming = _list_flows(graph, element, Edge.FLOW_TARGET)
     outgoing = _list_flows(graph, element, Edge.FLOW_SOURCE)
     if len(incoming) < 2 or len(outgoing) != 1 or not _is_bare_control_flow(outgoing[0]):
@@ -37,9 +42,9 @@ def find_step_after_merge(graph: Graph, element: Element | None) -> Element | No
         return None
     is_only_way = _list_flows(graph, step, Edge.FLOW_TARGET) == outgoing
     are_control_flows = all(flow.kind is Kind.CONTROL_FLOW for flow in incoming)
-    has_guard = any("guard" in flow.attrs for flow in incoming)
+    is_guarded = any(has_guard(graph, flow) for flow in incoming)
     has_partition = bool(graph.targets(element, Edge.IN_PARTITION))
-    return step if is_only_way and are_control_flows and has_guard and not has_partition else None
+    return step if is_only_way and are_control_flows and is_guarded and not has_partition else None
 
 
 def _list_flows(graph: Graph, node: Element, edge: Edge) -> list[Element]:

@@ -4,8 +4,8 @@ A fact is a line of text: ``key=value`` for an attribute, ``edge->name`` for an 
 the text, ``edge=>name`` for an edge to an element outside of the model, ``key[]->name`` for an
 attribute that is a list of elements, and ``{"->": name}`` for an element in other JSON. The front
 end for SysML v2 restores attributes and edges from it. Facts of a part without a member start with
-the word for the part and a dot (``region.visibility=private``); a trigger without a member has the
-name of its owner and ``.trigger``.
+the word for the part and a dot (``region.visibility=private``); the path to such a part ends with
+a dot and the word (``P::accept.trigger``).
 """
 
 import json
@@ -17,6 +17,7 @@ from sysmlc.backends.sysml.plan import Member
 from sysmlc.backends.sysml.printing import quote_name
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
+from sysmlc.ir.query import follows_v2, list_rule_dependent_nodes
 
 _NEVER_PRESERVED = frozenset({"external", "library", "unresolved"})
 _PRESERVED_EDGES = tuple(
@@ -78,6 +79,23 @@ def _iter_own_facts(writer: Writer, member: Member, element: Element) -> Iterato
             facts.add(fact)
             writer.stored_edges.add((edge, element.id, target.id))
             yield fact
+    if element.kind is Kind.ACTIVITY and not follows_v2(writer.graph, element):
+        yield from _iter_token_rules(writer, element)
+
+
+def _iter_token_rules(writer: Writer, activity: Element) -> Iterator[str]:
+    """Yield the fact that an activity follows the rules of UML if it matters for a node of it."""
+    nodes = list_rule_dependent_nodes(writer.graph, activity)
+    for node in nodes:
+        if node.kind not in (Kind.ACTION, Kind.STRUCTURED):
+            construct = "a node whose tokens take one of several flows"
+            writer.record_approximation(node, construct, "one whose tokens take all of them")
+        elif writer.graph.sources(node, Edge.FLOW_TARGET):
+            construct = "a step that waits for several flows, one of them with a guard,"
+            written = "one that waits for those whose guards hold"
+            writer.record_approximation(node, construct, written)
+    if nodes and "token_rules" not in activity.attrs:
+        yield "token_rules=uml"
 
 
 def _iter_attribute_facts(writer: Writer, member: Member | None, element: Element) -> Iterator[str]:
@@ -146,6 +164,7 @@ def _iter_parts(writer: Writer, element: Element) -> Iterator[tuple[str, Element
     if element.kind is Kind.PARAMETER:
         references = graph.sources(element, Edge.REFERENCES)
         nodes = [source for source in references if _is_parameter_node(writer, source)]
+        _record_shared(writer, nodes[1:], "the second node of an inout parameter", "the first")
         yield from (("node", node) for node in nodes[:1])
     children = graph.owned(element) if element.kind in _WITH_PARTS else []
     triggers = [child for child in children if child.kind is Kind.TRIGGER]
@@ -229,10 +248,10 @@ def _format_edge(writer: Writer, edge: Edge, target: Element) -> str | None:
 
 def _format_path(writer: Writer, target: Element) -> str | None:
     """Return the qualified name of a member, which must be public; None if it has none."""
-    if target.kind is Kind.TRIGGER:
-        return _format_trigger_path(writer, target)
     member = writer.plan.find(target)
-    if member is None or member.element is not target:
+    if member is None:
+        return _format_part_path(writer, target)
+    if member.element is not target:
         return None
     path: list[Member] = [member, *member.namespaces]
     if not all(step.name for step in path):
@@ -242,14 +261,19 @@ def _format_path(writer: Writer, target: Element) -> str | None:
     return "::".join(quote_name(step.name) for step in reversed(path))
 
 
-def _format_trigger_path(writer: Writer, trigger: Element) -> str | None:
-    """Return the qualified name of the action or transition with the only trigger *trigger*."""
-    owner = writer.graph.owner(trigger)
-    siblings = [] if owner is None else writer.graph.owned(owner)
-    if owner is None or sum(sibling.kind is Kind.TRIGGER for sibling in siblings) > 1:
-        return None
-    path = _format_path(writer, owner)
-    return None if path is None else f"{path}.trigger"
+def _format_part_path(writer: Writer, part: Element) -> str | None:
+    """Return the path to a part without a member: that of the element with the part, and a word."""
+    owner = writer.graph.owner(part)
+    if part.kind is Kind.ACTIVITY_PARAMETER:
+        owner, word = writer.graph.target(part, Edge.REFERENCES), "node"
+    elif part.kind is Kind.CONTROL:
+        word = "start" if part.subkind == "initial" else "done"
+    else:
+        siblings = [] if owner is None else writer.graph.owned(owner)
+        is_only_trigger = sum(sibling.kind is Kind.TRIGGER for sibling in siblings) == 1
+        word = "trigger" if part.kind is Kind.TRIGGER and is_only_trigger else ""
+    path = None if owner is None or not word else _format_path(writer, owner)
+    return None if path is None else f"{path}.{word}"
 
 
 def _contains_ids(writer: Writer, value: AttrValue) -> bool:

@@ -177,6 +177,13 @@ def is_part_port(graph: Graph, port: Element) -> bool:
     return _is_part_port(graph, port, {})
 
 
+def is_succession(graph: Graph, flow: Element) -> bool:
+    """Whether a flow orders nodes: a control flow, or an object flow of a control node."""
+    ends = [graph.target(flow, edge) for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)]
+    has_control_node = any(end is not None and end.kind is Kind.CONTROL for end in ends)
+    return flow.kind is Kind.CONTROL_FLOW or (flow.kind is Kind.OBJECT_FLOW and has_control_node)
+
+
 # -- features ------------------------------------------------------------------------------------
 
 
@@ -266,11 +273,13 @@ def _find_control_node_shape(
 
 
 def _is_terminating(graph: Graph, final_node: Element) -> bool:
-    """Whether a final node ends concurrent flows, or the behaviour has several final nodes."""
+    """Whether a final node ends concurrent flows, or is not the only end of the behaviour."""
     owner = graph.owner(final_node)
     siblings = [] if owner is None else graph.owned(owner)
     subkinds = [sibling.subkind for sibling in siblings if sibling.kind is Kind.CONTROL]
-    return subkinds.count("final") > 1 or not is_joined(graph, final_node)
+    has_other_end = subkinds.count("final") > 1 or "flow-final" in subkinds
+    has_several_starts = subkinds.count("initial") > 1
+    return has_other_end or has_several_starts or not is_joined(graph, final_node)
 
 
 def _find_pseudostate_shape(

@@ -27,7 +27,7 @@ _Writer = Callable[[Context, Element, str, AttrValue], None]
 _DERIVED_NAMES = """
     role level origin unresolved lineage message_kind path_multiplicity item_property usage
     property_specific req_id text external href library qualified_name stereotype namespace on
-    subject_name"""
+    subject_name token_rules"""
 _DERIVED = frozenset(_DERIVED_NAMES.split())
 """Attributes that passes derive, or that belong to stereotype applications."""
 _FROM_TAGS_NAMES = """encapsulated rate probability no_buffer overwrite distribution
@@ -332,6 +332,14 @@ def _write_first_event(context: Context, element: Element, _key: str, value: Att
         node.attributes["firstEvent"] = format_value(value)
 
 
+def _write_payload(context: Context, element: Element, key: str, value: AttrValue) -> None:
+    """Write the name of a payload as the name of the trigger, by which guards refer to it."""
+    if element.name:
+        context.losses.record_attribute(element, key)
+    else:
+        context.find_node(element).attributes["name"] = format_value(value)
+
+
 def _write_nothing(context: Context, element: Element, key: str, value: AttrValue) -> None:
     """Write nothing: the event of the trigger or the value of the constraint expresses it."""
 
@@ -400,6 +408,7 @@ _WRITERS: dict[str, _Writer] = {
     "condition": _write_nothing,
     "relative": _write_nothing,
     "deferred": _write_nothing,
+    "payload": _write_payload,
     "clauses": _make_record_writer("clause", "Clause", "test", "body"),
     "clause_outputs": _make_record_writer("clause", "Clause", "decider", "bodyOutput"),
     "handlers": _make_record_writer(

@@ -185,10 +185,9 @@ def _ensure_own_parameter(lowering: "Lowering", parameter: Element, activity: El
 
 def lower_object_flow(lowering: "Lowering", node: Node, owner: Element) -> None:
     """Lower a flow among steps; a succession flow also becomes a control flow."""
-    if "Through" in nodes.shipped_metadata_of(node):
-        lowering.skipped.update(id(member) for member in node.members)
-        return
     flow = _add_object_flow(lowering, node, owner)
+    if flow is None:
+        return
     lowering.defer_until_edges(
         lambda: _connect_ends(lowering, flow, *_find_end_nodes(lowering, node, flow))
     )
@@ -200,10 +199,15 @@ def lower_object_flow(lowering: "Lowering", node: Node, owner: Element) -> None:
 def lower_binding(lowering: "Lowering", node: Node, owner: Element) -> None:
     """Lower a binding among steps to an object flow from the end that has a value."""
     flow = _add_object_flow(lowering, node, owner)
-    lowering.defer_until_edges(lambda: _connect_binding(lowering, node, flow))
+    if flow is not None:
+        lowering.defer_until_edges(lambda: _connect_binding(lowering, node, flow))
 
 
-def _add_object_flow(lowering: "Lowering", node: Node, owner: Element) -> Element:
+def _add_object_flow(lowering: "Lowering", node: Node, owner: Element) -> Element | None:
+    """Add the object flow of a flow or binding, unless metadata marks it as implied by others."""
+    if "Through" in nodes.shipped_metadata_of(node):
+        lowering.skipped.update(id(member) for member in node.members)
+        return None
     attributes = visibility_attributes(node)
     flow = lowering.add_element(node, Kind.OBJECT_FLOW, node.name or "", owner, **attributes)
     lowering.lower_annotations(node, flow)

@@ -25,8 +25,8 @@ _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", "b": "\b", "f": "\f"}
 _EDGES = {edge.value: edge for edge in Edge}
 _EXTERNAL_KINDS = {Edge.APPLIES: Kind.PROFILE}
 """Kinds of the external targets of edges; other edges lead to classes."""
-_TRIGGER = ".trigger"
-"""End of the path to a trigger, after the qualified name of its owner."""
+_PART_PATH = re.compile(r"(.*)\.(node|trigger|start|done)", re.DOTALL)
+"""Path to a part of an element: the qualified name of the element, and the word for the part."""
 _LIST = "[]"
 """End of the key of an attribute whose value is a list of elements: one fact for each."""
 _REFERENCE = '{"->": '
@@ -100,11 +100,17 @@ def _connect(lowering: "Lowering", holder: Element, key: str, name: str) -> None
 
 
 def _find_element(lowering: "Lowering", path: str) -> Element | None:
-    """Return the element with a qualified name, or its trigger if the name ends in ``.trigger``."""
-    element = lowering.element_of(_find_node(lowering, path.removesuffix(_TRIGGER)))
-    if element is None or not path.endswith(_TRIGGER):
+    """Return the element with a qualified name, or its part if the path ends with a part."""
+    match = _PART_PATH.fullmatch(path)
+    name, word = (path, "") if match is None else match.groups()
+    element = lowering.element_of(_find_node(lowering, name))
+    if element is None or not word:
         return element
-    return _find_part(lowering, element, "trigger")
+    if word == "node" and element.kind is Kind.PARAMETER:
+        return lowering.ensure_parameter_node(element)
+    if word in ("start", "done"):
+        return lowering.ensure_control_node(element, word)
+    return _find_part(lowering, element, word)
 
 
 def _find_node(lowering: "Lowering", qualified_name: str) -> Node | None:

@@ -181,6 +181,8 @@ def _add_merge(lowering: "Lowering", guarded_flow: Element) -> None:
     step = lowering.graph.target(guarded_flow, Edge.FLOW_TARGET)
     if step is None or step.kind not in (Kind.ACTION, Kind.STRUCTURED):
         return
+    if any(owner.attrs.get("token_rules") == "uml" for owner in lowering.graph.ancestors(step)):
+        return
     flows = [
         flow
         for flow in lowering.graph.sources(step, Edge.FLOW_TARGET)

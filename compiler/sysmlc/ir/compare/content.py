@@ -45,6 +45,7 @@ NOT_CONTENT = frozenset(
         "namespace",
         "ns_prefix",
         "origin",
+        "token_rules",
         "unresolved",
     }
 )

@@ -1,9 +1,13 @@
 """Queries of passes and back ends to a graph; none of them changes it."""
 
 from sysmlc.ir.query.activities import (
+    follows_v2,
+    has_decision_input,
+    has_guard,
     is_performed,
     is_referential,
     list_chained_actions,
+    list_rule_dependent_nodes,
 )
 from sysmlc.ir.query.classifiers import (
     BEHAVIORS,
@@ -86,8 +90,11 @@ __all__ = [
     "flow_properties",
     "flow_source",
     "flow_target",
+    "follows_v2",
     "generals",
+    "has_decision_input",
     "has_generated_name",
+    "has_guard",
     "has_stereotype",
     "ids_in",
     "incoming",
@@ -99,6 +106,7 @@ __all__ = [
     "lineage",
     "list_chained_actions",
     "list_restated",
+    "list_rule_dependent_nodes",
     "opposite",
     "opposite_end",
     "outgoing",

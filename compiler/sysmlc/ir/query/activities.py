@@ -1,4 +1,4 @@
-"""Activities: chains of actions, whether concurrent branches are joined, and UML's pins."""
+"""Activities: chains of actions, guards, rules of tokens, joined branches, and UML's pins."""
 
 from collections.abc import Iterable, Mapping
 
@@ -6,6 +6,7 @@ from sysmlc.ir.algorithms import find_reachable
 from sysmlc.ir.element import Element
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
+from sysmlc.ir.pending import TextFile
 
 _STEPS = (Kind.ACTION, Kind.STRUCTURED, Kind.CONTROL)
 _CHOICES = ("decision", "merge")
@@ -82,6 +83,63 @@ def _is_plain_action(graph: Graph, node: Element) -> bool:
     has_members = any(member.kind is not Kind.COMMENT for member in graph.owned(node))
     is_opaque = node.kind is Kind.ACTION and node.subkind == "opaque"
     return is_opaque and not has_members and not is_referential(node)
+
+
+def has_guard(graph: Graph, flow: Element) -> bool:
+    """Whether a guard restricts a flow of an activity.
+
+    Tools write the literal ``true`` as the guard of every flow. It restricts only the flows of a
+    decision that compares it with an input.
+    """
+    if flow.attrs.get("guard") != "true" or flow.attrs.get("guard_literal") is not True:
+        return "guard" in flow.attrs
+    source = graph.target(flow, Edge.FLOW_SOURCE)
+    return source is not None and has_decision_input(graph, source)
+
+
+def has_decision_input(graph: Graph, node: Element) -> bool:
+    """Whether a node is a decision that compares its literal guards with an input.
+
+    The input is the decision input of UML, or else the object that the decision passes on.
+    """
+    if node.subkind != "decision":
+        return False
+    is_stated = bool(node.attrs.get("decision_input") or node.attrs.get("decision_input_flow"))
+    flows = graph.sources(node, Edge.FLOW_TARGET)
+    return is_stated or any(flow.kind is Kind.OBJECT_FLOW for flow in flows)
+
+
+def follows_v2(graph: Graph, activity: Element) -> bool:
+    """Whether the tokens of an activity follow the rules of SysML v2, not those of UML.
+
+    The attribute ``token_rules`` is ``uml`` in a text that was written from UML.
+    """
+    is_in_text = TextFile(activity.source) in graph.derived(TextFile)
+    return is_in_text and activity.attrs.get("token_rules") != "uml"
+
+
+def list_rule_dependent_nodes(graph: Graph, activity: Element) -> list[Element]:
+    """List the nodes of an activity whose tokens move differently in UML and SysML v2.
+
+    In UML, a token takes one of several flows that leave an object node, a merge or an initial
+    node, an accept action without incoming flows accepts again after each event (UML 2.5.1,
+    16.10.3), and a step waits for all its flows (15.2.3.4). In SysML v2, tokens take all flows of
+    a node that is no decision, each action happens once in each performance of its owner, and a
+    step does not wait for a succession whose guard is false (SysML 2.0, 8.4.13.5).
+    """
+    return [node for node in graph.subtree(activity) if _depends_on_rules(graph, node)]
+
+
+def _depends_on_rules(graph: Graph, node: Element) -> bool:
+    if node.kind in (Kind.ACTION, Kind.STRUCTURED):
+        is_accept = node.subkind.startswith("accept")
+        flows = graph.sources(node, Edge.FLOW_TARGET)
+        control_flows = [flow for flow in flows if _is_control_flow(flow)]
+        has_guards = len(control_flows) > 1 and any(has_guard(graph, flow) for flow in flows)
+        return has_guards or (is_accept and not flows)
+    is_object_node = node.kind in (Kind.PIN, Kind.OBJECT_NODE, Kind.ACTIVITY_PARAMETER)
+    may_choose = is_object_node or node.subkind in ("initial", "merge")
+    return may_choose and len(graph.sources(node, Edge.FLOW_SOURCE)) > 1
 
 
 def is_joined(graph: Graph, end: Element) -> bool:

@@ -212,12 +212,16 @@ def _iter_values_of_type(graph: Graph, type_: Element) -> Iterator[Element]:
 
 
 def _iter_payloads(graph: Graph, behaviour: Element) -> Iterator[tuple[str, Element]]:
-    """Yield the triggers of a state machine by the names of their payloads."""
+    """Yield the triggers of a state machine by the names of their payloads.
+
+    UML has no payloads: there, the name of the trigger stands for the event that it receives.
+    """
     if behaviour.kind is not Kind.STATE_MACHINE:
         return
     for element in graph.subtree(behaviour):
-        if element.kind is Kind.TRIGGER and "payload" in element.attrs:
-            yield str(element.attrs["payload"]), element
+        name = str(element.attrs.get("payload") or element.name)
+        if element.kind is Kind.TRIGGER and name:
+            yield name, element
 
 
 def _iter_output_pins(graph: Graph, owner: Element, prefix: str) -> Iterator[tuple[str, Element]]:
