@@ -19,7 +19,9 @@ _INHERITING = (
     *(Kind.CLASS, Kind.COMPONENT, Kind.INTERFACE, Kind.DATA_TYPE, Kind.STEREOTYPE, Kind.SIGNAL),
     *(Kind.PROPERTY, Kind.PORT, Kind.INSTANCE, Kind.ACTOR, Kind.ASSOCIATION),
 )
-_MEMBERS = frozenset({Kind.PROPERTY, Kind.PORT, Kind.CLASS, Kind.OPERATION, Kind.INSTANCE})
+_MEMBERS = frozenset(
+    {Kind.PROPERTY, Kind.PORT, Kind.CLASS, Kind.OPERATION, Kind.INSTANCE, Kind.CONNECTOR}
+)
 
 
 # -- names among siblings ------------------------------------------------------------------------
