@@ -246,7 +246,7 @@ def _connect_binding(lowering: "Lowering", node: Node, flow: Element) -> None:
     first, second = _find_end_nodes(lowering, node, flow)
     if _is_default_value(lowering, node, (first, second)):
         lowering.graph.remove(flow)
-    elif _flows_forward(first, second):
+    elif _flows_forward(*(_is_source(lowering, flow, end) for end in (first, second))):
         _connect_ends(lowering, flow, first, second)
     else:
         _connect_ends(lowering, flow, second, first)
@@ -274,25 +274,28 @@ def _is_default_value(
     return False
 
 
-def _flows_forward(first: Element | None, second: Element | None) -> bool:
+def _flows_forward(first_is_source: bool | None, second_is_source: bool | None) -> bool:
     """Whether the value of a binding flows from the first end to the second.
 
     ``bind a = b`` sets ``a`` if both ends may be source and target.
     """
-    first_is_source, second_is_source = _is_source(first), _is_source(second)
     if first_is_source is True:
         return second_is_source is not True
     return second_is_source is False and first_is_source is not False
 
 
-def _is_source(end: Element | None) -> bool | None:
-    """Whether an end of a flow must be its source; None if it may be source or target."""
+def _is_source(lowering: "Lowering", flow: Element, end: Element | None) -> bool | None:
+    """Whether an end of a flow must be its source; None if it may be source or target.
+
+    Inside of a structured node, its inputs are sources and its outputs are targets.
+    """
     if end is None:
         return None
     direction = str(end.attrs.get("direction"))
-    if end.kind is Kind.PIN:
+    is_inside = any(owner.id == end.owner for owner in lowering.graph.ancestors(flow))
+    if end.kind is Kind.PIN and not is_inside:
         return {"out": True, "in": False}.get(direction)
-    if end.kind is Kind.ACTIVITY_PARAMETER:
+    if end.kind in (Kind.PIN, Kind.ACTIVITY_PARAMETER):
         return {"in": True, "out": False}.get(direction)
     return None
 
