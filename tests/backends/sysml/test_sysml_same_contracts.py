@@ -2,6 +2,7 @@
 
 import pytest
 
+from refinement import run_all
 from sysmlc.backends.sysml import LIBRARY, print_document
 from sysmlc.backends.uml import write_document
 from sysmlc.diagnostics import Coverage, Sink
@@ -11,7 +12,6 @@ from sysmlc.ir import Graph, parse_text
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.formula import Apply, Op
 from sysmlc.logic.printing import print_formula
-from sysmlc.passes import pipeline
 from sysmlc.sources import Source
 from sysmlc.support import resources
 
@@ -126,7 +126,7 @@ def read_again(graph, backend):
         sources = [Source("model.sysml", print_document(graph, Sink())[0].encode())]
         sources += [Source(LIBRARY, resources.read_text("metamodels", LIBRARY).encode())]
         SYSML.read(sources, copy, Sink(), Coverage())
-    pipeline.run(copy, Sink())
+    run_all(copy, Sink())
     return copy
 
 
@@ -158,7 +158,7 @@ DRAWINGS = {
 @pytest.mark.parametrize("drawing", DRAWINGS.values(), ids=DRAWINGS)
 def test_the_contracts_of_an_activity_are_the_same(drawing, backend):
     graph = parse_text(draw_model(drawing))
-    pipeline.run(graph, Sink())
+    run_all(graph, Sink())
     contracts = list_contracts(graph)
     assert contracts
     assert list_contracts(read_again(graph, backend)) == contracts
@@ -168,7 +168,7 @@ def test_the_contracts_of_an_activity_are_the_same(drawing, backend):
 def test_the_bounds_of_a_pin_restrict_the_flows_as_before(bounds):
     drawing = "i > f; f > x; f > y; x.o > z.i; y.o > z.i; z > e"
     graph = parse_text(draw_model(drawing, f' multiplicity="{bounds}"'))
-    pipeline.run(graph, Sink())
+    run_all(graph, Sink())
     contracts = list_contracts(graph)
     for backend in ("sysml", "uml"):
         assert list_contracts(read_again(graph, backend)) == contracts
