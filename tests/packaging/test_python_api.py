@@ -112,6 +112,17 @@ def test_texts_in_memory_may_have_any_name_and_any_characters():
     assert sysmlc.compile_texts({"a.sysml": "package \ud800;"}).exit_code() == 1
 
 
+def test_a_text_and_the_uml_made_from_it_form_one_unit():
+    text = "package Plant { part def Gate { attribute width; } attribute height; }"
+    (uml,) = sysmlc.compile_texts({"gate.sysml": text}, emit="uml").artefacts
+    compilation = sysmlc.compile_texts({"gate.sysml": text, "gate.uml": uml.text})
+    assert compilation.exit_code() == 0
+    assert [element.name for element in compilation.graph.of_kind(sysmlc.Kind.CLASS)] == [
+        "Gate",
+        "Gate",
+    ]
+
+
 def test_elements_are_found_by_qualified_name():
     graph = sysmlc.compile_texts({"gate.sysml": GATE.replace("part bolt : Bolt;", "")}).graph
     assert graph.find("Plant::Gate::open").name == "open"

@@ -68,7 +68,7 @@ class Lowering(Verdicts):
         self._until_edges: deque[Work] = deque()
         self._origins: dict[str, Node] = {}
         """The node for which an element was added, by the element's id."""
-        self._names = QualifiedNames()
+        self._names = QualifiedNames(self.graph)
         self._starts_and_ends: dict[tuple[str, str], Element] = {}
         """Elements for ``start`` and ``done`` by the id of the behaviour or region."""
         self._generalizations: list[tuple[Element, Element]] = []

@@ -2,7 +2,7 @@
 
 from functools import lru_cache
 
-from sysmlc.ir import Element, Kind
+from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.element import derived_id
 
 _NOTATION = "sysml"
@@ -12,7 +12,8 @@ _NOTATION = "sysml"
 class QualifiedNames:
     """Symbol table of the qualified names that elements of the unit have."""
 
-    def __init__(self) -> None:
+    def __init__(self, graph: Graph) -> None:
+        self._graph = graph
         self._names: dict[str, str] = {}
         """Qualified names by id."""
         self._used: dict[str, int] = {}
@@ -33,6 +34,9 @@ class QualifiedNames:
             )
         else:
             self._used[qualified_name] = 1
+        # ``--emit uml`` keeps the ids: the unit may contain the text and the UML made from it.
+        while _derive_id(qualified_name) in self._graph:
+            qualified_name = self._make_unique(f"{source}#{qualified_name}")
         id_ = _derive_id(qualified_name)
         self._names[id_] = qualified_name
         return id_
