@@ -276,3 +276,30 @@ def test_an_end_of_an_association_is_the_property_of_the_class_whatever_its_type
     ends = graph.targets(association, Edge.END)
     assert [(end.name, graph.owner(end).name) for end in ends] == [("do", "Gate"), ("", "")]
     assert sorted(list_names(graph, "Property")) == ["", "do"]
+
+
+# -- ports ---------------------------------------------------------------------------------------
+
+
+def test_the_port_of_a_part_is_written_with_the_path_to_it():
+    lines, graph, _ = read_back("""
+Package p "Plant"
+  Signal go "Go"
+  Class belt "Belt" role="block"
+    Port belt.p "inlet" role="proxy port" direction="inout"
+  Class cell "Cell" role="block"
+    Property cell.l "left" aggregation="composite"
+      -> typed-by belt
+    Activity cell.a "work"
+      Action wait "wait" subkind="accept"
+        -> trigger wait.t
+        Trigger wait.t "" subkind="signal" port="belt.p"
+          -> typed-by go
+          -> path cell.l
+      Action tell "tell" subkind="send" on_port="belt.p"
+        -> calls go
+        -> path cell.l
+""")
+    assert any("accept Go via left.inlet" in line for line in lines)
+    assert any("send new Go() via left.inlet" in line for line in lines)
+    assert list_target_names(graph, "tell", Edge.PATH) == ["left"]

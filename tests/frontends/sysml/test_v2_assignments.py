@@ -457,3 +457,33 @@ def test_a_port_at_which_a_submachine_waits_is_another_event():
     formulas, _ = compile_gate(": D;", inside)
     assert "A_state=C & event=Go_via_right -> A_state'=E" in formulas
     assert "state=A & event=Go_via_left -> A_state'=inactive & state'=B" in formulas
+
+
+@pytest.mark.parametrize("links", [("left", "right"), ("own", "own.inner")])
+def test_a_port_of_two_parts_is_two_events(links):
+    first, second = (f"{link}.inlet" for link in links)
+    inside = f"""part def Belt {{ port inlet : Inlet; part inner : Belt; }}
+        part left : Belt; part right : Belt; part own : Belt;
+        exhibit state s {{ entry; then A; state A; state B;
+            transition first A accept Go via {first} then B;
+            transition first B accept Go via {second} then A; }}"""
+    graph, _ = compile_v2(f"""package P {{ item def Go; port def Inlet {{ in item go : Go; }}
+        part def Cell {{ {inside} }}
+        part def Steps {{ part left : Cell; part right : Cell;
+            perform action t {{ first start; then accept Go via left.{first};
+                then accept Go via right.{first}; then done; }} }} }}""")
+    machine, steps = graph.derived(Contract)
+    moves = [print_formula(guarantee.formula) for guarantee in machine.guarantees]
+    names = [f"Go_via_{path.replace('.', '_')}" for path in (first, second)]
+    assert f"state=A & event={names[0]} -> state'=B" in moves
+    assert f"state=B & event={names[1]} -> state'=A" in moves
+    inputs = {variable.name for variable in steps.variables if variable.owner is Owner.ENVIRONMENT}
+    assert inputs == {f"receive_Go_via_{side}_{links[0]}_inlet" for side in ("left", "right")}
+
+
+def test_an_index_in_the_path_to_a_port_is_reported():
+    text = GATE.replace("via left", "via gates#(1).left").replace(
+        "INSIDE", "part gates : Gate [2];"
+    )
+    assert "SM481" in read(text.replace("MEMBERS", ";")).list_codes()
+    assert "SM481" not in read(text.replace("MEMBERS", ";").replace("#(1)", "")).list_codes()

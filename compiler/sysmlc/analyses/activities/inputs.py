@@ -16,6 +16,7 @@ from sysmlc.ir.expressions import (
     name_of,
     walk_tree,
 )
+from sysmlc.ir.query import path_to_port
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import (
     BooleanDomain,
@@ -388,13 +389,14 @@ def _name_event(graph: Graph, trigger: Element, action: Element) -> str:
     prefix = {"call": "call", "time": "time", "change": "change"}.get(trigger.subkind, "receive")
     subject = (type_.name if type_ else "") or trigger.name or str(trigger.attrs.get("when", ""))
     name = f"{prefix}_{identifier(subject, 'event')}"
-    port = graph.get(str(trigger.attrs.get("port", "")))
-    if port is None or type_ is None:
+    path = path_to_port(graph, trigger)
+    if not path or type_ is None:
         return name
     activity = next(above for above in graph.ancestors(action) if above.kind is Kind.ACTIVITY)
-    ports = {
-        sibling.attrs.get("port")
+    paths = {
+        path_to_port(graph, sibling)
         for sibling in graph.sources(type_, Edge.TYPED_BY)
         if sibling.kind is Kind.TRIGGER and activity in graph.ancestors(sibling)
     }
-    return f"{name}_via_{identifier(port.name, 'port')}" if len(ports) > 1 else name
+    port_name = identifier("_".join(step.name for step in path), "port")
+    return f"{name}_via_{port_name}" if len(paths) > 1 else name

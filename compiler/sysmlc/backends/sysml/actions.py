@@ -161,10 +161,7 @@ def _write_send(writer: Writer, member: Member, element: Element) -> Line:
     signal_name = None
     for signal in writer.graph.targets(element, Edge.CALLS):
         signal_name = writer.refer_to(member, element, Edge.CALLS, signal)
-    port = writer.graph.get(str(element.attrs.get("on_port", element.attrs.get("port", ""))))
-    port_name = ""
-    if port is not None:
-        port_name = writer.refer_to_feature(member.parent, element, Edge.ROLE, port) or ""
+    port_name = writer.refer_to_port(member.parent, element)
     payload = f" send new {signal_name}()" if signal_name is not None else " send"
     via = f" via {port_name}" if port_name else ""
     return Line(f"{_format_head(writer, member, element)}{payload}{via}", body)

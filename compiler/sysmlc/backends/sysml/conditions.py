@@ -105,8 +105,7 @@ def _declare_attribute(writer: Writer, namespace: Member, name: str, text: str, 
 def format_trigger(writer: Writer, scope: Member, trigger: Element) -> str:
     """Return ``accept`` with a payload, and with the port at which it arrives."""
     payload = _format_payload(writer, scope, trigger)
-    port = writer.graph.get(str(trigger.attrs.get("port", "")))
-    name = None if port is None else writer.refer_to_feature(scope, trigger, Edge.ROLE, port)
+    name = writer.refer_to_port(scope, trigger)
     return f"accept {payload}{f' via {name}' if name else ''}"
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from sysmlc.backends.sysml.plan import Member, Plan
 from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.references import (
+    format_chain,
     format_element_reference,
     format_library_name,
     format_qualified_name,
@@ -14,6 +15,7 @@ from sysmlc.backends.sysml.references import (
 )
 from sysmlc.backends.sysml.rules import APPROXIMATED, UNREACHABLE, Losses
 from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir.query import path_to_port
 
 WriteMember = Callable[["Writer", Member], list[Line]]
 """Return the lines of a member: its own, and those that follow it in its namespace."""
@@ -85,6 +87,19 @@ class Writer:
             self.record_unreachable(holder, str(edge.value))
             return None
         return self.refer_to(scope, holder, edge, feature)
+
+    def refer_to_port(self, scope: Member | None, holder: Element) -> str:
+        """Return the text that names the port of a trigger or action by the path to it.
+
+        The text is empty if there is no port, or, with a loss, if no text names it.
+        """
+        path = path_to_port(self.graph, holder)
+        name = self.refer_to_feature(scope, holder, Edge.ROLE, path[0]) if path else None
+        if name is not None and len(path) > 1:
+            name = format_chain(self.plan, scope, path)
+            if name is None:
+                self.record_unreachable(holder, str(Edge.PATH.value))
+        return name or ""
 
     def refer_to_targets(self, scope: Member | None, holder: Element, edge: Edge) -> list[str]:
         """Return the qualified names of the targets of all edges of a kind."""

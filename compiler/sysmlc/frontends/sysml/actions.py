@@ -7,7 +7,7 @@ from sysmlc.frontends.sysml.activities import list_members_beside
 from sysmlc.frontends.sysml.definitions import visibility_attributes
 from sysmlc.frontends.sysml.kinds import ACTIVITIES
 from sysmlc.frontends.sysml.successions import defer_implied_start, lower_steps
-from sysmlc.frontends.sysml.triggers import lower_trigger
+from sysmlc.frontends.sysml.triggers import connect_links, lower_trigger
 from sysmlc.ir import AttrValue, Edge, Element, Kind, as_items
 from sysmlc.language.metaclasses import is_a
 from sysmlc.language.tree import Node
@@ -202,10 +202,10 @@ def _add_argument(lowering: "Lowering", action: Element, argument: Node) -> None
 
 def _defer_port(lowering: "Lowering", action: Element, end: Node) -> None:
     def set_port() -> None:
-        path = nodes.path_of_expression(end)
-        port = lowering.element_of(path[-1]) if path else None
+        *links, port = map(lowering.element_of, nodes.path_of_expression(end))
         if port is not None and port.kind is Kind.PORT:
             lowering.graph.set(action, on_port=port.id)
+            connect_links(lowering, action, links)
 
     lowering.defer_until_elements(set_port)
 

@@ -1,5 +1,6 @@
 """Triggers of accept actions and transitions: signals, calls, times and changes."""
 
+from collections.abc import Iterable
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -116,7 +117,19 @@ def _list_operations(lowering: "Lowering", classifier: Element) -> list[Element]
 
 
 def _set_port(lowering: "Lowering", trigger: Element, expression: Node) -> None:
+    """Set the port at which an event arrives, and the parts and ports that lead to it."""
     path = nodes.path_of_expression(expression)
-    port = lowering.element_of(path[-1]) if path else None
+    *links, port = map(lowering.element_of, path)
     if port is not None:
         lowering.graph.set(trigger, port=port.id)
+        connect_links(lowering, trigger, links)
+    if None in path:
+        construct = "a path to a port that is no chain of features"
+        lowering.mark_approximated(expression, construct, "the names at its end")
+
+
+def connect_links(lowering: "Lowering", holder: Element, links: Iterable[Element | None]) -> None:
+    """Connect a trigger or an action to the parts and ports that lead to its port."""
+    for link in links:
+        if link is not None:
+            lowering.graph.connect(Edge.PATH, holder, link)

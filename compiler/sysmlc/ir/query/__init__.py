@@ -61,6 +61,7 @@ from sysmlc.ir.query.relations import (
     opposite,
     opposite_end,
     outgoing,
+    path_to_port,
     role_of,
     runs_both_ways,
 )
@@ -112,6 +113,7 @@ __all__ = [
     "outgoing",
     "parameters",
     "parts",
+    "path_to_port",
     "ports",
     "redefined_features",
     "requirement_id",

@@ -73,6 +73,17 @@ def role_of(graph: Graph, end: Element) -> Element | None:
     return graph.target(end, Edge.ROLE)
 
 
+def path_to_port(graph: Graph, holder: Element) -> tuple[Element, ...]:
+    """Return the parts and ports that lead to the port of a trigger or action, and then that port.
+
+    The path is empty if the holder names no port. In SysML v1 it begins with the port of the
+    holder and leads to a port nested in it.
+    """
+    port = graph.get(str(holder.attrs.get("on_port", holder.attrs.get("port", ""))))
+    path = tuple(graph.targets(holder, Edge.PATH))
+    return path if port is None or port in path[:1] else (*path, port)
+
+
 def is_boundary(graph: Graph, end: Element) -> bool:
     """Whether a connector end is a port of the connector's own classifier, not of a part.
 

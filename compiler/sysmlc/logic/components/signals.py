@@ -176,18 +176,27 @@ def _iter_deliveries(block: Block, members: list[Member], wires: list[Wire]) -> 
 def check_signal_names(component: "Component") -> None:
     """Raise ComponentError if signals of one name, or the ports of a signal, cannot be told apart.
 
-    Behaviours would wrongly see them as one event.
+    Behaviours would wrongly see them as one event. What a part sends is not followed to a port of
+    another part at which an object waits.
     """
     graph = component.graph
     signals: dict[str, Element] = {}
+    sent: set[str] = set()
+    paths: dict[str, str] = {}
     for object_ in component.tree.objects:
         _find_ports(component, object_, sent=True)
         _find_ports(component, object_, sent=False)
         for behaviour in _list_behaviours(component, object_):
             for element in graph.subtree(behaviour):
+                sent |= {name for name, _ in _iter_sent_signals(graph, element)}
+                received = _iter_received_signals(graph, element)
+                paths |= {name: path for name, path in received if "." in path}
                 for signal in _iter_signals(graph, element):
                     if signals.setdefault(signal.name, signal) is not signal:
                         raise ComponentError(f"two signals are called '{signal.name}'")
+    for name in paths:
+        if name in sent:
+            raise ComponentError(f"'{name}' is sent, and received via '{paths[name]}'")
 
 
 def _iter_signals(graph: Graph, element: Element) -> Iterator[Element]:
@@ -267,11 +276,13 @@ def _find_ports(
     """
     ports: dict[str, str] = {}
     find = _iter_sent_signals if sent else _iter_received_signals
-    own_ports = {port.name for port in query.ports(component.graph, object_.type_)}
+    own_ports = {port.name for port in query.ports(component.graph, object_.type_)} - {""}
     for behaviour in _list_behaviours(component, object_):
         for element in component.graph.subtree(behaviour):
             for signal, name in find(component.graph, element):
-                port = name if name in own_ports else ""
+                if sent and "." in name:
+                    raise ComponentError(f"'{object_.type_.name}' sends '{signal}' to '{name}'")
+                port = "" if sent and name not in own_ports else name
                 if ports.setdefault(identifier(signal), port) != port:
                     verb = "sends" if sent else "receives"
                     reason = f"'{object_.type_.name}' {verb} '{signal}' in several ways"
@@ -281,7 +292,7 @@ def _find_ports(
     ]
     if sent and len(connected) > 1 and "" in ports.values():
         raise ComponentError(f"'{object_.type_.name}' sends a signal without naming its port")
-    return {message: port for message, port in ports.items() if port}
+    return {message: port for message, port in ports.items() if port in own_ports}
 
 
 def _list_behaviours(component: "Component", object_: ComponentObject) -> list[Element]:
@@ -296,25 +307,24 @@ def _list_behaviours(component: "Component", object_: ComponentObject) -> list[E
 
 
 def _iter_received_signals(graph: Graph, trigger: Element) -> Iterator[tuple[str, str]]:
-    """Yield the signal of a trigger, and the name of its port or ""."""
+    """Yield the signal of a trigger, and the path to its port (``left.inlet``) or ""."""
     signal = _find_signal(graph, trigger)
     if trigger.kind is Kind.TRIGGER and signal is not None:
-        yield signal.name, _name_port(graph, trigger.attrs.get("port"))
+        yield signal.name, _format_path(graph, trigger)
 
 
 def _iter_sent_signals(graph: Graph, element: Element) -> Iterator[tuple[str, str]]:
-    """Yield the signals that an action or the text of an effect sends, and their ports or ""."""
+    """Yield the signals that an action or the text of an effect sends, and who receives them."""
     signal = _find_signal(graph, element)
     if element.kind is not Kind.TRIGGER and signal is not None:
-        yield signal.name, _name_port(graph, element.attrs.get("on_port"))
+        yield signal.name, _format_path(graph, element)
     for statement in _iter_sendings(element):
         receiver = None if statement.receiver is None else name_of(statement.receiver)
         yield statement.signal.path[-1], receiver or ""
 
 
-def _name_port(graph: Graph, id: object) -> str:
-    port = graph.get(id) if isinstance(id, str) else None
-    return "" if port is None else port.name
+def _format_path(graph: Graph, holder: Element) -> str:
+    return ".".join(step.name for step in query.path_to_port(graph, holder))
 
 
 def _add_member(

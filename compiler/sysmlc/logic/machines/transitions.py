@@ -13,6 +13,7 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.ir.expressions import Binary, Expression, Unary
 from sysmlc.ir.expressions import Literal as Written
+from sysmlc.ir.query import path_to_port
 from sysmlc.logic.contract import (
     BooleanDomain,
 )
@@ -61,39 +62,42 @@ def _read_events(draft: MachineDraft, trigger: Element) -> list[str]:
     """Return the literals of ``event`` for a signal or operation; triggers of one type share them.
 
     If the machine waits for the type at several ports, each port has a literal, and a trigger
-    without port takes all of them.
+    without port takes all of them. The same port of two parts is two ports.
     """
     type_ = draft.reading.graph.target(trigger, Edge.TYPED_BY)
     if type_ is None:
         return [_read_event(draft, trigger.name or trigger.id, trigger.name)]
     ports = _list_ports(draft, type_)
-    name, port = type_.name or trigger.name, trigger.attrs.get("port")
+    name, own_path = type_.name or trigger.name, path_to_port(draft.reading.graph, trigger)
     if len(ports) < 2:
         return [_read_event(draft, type_.id, name)]
     return [
-        _read_event(draft, f"{type_.id} {id}", f"{name} via {port_name}" if port_name else name)
-        for id, port_name in ports.items()
-        if port in (None, id)
+        _read_event(
+            draft,
+            " ".join([type_.id, *(step.id for step in path)]),
+            f"{name} via {'.'.join(step.name for step in path)}" if path else name,
+        )
+        for path in ports
+        if own_path in ((), path)
     ]
 
 
-def _list_ports(draft: MachineDraft, type_: Element) -> dict[object, str]:
-    """Return the names of the ports, by id, at which triggers of the machine wait for a type.
+def _list_ports(draft: MachineDraft, type_: Element) -> list[tuple[Element, ...]]:
+    """Return the paths to the ports at which triggers of the machine wait for a type.
 
-    The id None, without name, stands for the triggers that name no port.
+    The empty path stands for the triggers that name no port.
     """
     graph = draft.reading.graph
     triggers = [t for t in graph.sources(type_, Edge.TYPED_BY) if t.kind is Kind.TRIGGER]
-    ids = dict.fromkeys(trigger.attrs.get("port") for trigger in triggers)
-    if len(ids) > 1:
+    paths = dict.fromkeys(path_to_port(graph, trigger) for trigger in triggers)
+    if len(paths) > 1:
         machines = collect_submachines(graph, draft.machine)
-        ids = dict.fromkeys(
-            trigger.attrs.get("port")
+        paths = dict.fromkeys(
+            path_to_port(graph, trigger)
             for trigger in triggers
             if any(ancestor in machines for ancestor in graph.ancestors(trigger))
         )
-    ports = ((id, graph.get(str(id))) for id in ids)
-    return {id: port.name if port is not None else "" for id, port in ports}
+    return list(paths)
 
 
 def _read_event(draft: MachineDraft, key: str, name: str) -> str:
