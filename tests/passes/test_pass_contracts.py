@@ -15,7 +15,7 @@ analysis.load("contracts")
 RULES = [
     rule
     for code, rule in catalogue().items()
-    if 410 <= int(code[2:]) < 440 or 500 <= int(code[2:]) < 505
+    if 410 <= int(code[-3:]) < 440 or 500 <= int(code[-3:]) < 505
 ]
 
 

@@ -11,7 +11,7 @@ from sysmlc.ir.text import print_element
 # -- rules -------------------------------------------------------------------------------------
 
 CODES = {*range(320, 341), 637}
-RULES = [rule for rule in load_full_catalogue().values() if int(rule.code[2:]) in CODES]
+RULES = [rule for rule in load_full_catalogue().values() if int(rule.code[-3:]) in CODES]
 
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)

@@ -23,7 +23,7 @@ RULES = [
     (pass_name, rule)
     for rule in catalogue().values()
     for pass_name, numbers in MODULES.items()
-    if int(rule.code[2:]) in numbers and has_graphs(rule)
+    if int(rule.code[-3:]) in numbers and has_graphs(rule)
 ]
 
 
