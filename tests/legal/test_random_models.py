@@ -24,6 +24,7 @@ TRUE_WARNINGS = {
     "SM452": "the clause behind a clause whose test is the literal true is never tested",
     "SM454": "an accept action without incoming flows accepts again while its token still waits",
     "SM459": "no contract is derived from a flow that takes all tokens at once",
+    "SM488": "a condition before or after an action restricts it, but is not in its contract",
     "SM491": "a value that overrides an inherited one may lie outside its scale",
     "SM467": "no contract is derived from a join with a specification",
 }
