@@ -127,6 +127,9 @@ def test_elements_are_found_by_qualified_name():
     graph = sysmlc.compile_texts({"gate.sysml": GATE.replace("part bolt : Bolt;", "")}).graph
     assert graph.find("Plant::Gate::open").name == "open"
     assert graph.find("Plant::open") is None
+    assert graph["Plant::Gate::open"].name == "open"
+    with pytest.raises(KeyError, match="Plant::open"):
+        graph["Plant::open"]
 
 
 def test_a_controller_is_synthesised_and_written_outputs_stay_as_they_are(tmp_path):
@@ -135,6 +138,8 @@ def test_a_controller_is_synthesised_and_written_outputs_stay_as_they_are(tmp_pa
     assert sysmlc.synthesise(contract).machine is not None
     checks = sysmlc.check_contracts(compilation)
     assert [result.verdict.is_realizable for result in checks.contracts] == [True]
+    with pytest.raises(ValueError, match="did you mean 'Plant::Lamp'"):
+        sysmlc.check_contracts(compilation, "Plant::Lamb")
     assert "manifest.json" in sysmlc.write(compilation, tmp_path / "out").changed
     assert sysmlc.write(compilation, tmp_path / "out").changed == ()
 

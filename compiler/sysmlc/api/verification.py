@@ -16,6 +16,7 @@ from sysmlc.logic.formats.lowering import rename_ambiguous_literals
 from sysmlc.simulation import Report as SimulationReport
 from sysmlc.simulation import run_scenarios
 from sysmlc.sources import Source
+from sysmlc.support.suggestions import did_you_mean
 from sysmlc.synthesis import Limits
 from sysmlc.synthesis.composition_check import CompositionVerdict, check_compositions
 from sysmlc.synthesis.contract_checks import CheckedContract
@@ -51,13 +52,19 @@ def check_contracts(
     """Decide the contracts of a model as ``sysmlc contracts check`` does.
 
     *component* selects one component by its qualified name. A question that takes longer than
-    *seconds* of CPU time is not decided; 0 sets no limit.
+    *seconds* of CPU time is not decided; 0 sets no limit. Raises ValueError for an unknown
+    component, with a suggestion.
     """
     graph, sink = compilation.graph, Sink()
     contracts = graph.derived(Contract)
     unused = frozenset[str]() if component else find_unused_library_elements(graph)
     behaviours = {b.contract.component: b for b in graph.derived(ComponentBehaviour)}
     composites = list_checked_composites(compose_blocks(graph, contracts, sink), behaviours)
+
+    names = {contract.component for contract in contracts}
+    names |= {composite.component for composite in composites}
+    if component and component not in names:
+        raise ValueError(f"no component '{component}'; {did_you_mean(component, names)}")
 
     def is_selected(item: Contract | Composite) -> bool:
         return component in ("", item.component) and item.origin not in unused

@@ -48,8 +48,12 @@ class Graph:
     def __contains__(self, id: str) -> bool:
         return id in self._elements
 
-    def __getitem__(self, id: str) -> Element:
-        return self._elements[id]
+    def __getitem__(self, name: str) -> Element:
+        """Return the element with an id, else the first with a qualified name. Raises KeyError."""
+        element = self._elements.get(name) or self.find(name)
+        if element is None:
+            raise KeyError(name)
+        return element
 
     def find(self, name: str) -> Element | None:
         """Return the first element with a qualified name such as ``Plant::Gate``, or None."""
