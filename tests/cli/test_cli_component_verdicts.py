@@ -552,13 +552,16 @@ def test_one_signal_through_two_ports_is_not_decided(decide):
 BELTS = """part def Belt { port inlet : ~Chute; port outlet : Chute; }
     part def Feeder { port outlet : Chute; exhibit state F { entry; then Ready; state Ready;
     transition first Ready accept Go do send new Piece() via outlet then Ready; } }"""
-CELL_OF_BELTS = """part left : Belt; part right : Belt; port inlet : ~Chute; port outlet : Chute;
+CELL_OF_BELTS = """part left : Belt; part right : Belt; part belts : Belt[2];
+    port inlet : ~Chute; port outlet : Chute;
     exhibit state M {{ entry; then A; state A; {} state B; {} state C; }}"""
 
 
-def test_the_same_port_of_two_parts_is_not_one_event(decide):
+@pytest.mark.parametrize("parts", [("left", "right"), ("belts#(1)", "belts#(2)")])
+def test_the_same_port_of_two_parts_is_not_one_event(decide, parts):
     """The next piece at ``left`` must not bring the machine from B to C, as if at ``right``."""
-    steps = ("accept Piece via left.inlet then B;", "accept Piece via right.inlet then C;")
+    first, second = parts
+    steps = f"accept Piece via {first}.inlet then B;", f"accept Piece via {second}.inlet then C;"
     block = CELL_OF_BELTS.format(*steps)
     formula = "G (state=A & event=Piece & X event=Piece -> X X state=C)"
     assert decide(block, formula, others=PIECES + BELTS) == ["not-decided"]
@@ -570,6 +573,8 @@ def test_the_same_port_of_two_parts_is_not_one_event(decide):
         ("accept Piece via inlet then B;", "broken"),
         ("accept Piece via left.inlet then B;", "not-decided"),
         ("accept Go do send new Piece() via left.outlet then B;", "not-decided"),
+        ("accept Piece via belts#(1).inlet then B;", "not-decided"),
+        ("accept Go do send new Piece() via belts#(1).outlet then B;", "not-decided"),
     ],
 )
 def test_a_port_of_a_part_is_not_the_own_port_of_its_name(decide, steps, verdict):

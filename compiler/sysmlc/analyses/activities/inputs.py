@@ -16,7 +16,7 @@ from sysmlc.ir.expressions import (
     name_of,
     walk_tree,
 )
-from sysmlc.ir.query import path_to_port
+from sysmlc.ir.query import port_names
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import (
     BooleanDomain,
@@ -389,14 +389,14 @@ def _name_event(graph: Graph, trigger: Element, action: Element) -> str:
     prefix = {"call": "call", "time": "time", "change": "change"}.get(trigger.subkind, "receive")
     subject = (type_.name if type_ else "") or trigger.name or str(trigger.attrs.get("when", ""))
     name = f"{prefix}_{identifier(subject, 'event')}"
-    path = path_to_port(graph, trigger)
+    path = port_names(graph, trigger)
     if not path or type_ is None:
         return name
     activity = next(above for above in graph.ancestors(action) if above.kind is Kind.ACTIVITY)
     paths = {
-        path_to_port(graph, sibling)
+        port_names(graph, sibling)
         for sibling in graph.sources(type_, Edge.TYPED_BY)
         if sibling.kind is Kind.TRIGGER and activity in graph.ancestors(sibling)
     }
-    port_name = identifier("_".join(step.name for step in path), "port")
+    port_name = identifier("_".join(path), "port")
     return f"{name}_via_{port_name}" if len(paths) > 1 else name

@@ -26,7 +26,7 @@ _ATTRIBUTES = """
     semantics version change_mode copyright ppr interface_ids associated_facet tag stereotype
     namespace lineage on diagram arguments message_kind description usage property_specific payload
     locale value_unit value_kind default_unit default_kind variation variant portion individual
-    caex_id subject_name referential asserted
+    caex_id subject_name referential asserted port_path
 """
 _EXPRESSED = frozenset(_ATTRIBUTES.split())
 """Attributes that the text expresses for most kinds, or that add nothing to what it expresses."""

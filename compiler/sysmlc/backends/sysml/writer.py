@@ -93,6 +93,8 @@ class Writer:
 
         The text is empty if there is no port, or, with a loss, if no text names it.
         """
+        if "port_path" in holder.attrs:
+            return str(holder.attrs["port_path"])
         path = path_to_port(self.graph, holder)
         name = self.refer_to_feature(scope, holder, Edge.ROLE, path[0]) if path else None
         if name is not None and len(path) > 1:

@@ -202,9 +202,11 @@ def _add_argument(lowering: "Lowering", action: Element, argument: Node) -> None
 
 def _defer_port(lowering: "Lowering", action: Element, end: Node) -> None:
     def set_port() -> None:
-        *links, port = map(lowering.element_of, nodes.path_of_expression(end))
+        path = nodes.path_of_expression(end)
+        *links, port = map(lowering.element_of, path)
         if port is not None and port.kind is Kind.PORT:
-            lowering.graph.set(action, on_port=port.id)
+            text = expressions.write_expression(end) if None in path else None
+            lowering.graph.set(action, on_port=port.id, port_path=text)
             connect_links(lowering, action, links)
 
     lowering.defer_until_elements(set_port)

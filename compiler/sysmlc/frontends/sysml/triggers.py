@@ -5,6 +5,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import nodes, values
+from sysmlc.frontends.sysml.expressions import write_expression
 from sysmlc.frontends.sysml.quantities import read_unit
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.language.tree import Node
@@ -124,8 +125,9 @@ def _set_port(lowering: "Lowering", trigger: Element, expression: Node) -> None:
         lowering.graph.set(trigger, port=port.id)
         connect_links(lowering, trigger, links)
     if None in path:
+        lowering.graph.set(trigger, port_path=write_expression(expression))
         construct = "a path to a port that is no chain of features"
-        lowering.mark_approximated(expression, construct, "the names at its end")
+        lowering.mark_approximated(expression, construct, "its text")
 
 
 def connect_links(lowering: "Lowering", holder: Element, links: Iterable[Element | None]) -> None:

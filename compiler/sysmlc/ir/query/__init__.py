@@ -62,6 +62,7 @@ from sysmlc.ir.query.relations import (
     opposite_end,
     outgoing,
     path_to_port,
+    port_names,
     role_of,
     runs_both_ways,
 )
@@ -114,6 +115,7 @@ __all__ = [
     "parameters",
     "parts",
     "path_to_port",
+    "port_names",
     "ports",
     "redefined_features",
     "requirement_id",

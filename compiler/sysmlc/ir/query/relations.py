@@ -84,6 +84,15 @@ def path_to_port(graph: Graph, holder: Element) -> tuple[Element, ...]:
     return path if port is None or port in path[:1] else (*path, port)
 
 
+def port_names(graph: Graph, holder: Element) -> tuple[str, ...]:
+    """Return the names on the path to the port of a trigger or action, empty without a port.
+
+    A path that is no chain of features, such as ``belts#(1).inlet``, is one name.
+    """
+    text = holder.attrs.get("port_path")
+    return (str(text),) if text else tuple(step.name for step in path_to_port(graph, holder))
+
+
 def is_boundary(graph: Graph, end: Element) -> bool:
     """Whether a connector end is a port of the connector's own classifier, not of a part.
 

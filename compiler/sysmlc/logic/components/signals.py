@@ -12,7 +12,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.ir.expressions import ExpressionError, Send, name_of
+from sysmlc.ir.expressions import ExpressionError, Send, name_of, print_expression
 from sysmlc.logic import formula as f
 from sysmlc.logic.components.objects import ComponentError, ComponentObject
 from sysmlc.logic.composition.members import Block, Member
@@ -319,12 +319,13 @@ def _iter_sent_signals(graph: Graph, element: Element) -> Iterator[tuple[str, st
     if element.kind is not Kind.TRIGGER and signal is not None:
         yield signal.name, _format_path(graph, element)
     for statement in _iter_sendings(element):
-        receiver = None if statement.receiver is None else name_of(statement.receiver)
-        yield statement.signal.path[-1], receiver or ""
+        receiver = statement.receiver
+        name = "" if receiver is None else name_of(receiver) or print_expression(receiver)
+        yield statement.signal.path[-1], name
 
 
 def _format_path(graph: Graph, holder: Element) -> str:
-    return ".".join(step.name for step in query.path_to_port(graph, holder))
+    return ".".join(query.port_names(graph, holder))
 
 
 def _add_member(

@@ -13,7 +13,7 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.ir.expressions import Binary, Expression, Unary
 from sysmlc.ir.expressions import Literal as Written
-from sysmlc.ir.query import path_to_port
+from sysmlc.ir.query import port_names
 from sysmlc.logic.contract import (
     BooleanDomain,
 )
@@ -68,32 +68,32 @@ def _read_events(draft: MachineDraft, trigger: Element) -> list[str]:
     if type_ is None:
         return [_read_event(draft, trigger.name or trigger.id, trigger.name)]
     ports = _list_ports(draft, type_)
-    name, own_path = type_.name or trigger.name, path_to_port(draft.reading.graph, trigger)
+    name, own_path = type_.name or trigger.name, port_names(draft.reading.graph, trigger)
     if len(ports) < 2:
         return [_read_event(draft, type_.id, name)]
     return [
         _read_event(
             draft,
-            " ".join([type_.id, *(step.id for step in path)]),
-            f"{name} via {'.'.join(step.name for step in path)}" if path else name,
+            " ".join([type_.id, *path]),
+            f"{name} via {'.'.join(path)}" if path else name,
         )
         for path in ports
         if own_path in ((), path)
     ]
 
 
-def _list_ports(draft: MachineDraft, type_: Element) -> list[tuple[Element, ...]]:
+def _list_ports(draft: MachineDraft, type_: Element) -> list[tuple[str, ...]]:
     """Return the paths to the ports at which triggers of the machine wait for a type.
 
     The empty path stands for the triggers that name no port.
     """
     graph = draft.reading.graph
     triggers = [t for t in graph.sources(type_, Edge.TYPED_BY) if t.kind is Kind.TRIGGER]
-    paths = dict.fromkeys(path_to_port(graph, trigger) for trigger in triggers)
+    paths = dict.fromkeys(port_names(graph, trigger) for trigger in triggers)
     if len(paths) > 1:
         machines = collect_submachines(graph, draft.machine)
         paths = dict.fromkeys(
-            path_to_port(graph, trigger)
+            port_names(graph, trigger)
             for trigger in triggers
             if any(ancestor in machines for ancestor in graph.ancestors(trigger))
         )
