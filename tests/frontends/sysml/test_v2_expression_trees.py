@@ -62,3 +62,31 @@ def test_an_expression_that_is_nested_too_deeply_has_no_tree():
     defaults = [element.attrs["default"] for element in graph if "default" in element.attrs]
     assert defaults
     assert not any(isinstance(value, ExpressionText) for value in defaults)
+
+
+def test_an_imported_constant_that_another_one_hides_is_written_with_its_package():
+    """A reader of the text alone, such as that of UML, takes the constant around the block."""
+    guards = {"Plant::Cold": "level < MAX", "Plant::Inner::Tank": "level < Limits::MAX"}
+    graph = read(
+        """
+        package Limits { attribute MAX : ScalarValues::Natural = 5; }
+        package Plant {
+            item def Go;
+            attribute MAX : ScalarValues::Natural = 3;
+            part def Cold {
+                attribute level : ScalarValues::Natural;
+                exhibit state s { entry; then A; state A; accept Go if level < MAX then A; }
+            }
+            package Inner {
+                private import Limits::MAX;
+                part def Tank {
+                    attribute level : ScalarValues::Natural;
+                    exhibit state s { entry; then A; state A; accept Go if level < MAX then A; }
+                }
+            }
+        }
+        """
+    ).graph
+    for block, guard in guards.items():
+        elements = graph.subtree(graph[block])
+        assert [e.attrs["guard"] for e in elements if "guard" in e.attrs] == [guard]

@@ -132,7 +132,26 @@ def _read_feature_reference(node: Node, ids: ElementIds) -> Expression:
     reference = nodes.find_reference(node, "Membership")
     if reference is None:
         raise NotExpressibleError(node.kind)
+    target = reference.targets[0] if reference.targets else None
+    if target is not None and len(reference.chain) == 1 and _is_hidden(target, node):
+        names = nodes.qualified_name_of(target).split("::")
+        return Name(tuple(names), element=_find_first_id(reference, ids))
     return _read_reference(reference, ids)
+
+
+def _is_hidden(target: Node, node: Node) -> bool:
+    """Whether a package around a node has another feature with the name of an imported one.
+
+    Readers of the text alone would take that feature.
+    """
+    if _is_feature(target):
+        return False
+    scope = node.owner
+    while scope is not None and scope is not target.owner:
+        if any(member.name == target.name for member in scope.members):
+            return True
+        scope = scope.owner
+    return False
 
 
 def _read_reference(reference: Reference, ids: ElementIds) -> Expression:
