@@ -148,7 +148,8 @@ def _is_hidden(target: Node, node: Node) -> bool:
         return False
     scope = node.owner
     while scope is not None and scope is not target.owner:
-        if any(member.name == target.name for member in scope.members):
+        same_name = (member for member in scope.members if member.name == target.name)
+        if any(member.kind.endswith("Usage") for member in same_name):
             return True
         scope = scope.owner
     return False
