@@ -1,7 +1,7 @@
 """Check contracts, synthesise controllers and play scenarios from Python.
 
-These modules take as long to import as all others together, so that programs which only compile do
-not import them.
+The games and the interpreter double the time that ``import`` takes, so that programs which only
+compile models do not import this module.
 """
 
 from msgspec import Struct
