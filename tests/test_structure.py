@@ -37,7 +37,6 @@ WIDE_OBJECTS = {
     "sysmlc.frontends.caex.context.Context": 18,
     "sysmlc.frontends.caex.document.Document": 15,
     "sysmlc.frontends.sysml.lowering.Lowering": 24,
-    "sysmlc.frontends.xmi.context.Context": 30,
     "sysmlc.frontends.xmi.document.Document": 18,
     "sysmlc.ir.pending.Drawing": 13,
     "sysmlc.language.names.model.Model": 16,

@@ -1,15 +1,17 @@
 """Attributes of UML elements: edges, attributes of the graph, or values that need no attribute."""
 
 from collections.abc import Mapping
+from functools import partial
 from types import MappingProxyType
 from typing import NamedTuple
 
 from sysmlc.diagnostics import Subject, Verdict
 from sysmlc.frontends.xmi import metaclasses, rules, uml_features
 from sysmlc.frontends.xmi import vocabulary as v
-from sysmlc.frontends.xmi.context import Context, select_existing
-from sysmlc.frontends.xmi.document import WrittenReference
-from sysmlc.frontends.xmi.values import parse_bound
+from sysmlc.frontends.xmi.dangling import select_existing
+from sysmlc.frontends.xmi.document import Document, WrittenReference
+from sysmlc.frontends.xmi.unit import File, Stage
+from sysmlc.frontends.xmi.values import parse_bound, read_opaque, store_alternatives
 from sysmlc.ir import AttrValue, Element, Kind
 from sysmlc.sources import DEFAULT_LIMITS
 
@@ -73,40 +75,40 @@ _OWN_KINDS = {Kind.PSEUDOSTATE: "", Kind.TRANSITION: "external"}
 """Kinds whose attribute ``kind`` is their subkind, and the value that is not stored."""
 
 
-def lower_attributes(context: Context, element: Element, row: int, values: dict[str, str]) -> None:
+def lower_attributes(file: File, element: Element, row: int, values: dict[str, str]) -> None:
     """Lower the attributes of a row that has become *element*."""
     for name, value in values.items():
         if name not in _PASSED_OVER and "}" not in name:
-            lower_attribute(context, element, row, name, value)
+            lower_attribute(file, element, row, name, value)
         elif name in v.REDUNDANT:
-            context.defer_check(row, name, value)
+            file.defer_check(row, name, value)
 
 
-def lower_attribute(context: Context, element: Element, row: int, name: str, value: str) -> None:
+def lower_attribute(file: File, element: Element, row: int, name: str, value: str) -> None:
     """Lower one attribute or list of references of UML."""
     edge = v.REFERENCES_BY_KIND.get((element.kind, name)) or v.REFERENCES.get(name)
     if edge is not None:
-        for target in _limit_targets(context, row, name, value):
-            context.add_reference(edge, element.id, WrittenReference(target, row), name)
+        for target in _limit_targets(file, row, name, value):
+            file.add_reference(edge, element.id, WrittenReference(target, row), name)
     elif name in _STORED:
         stored = _STORED[name]
         if value != stored.default and not stored.store(element, value):
-            context.unknown_values.append((row, name, value))
+            file.unknown_values.append((row, name, value))
     else:
-        _lower_other(context, element, row, name, value)
+        _lower_other(file, element, row, name, value)
 
 
-def _limit_targets(context: Context, row: int, name: str, value: str) -> list[str]:
+def _limit_targets(file: File, row: int, name: str, value: str) -> list[str]:
     """Return the ids in a list, up to the limit for lists."""
-    targets = context.document.split_ids(value)
+    targets = file.document.split_ids(value)
     most = DEFAULT_LIMITS.references
     if len(targets) > most:
-        subject = Subject(context.qualified_name(row), "", context.locate(row))
-        context.sink.report(rules.LONG_LIST, subject, feature=name, count=len(targets), most=most)
+        subject = Subject(file.qualified_name(row), "", file.locate(row))
+        file.unit.sink.report(rules.LONG_LIST, subject, feature=name, count=len(targets), most=most)
     return targets[:most]
 
 
-def _lower_other(context: Context, element: Element, row: int, name: str, value: str) -> None:
+def _lower_other(file: File, element: Element, row: int, name: str, value: str) -> None:
     reversed_edge = v.REVERSED.get((element.kind, name))
     if name == "specification" and element.kind is Kind.CONSTRAINT:
         # StarUML writes the text here; in UML the value is a child of the constraint.
@@ -114,79 +116,117 @@ def _lower_other(context: Context, element: Element, row: int, name: str, value:
     elif reversed_edge is not None:
         for target in value.split():
             reference = WrittenReference(target, row)
-            context.add_reference(reversed_edge, element.id, reference, name, is_reversed=True)
+            file.add_reference(reversed_edge, element.id, reference, name, is_reversed=True)
     elif name in v.CONDITIONS:
-        context.defer_conditions(value.split(), name)
+        defer_conditions(file, value.split(), name)
     elif name in _BOUNDS:
-        context.set_bound(row, _BOUNDS.index(name), parse_bound(value))
+        set_bound(file, row, _BOUNDS.index(name), parse_bound(value))
     elif name == "kind" and element.kind in _OWN_KINDS:
         if value != _OWN_KINDS[element.kind]:
             element.attrs["subkind"] = metaclasses.to_kebab_case(value)
     elif name in v.REDUNDANT:
-        context.defer_check(row, name, value)
+        file.defer_check(row, name, value)
     elif name in uml_features.NAMING:
-        context.defer_ids(element, v.to_snake_case(name), context.document.split_ids(value))
+        defer_ids(file, element, v.to_snake_case(name), file.document.split_ids(value))
     elif name not in _PASSED_OVER:
-        _lower_unmapped(context, element, row, name, value)
+        _lower_unmapped(file, element, row, name, value)
 
 
-def _lower_unmapped(context: Context, element: Element, row: int, name: str, value: str) -> None:
+def _lower_unmapped(file: File, element: Element, row: int, name: str, value: str) -> None:
     """Store an attribute that no table maps, unless it has its default value."""
     if name in uml_features.FLAGS:
         value = _BOOLEANS.get(value, value)
     if value not in uml_features.VALUES.get(name, (value,)):
-        context.unknown_values.append((row, name, value))
+        file.unknown_values.append((row, name, value))
     elif value != v.default_value(name):
-        _store_plain(context, element, v.to_snake_case(name), value)
+        _store_plain(file, element, v.to_snake_case(name), value)
 
 
-def _store_plain(context: Context, element: Element, key: str, value: str) -> None:
+def _store_plain(file: File, element: Element, key: str, value: str) -> None:
     """Store ids of elements, a truth value, or text."""
     tokens = value.split()
-    if tokens and all(token in context.document.ids for token in tokens):
-        context.defer_ids(element, key, tokens)
+    if tokens and all(token in file.document.ids for token in tokens):
+        defer_ids(file, element, key, tokens)
     elif value in ("true", "false"):
         element.attrs[key] = value == "true"
     elif value:
         element.attrs[key] = value
 
 
-def lower_text(context: Context, row: int, feature: str) -> None:
+def lower_text(file: File, row: int, feature: str) -> None:
     """Lower a child that contains only text, which stands for an attribute of the same name."""
-    owner = context.find_owner(row)
-    value = context.document.texts.get(row, "")
+    owner = file.find_owner(row)
+    value = file.document.texts.get(row, "")
     if owner is None:
-        context.verdicts[row] = Verdict.UNSUPPORTED
+        file.verdicts[row] = Verdict.UNSUPPORTED
         return
     if feature not in uml_features.FEATURES:
-        _report_stray_text(context, row, feature)
+        _report_stray_text(file, row, feature)
     if not value:
         return
     if feature == "name":
-        context.graph.rename(owner, value)
+        file.unit.graph.rename(owner, value)
     elif feature in ("body", "language") and feature in owner.attrs:
-        context.opaque_elements[owner.id] = (owner, context.document.parents[row])
+        file.defer(
+            Stage.BODIES, partial(_set_body, file.document, owner, file.document.parents[row])
+        )
     else:
-        lower_attribute(context, owner, row, feature, value)
+        lower_attribute(file, owner, row, feature, value)
 
 
-def _report_stray_text(context: Context, row: int, feature: str) -> None:
-    name = context.qualified_name(context.document.parents[row])
-    subject = Subject(name, context.element_ids[row], context.locate(row))
-    context.sink.report(rules.STRAY_TEXT, subject, feature=feature, element=name)
-    context.verdicts[row] = Verdict.APPROXIMATED
-    context.loss_rules[row] = rules.STRAY_TEXT, "kept as text: no feature of UML has its name"
+def _report_stray_text(file: File, row: int, feature: str) -> None:
+    name = file.qualified_name(file.document.parents[row])
+    subject = Subject(name, file.element_ids[row], file.locate(row))
+    file.unit.sink.report(rules.STRAY_TEXT, subject, feature=feature, element=name)
+    file.approximate(row, rules.STRAY_TEXT, "kept as text: no feature of UML has its name")
 
 
-def set_deferred_attributes(context: Context) -> None:
-    """Set the attributes that were deferred until the elements of all documents exist."""
-    for target, subkind in context.deferred_conditions:
-        row = context.document.ids.get(target, -1)
-        if row >= 0 and context.elements[row]:
-            context.graph[context.element_ids[row]].attrs["subkind"] = subkind
-    for element, key, targets, is_href in context.deferred_ids:
-        existing = targets if is_href else select_existing(context, element, key, targets)
-        ids = [context.unit.find_target_id(context.file, target, is_href) for target in existing]
-        present = tuple(id for id in ids if id is not None)
-        if present:
-            element.attrs[key] = present if len(present) > 1 or key in v.LISTS else present[0]
+def _set_body(document: Document, element: Element, row: int) -> None:
+    """Set the body of an element with several bodies or languages."""
+    value = read_opaque(document, row)
+    for key, text in (("body", value.value), ("language", value.language)):
+        element.attrs.pop(key, None)
+        if text:
+            element.attrs[key] = text
+    store_alternatives(element, value)
+
+
+# -- attributes that need other elements -----------------------------------------------------------
+
+
+def set_bound(
+    file: File, row: int, index: int, value: AttrValue, *, is_computed: bool = False
+) -> None:
+    """Set the lower (0) or upper (1) bound of the element of the row."""
+    id = file.element_ids[row]
+    if id:
+        bounds = file.bounds.setdefault(id, [1, 1, False])
+        bounds[index], bounds[2] = value, bounds[2] or is_computed
+
+
+def defer_conditions(file: File, targets: list[str], feature: str) -> None:
+    """Mark the constraints with these ids as conditions once all elements exist."""
+    file.defer(Stage.ELEMENTS, partial(_mark_conditions, file, targets, v.CONDITIONS[feature]))
+
+
+def _mark_conditions(file: File, targets: list[str], subkind: str) -> None:
+    for target in targets:
+        row = file.document.ids.get(target, -1)
+        if row >= 0 and file.elements[row]:
+            file.unit.graph[file.element_ids[row]].attrs["subkind"] = subkind
+
+
+def defer_ids(
+    file: File, element: Element, key: str, ids: list[str], is_href: bool = False
+) -> None:
+    """Set an attribute to ids of the graph once all elements exist; *ids* are as written."""
+    if ids:
+        file.defer(Stage.ELEMENTS, partial(_set_ids, file, element, key, ids, is_href))
+
+
+def _set_ids(file: File, element: Element, key: str, targets: list[str], is_href: bool) -> None:
+    existing = targets if is_href else select_existing(file, element, key, targets)
+    ids = [file.unit.find_target_id(file, target, is_href) for target in existing]
+    present = tuple(id for id in ids if id is not None)
+    if present:
+        element.attrs[key] = present if len(present) > 1 or key in v.LISTS else present[0]

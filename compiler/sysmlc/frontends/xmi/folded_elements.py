@@ -7,13 +7,16 @@ a contained element.
 """
 
 from collections.abc import Collection
+from functools import partial
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.xmi import metaclasses, papyrus, uml_features
+from sysmlc.frontends.xmi import metaclasses, papyrus, rules, uml_features
 from sysmlc.frontends.xmi import vocabulary as v
-from sysmlc.frontends.xmi.context import Context, RowHandler, check_references_inside
+from sysmlc.frontends.xmi.attributes import defer_conditions, defer_ids
+from sysmlc.frontends.xmi.dangling import check_references_inside
 from sysmlc.frontends.xmi.document import WrittenReference
 from sysmlc.frontends.xmi.elements import add_element, make_handler
+from sysmlc.frontends.xmi.unit import File, RowHandler, Stage
 from sysmlc.ir import Edge, Element, Kind
 
 _REFERENCES_TO_OWNER = uml_features.NAMING - v.FOLDED_REFERENCES.keys()
@@ -22,34 +25,32 @@ _REFERENCES_TO_OWNER = uml_features.NAMING - v.FOLDED_REFERENCES.keys()
 _WITH_MEANING = uml_features.FEATURES - {"name", "visibility"}
 
 
-def _lower_edge(context: Context, row: int) -> None:
-    context.mark_mapped(row)
-    owner = context.find_owner(row)
+def _lower_edge(file: File, row: int) -> None:
+    file.mark_mapped(row)
+    owner = file.find_owner(row)
     if owner is None:
         return
-    values = context.document.attributes[row]
+    values = file.document.attributes[row]
     for feature, edge in v.FOLDED_REFERENCES.items():
-        for target in context.document.split_ids(values.get(feature, "")):
-            context.add_reference(edge, owner.id, WrittenReference(target, row), feature)
+        for target in file.document.split_ids(values.get(feature, "")):
+            file.add_reference(edge, owner.id, WrittenReference(target, row), feature)
     for feature, value in values.items():
         if feature in _REFERENCES_TO_OWNER:
-            context.defer_check(row, feature, value)
+            file.defer_check(row, feature, value)
     # A name where UML has none, as on a generalization, is reported as a misplaced attribute.
-    has_name = not uml_features.is_misplaced(context.document.types[row], "name")
-    report_losses(
-        context, row, _REFERENCES_TO_OWNER | v.FOLDED_REFERENCES.keys(), is_named=has_name
-    )
+    has_name = not uml_features.is_misplaced(file.document.types[row], "name")
+    report_losses(file, row, _REFERENCES_TO_OWNER | v.FOLDED_REFERENCES.keys(), is_named=has_name)
 
 
 def report_losses(
-    context: Context, row: int, lowered: Collection[str], *, is_named: bool = False
+    file: File, row: int, lowered: Collection[str], *, is_named: bool = False
 ) -> None:
     """Mark a row as approximated if an attribute is neither *lowered* nor at its default.
 
     Visibilities do not count, because tools generate them; a name counts only if the row
     *is_named* by the author of the model.
     """
-    values = context.document.attributes[row]
+    values = file.document.attributes[row]
     lost = [
         name
         for name, value in values.items()
@@ -58,46 +59,46 @@ def report_losses(
     if is_named and values.get("name"):
         lost.append("name")
     if lost:
-        context.approximate(row, ", ".join(f"'{name}'" for name in lost))
+        file.approximate(row, rules.APPROXIMATED, ", ".join(f"'{name}'" for name in lost))
 
 
-def _lower_extension(context: Context, row: int) -> None:
+def _lower_extension(file: File, row: int) -> None:
     # The property ``base_...`` of the stereotype states the metaclass, too.
-    context.mark_subtree(row, Verdict.MAPPED)
-    check_references_inside(context, row)
+    file.mark_subtree(row, Verdict.MAPPED)
+    check_references_inside(file, row)
 
 
-def _lower_property(context: Context, row: int) -> None:
-    owner = context.find_owner(row)
-    name = context.document.attributes[row].get("name", "")
+def _lower_property(file: File, row: int) -> None:
+    owner = file.find_owner(row)
+    name = file.document.attributes[row].get("name", "")
     if owner is not None and owner.kind is Kind.STEREOTYPE and name.startswith("base_"):
-        _lower_metaclass_property(context, row, owner)
-    elif not add_element(context, row, Kind.PROPERTY, "", "Property"):
-        context.mark_subtree(row, Verdict.UNSUPPORTED)
+        _lower_metaclass_property(file, row, owner)
+    elif not add_element(file, row, Kind.PROPERTY, "", "Property"):
+        file.mark_subtree(row, Verdict.UNSUPPORTED)
 
 
-def _lower_metaclass_property(context: Context, row: int, stereotype: Element) -> None:
+def _lower_metaclass_property(file: File, row: int, stereotype: Element) -> None:
     """Add an edge from a stereotype to the metaclass that it extends."""
-    context.mark_subtree(row, Verdict.MAPPED)
-    check_references_inside(context, row)
-    for target in context.document.targets(row, "type"):
+    file.mark_subtree(row, Verdict.MAPPED)
+    check_references_inside(file, row)
+    for target in file.document.targets(row, "type"):
         reference = WrittenReference(target, row)
-        context.add_reference(Edge.EXTENDS, stereotype.id, reference, "type")
-    for child in context.document.children(row, "type"):
-        href = context.document.href(child)
+        file.add_reference(Edge.EXTENDS, stereotype.id, reference, "type")
+    for child in file.document.children(row, "type"):
+        href = file.document.href(child)
         if href:
             reference = WrittenReference(href, child, is_href=True)
-            context.add_reference(Edge.EXTENDS, stereotype.id, reference, "type")
+            file.add_reference(Edge.EXTENDS, stereotype.id, reference, "type")
 
 
-def _ignore_image(context: Context, row: int) -> None:
-    context.mark_subtree(row, Verdict.IGNORED_NOTATION)
+def _ignore_image(file: File, row: int) -> None:
+    file.mark_subtree(row, Verdict.IGNORED_NOTATION)
 
 
-def _complete_extend(context: Context, element: Element, row: int) -> None:
+def _complete_extend(file: File, element: Element, row: int) -> None:
     """Add an edge between the use cases, so that queries need not know ``Extend`` (18.1)."""
     if element.owner is not None:
-        context.add_references(Edge.EXTENDS, element.owner, row, "extendedCase")
+        file.add_references(Edge.EXTENDS, element.owner, row, "extendedCase")
 
 
 TYPES: dict[str, RowHandler] = {
@@ -113,60 +114,60 @@ TYPES: dict[str, RowHandler] = {
 # -- references --------------------------------------------------------------------------------
 
 
-def is_reference(context: Context, row: int) -> bool:
+def is_reference(file: File, row: int) -> bool:
     """Whether the row refers to an element instead of defining one."""
-    attributes = context.document.attributes[row]
-    return "href" in attributes or context.document.idref_key in attributes
+    attributes = file.document.attributes[row]
+    return "href" in attributes or file.document.idref_key in attributes
 
 
-def lower_reference(context: Context, row: int) -> int:
+def lower_reference(file: File, row: int) -> int:
     """Lower a row that refers to an element; return the row after its content."""
-    document = context.document
-    end = context.mark_subtree(row, Verdict.MAPPED)
+    document = file.document
+    end = file.mark_subtree(row, Verdict.MAPPED)
     for child in document.children(row):
-        context.mark_subtree(child, Verdict.IGNORED_NOTATION)
+        file.mark_subtree(child, Verdict.IGNORED_NOTATION)
     feature, parent = document.features[row], document.parents[row]
-    owner = context.find_owner(row)
+    owner = file.find_owner(row)
     href = document.href(row)
     reference = WrittenReference(href or document.idref(row), row, bool(href))
     if owner is not None and papyrus.is_contained_href(document, row):
-        context.verdicts[row] = Verdict.EXTERNAL
-        context.contained_hrefs.append(row)
+        file.verdicts[row] = Verdict.EXTERNAL
+        file.defer(Stage.WALKS, partial(papyrus.join_contained_element, file, row))
     elif owner is None or feature in ("packagedElement", "nestedPackage"):
-        context.verdicts[row] = Verdict.EXTERNAL if href else Verdict.MAPPED
-    elif context.elements[parent]:
-        _refer(context, owner, reference, feature)
+        file.verdicts[row] = Verdict.EXTERNAL if href else Verdict.MAPPED
+    elif file.elements[parent]:
+        _refer(file, owner, reference, feature)
     elif feature in v.FOLDED_REFERENCES:
-        context.add_reference(v.FOLDED_REFERENCES[feature], owner.id, reference, feature)
+        file.add_reference(v.FOLDED_REFERENCES[feature], owner.id, reference, feature)
     elif not href:
-        context.defer_check(parent, feature, reference.target)
+        file.defer_check(parent, feature, reference.target)
     return end
 
 
-def _refer(context: Context, owner: Element, reference: WrittenReference, feature: str) -> None:
+def _refer(file: File, owner: Element, reference: WrittenReference, feature: str) -> None:
     target, row, is_href = reference
     edge = v.REFERENCES_BY_KIND.get((owner.kind, feature)) or v.REFERENCES.get(feature)
     reversed_edge = v.REVERSED.get((owner.kind, feature))
     if edge is not None:
-        context.add_reference(edge, owner.id, reference, feature)
+        file.add_reference(edge, owner.id, reference, feature)
     elif reversed_edge is not None:
-        context.add_reference(reversed_edge, owner.id, reference, feature, is_reversed=True)
+        file.add_reference(reversed_edge, owner.id, reference, feature, is_reversed=True)
     elif feature in v.CONDITIONS:
-        context.defer_conditions([target], feature)
+        defer_conditions(file, [target], feature)
     elif feature in v.REDUNDANT:
         if not is_href:
-            context.defer_check(context.document.parents[row], feature, target)
+            file.defer_check(file.document.parents[row], feature, target)
     elif feature == "guard" and owner.kind in (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW):
         # The value is in another file or belongs to another element, so that it has no text here.
         owner.attrs["guard"] = ""
     elif feature not in ("partWithPort", "guard", "event"):
-        _store_ids(context, owner, reference, feature)
+        _store_ids(file, owner, reference, feature)
 
 
-def _store_ids(context: Context, owner: Element, reference: WrittenReference, feature: str) -> None:
+def _store_ids(file: File, owner: Element, reference: WrittenReference, feature: str) -> None:
     key = v.to_snake_case(feature)
     if reference.is_href:
-        context.defer_ids(owner, key, [reference.target], is_href=True)
+        defer_ids(file, owner, key, [reference.target], is_href=True)
     elif feature not in ("sendEvent", "receiveEvent"):
-        parent = context.document.parents[reference.row]
-        context.defer_ids(owner, key, context.document.targets(parent, feature))
+        parent = file.document.parents[reference.row]
+        defer_ids(file, owner, key, file.document.targets(parent, feature))

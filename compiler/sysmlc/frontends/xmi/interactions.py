@@ -1,10 +1,12 @@
 """Interactions: fragments in their order, ends of messages, times (UML 2.5.1 clauses 17, 8.4)."""
 
+from functools import partial
+
 from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.xmi import metaclasses
-from sysmlc.frontends.xmi.context import Context, RowHandler
+from sysmlc.frontends.xmi.attributes import defer_ids
 from sysmlc.frontends.xmi.elements import make_handler
-from sysmlc.frontends.xmi.unit import LoweredDocument, Target
+from sysmlc.frontends.xmi.unit import File, RowHandler, Stage, Target
 from sysmlc.frontends.xmi.value_features import lower_value
 from sysmlc.ir import Edge, Element, Kind
 
@@ -22,31 +24,31 @@ _KIND_BY_ENDS = {
 # -- handlers of rows ------------------------------------------------------------------------------
 
 
-def _complete_fragment(context: Context, fragment: Element, row: int) -> None:
-    operator = context.document.get(row, "interactionOperator") or "seq"
+def _complete_fragment(file: File, fragment: Element, row: int) -> None:
+    operator = file.document.get(row, "interactionOperator") or "seq"
     fragment.attrs["subkind"] = metaclasses.to_kebab_case(operator)
-    context.add_references(Edge.REFERENCES, fragment.id, row, "message")
+    file.add_references(Edge.REFERENCES, fragment.id, row, "message")
 
 
-def _complete_message(context: Context, message: Element, row: int) -> None:
-    document = context.document
+def _complete_message(file: File, message: Element, row: int) -> None:
+    document = file.document
     sort = document.get(row, "messageSort") or "synchCall"
     message.attrs["subkind"] = metaclasses.to_kebab_case(sort)
     is_sent, is_received = (bool(document.references(row, end)) for end, _ in _MESSAGE_ENDS)
     kind = _KIND_BY_ENDS[is_sent, is_received]
     if kind:
         message.attrs["message_kind"] = kind
-    context.completions.append((_connect_lifelines, message, row))
+    file.defer(Stage.BEHAVIOURS, partial(_connect_lifelines, file, message, row))
 
 
-def _complete_observation(context: Context, observation: Element, row: int) -> None:
-    context.add_references(Edge.REFERENCES, observation.id, row, "event")
-    _store_first_event(context, observation, row)
+def _complete_observation(file: File, observation: Element, row: int) -> None:
+    file.add_references(Edge.REFERENCES, observation.id, row, "event")
+    _store_first_event(file, observation, row)
 
 
-def _store_first_event(context: Context, element: Element, row: int) -> None:
+def _store_first_event(file: File, element: Element, row: int) -> None:
     """Store ``firstEvent``: whether an observed event counts at its beginning (default) or end."""
-    document = context.document
+    document = file.document
     flags = document.attributes[row].get("firstEvent", "").split()
     flags += [document.texts.get(child, "") for child in document.children(row, "firstEvent")]
     if "false" in flags:
@@ -54,30 +56,30 @@ def _store_first_event(context: Context, element: Element, row: int) -> None:
         element.attrs["first_event"] = values if len(values) > 1 else values[0]
 
 
-def _complete_time_constraint(context: Context, constraint: Element, row: int) -> None:
+def _complete_time_constraint(file: File, constraint: Element, row: int) -> None:
     """Store the observations that the bounds refer to; the bounds themselves are text."""
-    document = context.document
+    document = file.document
     observations = [
         target
         for inner in range(row + 1, document.ends[row])
         for target in document.targets(inner, "observation")
     ]
-    context.defer_ids(constraint, "observations", observations)
-    _store_first_event(context, constraint, row)
+    defer_ids(file, constraint, "observations", observations)
+    _store_first_event(file, constraint, row)
 
 
-def _complete_occurrence(context: Context, occurrence: Element, row: int) -> None:
-    if context.document.attributes[row].get("event"):
-        context.completions.append((_mark_destruction, occurrence, row))
+def _complete_occurrence(file: File, occurrence: Element, row: int) -> None:
+    if file.document.attributes[row].get("event"):
+        file.defer(Stage.BEHAVIOURS, partial(_mark_destruction, file, occurrence, row))
 
 
 def _make_loop_bound_handler(key: str) -> RowHandler:
     """Return a handler of the bounds of a loop, which the guard of its operand contains."""
 
-    def lower(context: Context, row: int) -> None:
-        guard = context.find_owner(row)
-        value = lower_value(context, row).value
-        operand = context.graph.owner(guard) if guard is not None else None
+    def lower(file: File, row: int) -> None:
+        guard = file.find_owner(row)
+        value = lower_value(file, row).value
+        operand = file.unit.graph.owner(guard) if guard is not None else None
         if operand is not None and operand.kind is Kind.OPERAND:
             operand.attrs[key] = value
         elif guard is not None:
@@ -89,18 +91,18 @@ def _make_loop_bound_handler(key: str) -> RowHandler:
 def _make_text_handler(key: str) -> RowHandler:
     """Return a handler that stores a value as text."""
 
-    def lower(context: Context, row: int) -> None:
-        owner = context.find_owner(row)
-        text = lower_value(context, row).text
+    def lower(file: File, row: int) -> None:
+        owner = file.find_owner(row)
+        text = lower_value(file, row).text
         if owner is not None:
             owner.attrs[key] = text
 
     return lower
 
 
-def _omit_event(context: Context, row: int) -> None:
+def _omit_event(file: File, row: int) -> None:
     # Messages and executions state what these events of UML before 2.4 state.
-    context.mark_subtree(row, Verdict.MAPPED)
+    file.mark_subtree(row, Verdict.MAPPED)
 
 
 FEATURES: dict[str, RowHandler] = {
@@ -131,49 +133,43 @@ TYPES: dict[str, RowHandler] = {
 # -- completion when all documents are lowered -----------------------------------------------------
 
 
-def _connect_lifelines(context: Context, message: Element, row: int) -> None:
+def _connect_lifelines(file: File, message: Element, row: int) -> None:
     """Add edges from a message to the lifelines that its send and receive occurrence cover."""
-    has_signature = bool(context.document.references(row, "signature"))
+    has_signature = bool(file.document.references(row, "signature"))
     for feature, edge in _MESSAGE_ENDS:
-        for reference in context.document.references(row, feature):
-            end = context.unit.find_target(context.file, reference.target, reference.is_href)
+        for reference in file.document.references(row, feature):
+            end = file.find_target(reference)
             if end is not None:
-                _connect_end(context, message, edge, end)
-                has_signature = has_signature or _add_legacy_signature(context, message, end)
+                _connect_end(file, message, edge, end)
+                has_signature = has_signature or _add_legacy_signature(file, message, end)
 
 
-def _connect_end(context: Context, message: Element, edge: Edge, end: Target) -> None:
+def _connect_end(file: File, message: Element, edge: Edge, end: Target) -> None:
     for reference in end.document.references(end.row, "covered"):
-        context.add_reference(edge, message.id, reference, "covered", file=end.file)
-    occurrence = context.graph.get(end.element_id)
+        end.file.add_reference(edge, message.id, reference, "covered")
+    occurrence = file.unit.graph.get(end.element_id)
     if occurrence is not None and occurrence.kind is Kind.OCCURRENCE and not occurrence.subkind:
         # Enterprise Architect writes the general metaclass OccurrenceSpecification.
         occurrence.attrs["subkind"] = "message"
 
 
-def _add_legacy_signature(context: Context, message: Element, end: Target) -> bool:
+def _add_legacy_signature(file: File, message: Element, end: Target) -> bool:
     """Refer to the signature, which UML before 2.4 writes at the event of the occurrence.
 
     Return whether the event has a signature.
     """
-    event = _find_event(context, end.file, end.row)
+    event = end.file.find_first_target(end.row, "event")
     if event is None:
         return False
     document, row = event.document, event.row
     signatures = [*document.references(row, "operation"), *document.references(row, "signal")]
     for signature in signatures[:1]:
-        context.add_reference(Edge.CALLS, message.id, signature, "signature", file=event.file)
+        event.file.add_reference(Edge.CALLS, message.id, signature, "signature")
     return bool(signatures)
 
 
-def _mark_destruction(context: Context, occurrence: Element, row: int) -> None:
+def _mark_destruction(file: File, occurrence: Element, row: int) -> None:
     """Set the subkind of an occurrence with a destruction event (UML before 2.4)."""
-    event = _find_event(context, context.file, row)
+    event = file.find_first_target(row, "event")
     if event is not None and event.type == "DestructionEvent":
         occurrence.attrs["subkind"] = "destruction"
-
-
-def _find_event(context: Context, file: LoweredDocument, row: int) -> Target | None:
-    for reference in file.document.references(row, "event"):
-        return context.unit.find_target(file, reference.target, reference.is_href)
-    return None

@@ -2,9 +2,9 @@
 
 from sysmlc.diagnostics import Subject, Verdict
 from sysmlc.frontends.xmi import rules
-from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.document import Document
-from sysmlc.ir import Element
+from sysmlc.frontends.xmi.unit import File
+from sysmlc.ir import Element, Graph
 
 # -- contained elements in files of their own ------------------------------------------------------
 
@@ -21,58 +21,52 @@ def is_contained_href(document: Document, row: int) -> bool:
     return document.ends[row] == row + 1 and "href" in document.attributes[row]
 
 
-def join_contained_elements(context: Context) -> None:
-    """Move the elements that other files hold for this document below their owner."""
-    for row in context.contained_hrefs:
-        owner = context.find_owner(row)
-        if owner is None:
-            continue
-        element = _find_contained(context, row)
-        problem = _find_problem(context, owner, element)
-        if element is None or problem:
-            _report(context, row, owner, problem)
-        else:
-            context.graph.move(element, owner)
-            context.verdicts[row] = Verdict.MAPPED
+def join_contained_element(file: File, row: int) -> None:
+    """Move the element that another file holds for this document below its owner."""
+    owner = file.find_owner(row)
+    if owner is None:
+        return
+    graph = file.unit.graph
+    target = file.unit.find_target(file, file.document.href(row), True)
+    element = target.element if target is not None else None
+    problem = _find_problem(graph, owner, element)
+    if element is None or problem:
+        _report(file, row, owner, problem)
+    else:
+        graph.move(element, owner)
+        file.verdicts[row] = Verdict.MAPPED
 
 
-def _find_contained(context: Context, row: int) -> Element | None:
-    target = context.unit.find_target(context.file, context.document.href(row), True)
-    if target is None or not target.element:
-        return None
-    return context.graph[target.element_id]
-
-
-def _find_problem(context: Context, owner: Element, element: Element | None) -> str:
+def _find_problem(graph: Graph, owner: Element, element: Element | None) -> str:
     """Return why the element cannot be moved below the owner, or the empty string."""
     if element is None:
         return "which no file of the compile unit has"
     if element.owner is not None:
         return "which belongs to another element"
-    is_cycle = element is owner or element in context.graph.ancestors(owner)
+    is_cycle = element is owner or element in graph.ancestors(owner)
     return "which it is in itself" if is_cycle else ""
 
 
-def _report(context: Context, row: int, owner: Element, problem: str) -> None:
-    name = context.graph.qualified_name(owner)
-    href = context.document.href(row)
-    subject = Subject(name, owner.id, context.locate(row))
-    context.sink.report(rules.MISSING_PART, subject, owner=name, href=href, problem=problem)
+def _report(file: File, row: int, owner: Element, problem: str) -> None:
+    name = file.unit.graph.qualified_name(owner)
+    href = file.document.href(row)
+    subject = Subject(name, owner.id, file.locate(row))
+    file.unit.sink.report(rules.MISSING_PART, subject, owner=name, href=href, problem=problem)
 
 
 # -- namespaces of profiles ------------------------------------------------------------------------
 
 
-def record_ecore_namespaces(context: Context, row: int) -> None:
+def record_ecore_namespaces(file: File, row: int) -> None:
     """Record the namespaces of a profile; Papyrus writes them in an Ecore copy of the profile.
 
     *row* is the ``eAnnotations`` element that contains the copy.
     """
-    package = context.element_ids[row]
-    for inner in range(row + 1, context.document.ends[row]):
-        uri = context.document.attributes[inner].get("nsURI")
+    package = file.element_ids[row]
+    for inner in range(row + 1, file.document.ends[row]):
+        uri = file.document.attributes[inner].get("nsURI")
         if uri and package:
-            context.unit.profiles.add(uri, package)
+            file.unit.profiles.add(uri, package)
 
 
 def is_package_namespace(document: Document, row: int) -> bool:
@@ -80,11 +74,11 @@ def is_package_namespace(document: Document, row: int) -> bool:
     return "nsURI" in document.attributes[row] and "base_Package" in document.attributes[row]
 
 
-def record_applied_namespaces(context: Context) -> None:
+def record_applied_namespaces(file: File) -> None:
     """Record the namespaces that applications of ``EPackage`` give profiles."""
-    for row in context.applications:
-        values = context.document.attributes[row]
-        if is_package_namespace(context.document, row):
-            package = context.unit.find_target_id(context.file, values["base_Package"], False)
+    for row in file.applications:
+        values = file.document.attributes[row]
+        if is_package_namespace(file.document, row):
+            package = file.unit.find_target_id(file, values["base_Package"], False)
             if package:
-                context.unit.profiles.add(values["nsURI"], package)
+                file.unit.profiles.add(values["nsURI"], package)

@@ -11,15 +11,13 @@ from sysmlc.diagnostics.coverage import Loss
 from sysmlc.frontends.base import read_or_report
 from sysmlc.frontends.xmi import metaclasses, papyrus, rules, unknown_names
 from sysmlc.frontends.xmi.applications import lower_applications
-from sysmlc.frontends.xmi.attributes import set_deferred_attributes
-from sysmlc.frontends.xmi.behaviour import complete_behaviour
-from sysmlc.frontends.xmi.context import Context, report_dangling
+from sysmlc.frontends.xmi.dangling import report_dangling
 from sysmlc.frontends.xmi.document import Document, read_document
 from sysmlc.frontends.xmi.enterprise_architect import localise_references, read_extensions
 from sysmlc.frontends.xmi.lowering import lower_document, restore_comments
 from sysmlc.frontends.xmi.snapshots import libraries
 from sysmlc.frontends.xmi.snapshots.entries import is_snapshot
-from sysmlc.frontends.xmi.unit import Unit
+from sysmlc.frontends.xmi.unit import File, Stage, Unit
 from sysmlc.frontends.xmi.value_features import set_multiplicities
 from sysmlc.ir import Graph
 from sysmlc.sources import Source
@@ -40,33 +38,36 @@ def read(sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage
         documents = [
             read_or_report(read_document, source, rules.MALFORMED, sink) for source in models
         ]
-        unit = Unit([document for document in documents if document is not None], graph)
-        contexts = [lower_document(unit, file, sink) for file in unit.files]
-        libraries.add_libraries(unit, contexts, models, snapshots, sink, coverage)
-        _connect(unit, contexts)
-        for context in contexts:
-            report_dangling(context)
-            unknown_names.report_unknown_values(context)
-            unknown_names.report_unknown_attributes(context)
-            unknown_names.report_unknown_tags(context)
-            report_coverage(context, sink, coverage)
+        unit = Unit([document for document in documents if document is not None], graph, sink)
+        for file in unit.files:
+            lower_document(file)
+        libraries.add_libraries(unit, models, snapshots, sink, coverage)
+        _connect(unit)
+        for file in unit.files:
+            report_dangling(file)
+            unknown_names.report_unknown_values(file)
+            unknown_names.report_unknown_attributes(file)
+            unknown_names.report_unknown_tags(file)
+            report_coverage(file, coverage)
 
 
-def _connect(unit: Unit, contexts: list[Context]) -> None:
+def _connect(unit: Unit) -> None:
     """Lower the parts of the documents that refer to elements of any document of the unit."""
-    for context in contexts:
-        papyrus.join_contained_elements(context)
-    for context in contexts:
+    for file in unit.files:
+        file.run_deferred(Stage.WALKS)
+    for file in unit.files:
         # Namespaces of profiles come before the applications of their stereotypes.
-        papyrus.record_applied_namespaces(context)
-        localise_references(context)
-        restore_comments(context)
-        set_multiplicities(context)
-        set_deferred_attributes(context)
-    for context in contexts:
-        lower_applications(context)
-        read_extensions(context)
-        complete_behaviour(context)
+        papyrus.record_applied_namespaces(file)
+        localise_references(file)
+        restore_comments(file)
+        set_multiplicities(file)
+        file.run_deferred(Stage.ELEMENTS)
+    for file in unit.files:
+        lower_applications(file)
+        file.run_deferred(Stage.APPLICATIONS)
+        read_extensions(file)
+        for stage in (Stage.TRIGGERS, Stage.BEHAVIOURS, Stage.GUARDS, Stage.BODIES):
+            file.run_deferred(stage)
     unit.resolve_references()
 
 
@@ -81,15 +82,15 @@ EXTERNAL = rule(
 )
 
 
-def report_coverage(context: Context, sink: Sink, coverage: Coverage) -> None:
+def report_coverage(file: File, coverage: Coverage) -> None:
     """Count every element of the file once, and report elements that are not or partly read."""
-    document = context.document
+    document = file.document
     counts = coverage.file(document.name)
     rows = zip(
         document.types,
         document.features,
-        map(bool, context.elements),
-        context.verdicts,
+        map(bool, file.elements),
+        file.verdicts,
         strict=True,
     )
     for (written, feature, has_element, verdict), number in Counter(rows).items():
@@ -98,13 +99,13 @@ def report_coverage(context: Context, sink: Sink, coverage: Coverage) -> None:
     for feature, number in document.skipped_elements.items():
         counts.count(feature, Verdict.IGNORED_NOTATION, number)
     if coverage.is_detailed:
-        counts.losses.extend(_list_losses(context))
-    _report_unsupported(context, sink)
-    _report_approximated(context, sink)
-    _report_baseless(context, sink)
-    if not any(context.elements):
-        subject = Subject(document.name, place=context.locate(0))
-        sink.report(rules.NO_MODEL, subject, file=document.name)
+        counts.losses.extend(_list_losses(file))
+    _report_unsupported(file)
+    _report_approximated(file)
+    _report_baseless(file)
+    if not any(file.elements):
+        subject = Subject(document.name, place=file.locate(0))
+        file.unit.sink.report(rules.NO_MODEL, subject, file=document.name)
 
 
 def _name_type(written: str, feature: str, has_element: bool) -> str:
@@ -116,87 +117,85 @@ def _name_type(written: str, feature: str, has_element: bool) -> str:
     return f"uml:{metaclass}" if metaclass else feature
 
 
-def _type_name(context: Context, row: int) -> str:
-    document = context.document
-    return _name_type(document.types[row], document.features[row], bool(context.elements[row]))
+def _type_name(file: File, row: int) -> str:
+    document = file.document
+    return _name_type(document.types[row], document.features[row], bool(file.elements[row]))
 
 
 # -- diagnostics -----------------------------------------------------------------------------------
 
 
-def _report_unsupported(context: Context, sink: Sink) -> None:
-    document = context.document
+def _report_unsupported(file: File) -> None:
+    document = file.document
     rows_by_type: dict[str, list[int]] = {}
-    baseless = frozenset(context.baseless_applications)
     end = -1
-    for row, verdict in enumerate(context.verdicts):
+    for row, verdict in enumerate(file.verdicts):
         if verdict is Verdict.UNSUPPORTED and row >= end:
             end = document.ends[row]
-            if row not in baseless:
-                rows_by_type.setdefault(_type_name(context, row), []).append(row)
+            loss_rule, _ = file.losses.get(row, (rules.UNSUPPORTED, ""))
+            if loss_rule is not rules.BASELESS:
+                rows_by_type.setdefault(_type_name(file, row), []).append(row)
     for type_name, rows in rows_by_type.items():
         number = sum(document.ends[row] - row for row in rows)
-        subject, count = _subject(context, rows[0]), _format_count(len(rows))
-        sink.report(rules.UNSUPPORTED, subject, count=count, type=type_name, number=number)
+        file.unit.sink.report(
+            rules.UNSUPPORTED,
+            file.subject(rows[0]),
+            count=count(len(rows), "element"),
+            type=type_name,
+            number=number,
+        )
 
 
-def _report_approximated(context: Context, sink: Sink) -> None:
+def _report_approximated(file: File) -> None:
     rows_by_loss: dict[tuple[str, str], list[int]] = {}
-    for row, loss in context.losses.items():
-        rows_by_loss.setdefault((_type_name(context, row), loss), []).append(row)
+    for row, (loss_rule, loss) in file.losses.items():
+        if loss_rule is rules.APPROXIMATED:
+            rows_by_loss.setdefault((_type_name(file, row), loss), []).append(row)
     for (type_name, loss), rows in rows_by_loss.items():
-        subject, count = _subject(context, rows[0]), _format_count(len(rows))
-        sink.report(rules.APPROXIMATED, subject, count=count, type=type_name, lost=loss)
+        number = count(len(rows), "element")
+        subject = file.subject(rows[0])
+        file.unit.sink.report(rules.APPROXIMATED, subject, count=number, type=type_name, lost=loss)
 
 
-def _report_baseless(context: Context, sink: Sink) -> None:
+def _report_baseless(file: File) -> None:
     rows_by_stereotype: dict[str, list[int]] = {}
-    for row in context.baseless_applications:
-        rows_by_stereotype.setdefault(context.document.features[row], []).append(row)
+    for row, (loss_rule, _) in file.losses.items():
+        if loss_rule is rules.BASELESS:
+            rows_by_stereotype.setdefault(file.document.features[row], []).append(row)
     for name, rows in rows_by_stereotype.items():
-        subject = Subject(name, context.document.id(rows[0]), context.locate(rows[0]))
+        subject = Subject(name, file.document.id(rows[0]), file.locate(rows[0]))
         times = "once" if len(rows) == 1 else f"{len(rows)} times"
-        sink.report(rules.BASELESS, subject, stereotype=name, times=times)
-
-
-def _subject(context: Context, row: int) -> Subject:
-    """Return the element that the row is, or that contains it, as the subject of a diagnostic."""
-    return Subject(context.qualified_name(row), context.element_ids[row], context.locate(row))
-
-
-def _format_count(number: int) -> str:
-    return count(number, "element")
+        file.unit.sink.report(rules.BASELESS, subject, stereotype=name, times=times)
 
 
 # -- losses ----------------------------------------------------------------------------------------
 
 
-def _list_losses(context: Context) -> Iterator[Loss]:
+def _list_losses(file: File) -> Iterator[Loss]:
     """Yield the rows that are not mapped, in document order, for ``sysmlc coverage``.
 
     The content of a row counts with the row as long as it has the same verdict.
     """
-    baseless = frozenset(context.baseless_applications)
-    for row, number in _count_losses(context).items():
-        verdict = context.verdicts[row] or Verdict.UNSUPPORTED
-        loss_rule, reason = _explain_loss(context, row, verdict, row in baseless)
+    for row, number in _count_losses(file).items():
+        verdict = file.verdicts[row] or Verdict.UNSUPPORTED
+        loss_rule, reason = _explain_loss(file, row, verdict)
         # The element has the name, if the row has an element of its own.
-        name = "" if context.elements[row] else context.document.attributes[row].get("name", "")
+        name = "" if file.elements[row] else file.document.attributes[row].get("name", "")
         yield Loss(
-            _type_name(context, row),
+            _type_name(file, row),
             verdict,
-            context.document.ordinals[row],
+            file.document.ordinals[row],
             number,
-            context.element_ids[row],
+            file.element_ids[row],
             name,
             loss_rule,
             reason,
         )
 
 
-def _count_losses(context: Context) -> dict[int, int]:
+def _count_losses(file: File) -> dict[int, int]:
     """Return the number of elements that each loss covers, by the first row of the loss."""
-    document, verdicts = context.document, context.verdicts
+    document, verdicts = file.document, file.verdicts
     first_rows: dict[int, int] = {}
     sizes: dict[int, int] = {}
     skipped = _count_skipped(document)
@@ -204,7 +203,7 @@ def _count_losses(context: Context) -> dict[int, int]:
         if verdict is Verdict.MAPPED:
             continue
         parent = document.parents[row]
-        has_reason = row in context.loss_rules or row in context.losses
+        has_reason = row in file.losses
         is_inside = parent in first_rows and verdicts[parent] is verdict and not has_reason
         first_rows[row] = first = first_rows[parent] if is_inside else row
         sizes[first] = sizes.get(first, 0) + 1 + skipped.get(row, 0)
@@ -225,24 +224,21 @@ def _count_skipped(document: Document) -> dict[int, int]:
     }
 
 
-def _explain_loss(
-    context: Context, row: int, verdict: Verdict, is_baseless: bool
-) -> tuple[Rule | None, str]:
-    if verdict is Verdict.APPROXIMATED and row in context.loss_rules:
-        return context.loss_rules[row]
+def _explain_loss(file: File, row: int, verdict: Verdict) -> tuple[Rule | None, str]:
+    if row in file.losses:
+        loss_rule, loss = file.losses[row]
+        return loss_rule, f"read without {loss}" if loss_rule is rules.APPROXIMATED else loss
     if verdict is Verdict.APPROXIMATED:
-        return rules.APPROXIMATED, f"read without {context.losses.get(row, 'part of its meaning')}"
+        return rules.APPROXIMATED, "read without part of its meaning"
     if verdict is Verdict.EXTERNAL:
-        return EXTERNAL, f"stands for {_find_href(context, row)}, which is in no file of the unit"
+        return EXTERNAL, f"stands for {_find_href(file, row)}, which is in no file of the unit"
     if verdict is Verdict.IGNORED_NOTATION:
         return None, "drawing or tool settings"
-    if is_baseless:
-        return rules.BASELESS, "applied to a missing element"
     return rules.UNSUPPORTED, "not read"
 
 
-def _find_href(context: Context, row: int) -> str:
+def _find_href(file: File, row: int) -> str:
     """Return the first href in the row or its content, quoted."""
-    document = context.document
+    document = file.document
     hrefs = (document.href(inner) for inner in range(row, document.ends[row]))
     return next((f"'{href}'" for href in hrefs if href), "another element")

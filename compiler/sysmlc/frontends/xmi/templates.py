@@ -4,10 +4,13 @@ A template has at most one signature, so that its parameters belong to the templ
 graph.
 """
 
+from functools import partial
+
 from sysmlc.frontends.xmi import metaclasses
-from sysmlc.frontends.xmi.context import Context, RowHandler
+from sysmlc.frontends.xmi.attributes import defer_ids
 from sysmlc.frontends.xmi.document import WrittenReference
 from sysmlc.frontends.xmi.elements import make_handler
+from sysmlc.frontends.xmi.unit import File, RowHandler, Stage
 from sysmlc.frontends.xmi.value_features import lower_value
 from sysmlc.ir import Edge, Element
 
@@ -15,36 +18,36 @@ _CONTAINING = ("ownedParameteredElement", "ownedActual")
 """Features whose content the parameter or substitution refers to."""
 
 
-def _lower_signature(context: Context, row: int) -> None:
-    document = context.document
-    context.mark_mapped(row)
-    owner = context.find_owner(row)
+def _lower_signature(file: File, row: int) -> None:
+    document = file.document
+    file.mark_mapped(row)
+    owner = file.find_owner(row)
     for child in document.children(row, "ownedParameter"):
         # Papyrus omits the type; the same feature of operations contains parameters.
         if not document.types[child]:
             document.retype(child, "TemplateParameter")
     if owner is not None:
         targets = document.targets(row, "extendedSignature")
-        context.defer_ids(owner, "extended_signature", targets)
+        defer_ids(file, owner, "extended_signature", targets)
 
 
-def _complete_parameter(context: Context, parameter: Element, row: int) -> None:
-    document = context.document
+def _complete_parameter(file: File, parameter: Element, row: int) -> None:
+    document = file.document
     for feature in _CONTAINING:
         for child in document.children(row, feature):
             id = document.id(child)
             if id and document.types[child] not in metaclasses.VALUE_TYPES:
                 reference = WrittenReference(id, child)
-                context.add_reference(Edge.REFERENCES, parameter.id, reference, feature)
+                file.add_reference(Edge.REFERENCES, parameter.id, reference, feature)
     for child in document.children(row, "ownedDefault"):
         if document.types[child] not in metaclasses.VALUE_TYPES:
-            context.defer_ids(parameter, "default", [document.id(child)])
-    context.completions.append((_name_parameter, parameter, row))
+            defer_ids(file, parameter, "default", [document.id(child)])
+    file.defer(Stage.BEHAVIOURS, partial(_name_parameter, file, parameter, row))
 
 
-def _name_parameter(context: Context, parameter: Element, row: int) -> None:
+def _name_parameter(file: File, parameter: Element, row: int) -> None:
     """Give a parameter the name of the element that it exposes; it has no name of its own."""
-    document = context.document
+    document = file.document
     references = document.references(row, "parameteredElement")
     references += [
         WrittenReference(id, child)
@@ -52,17 +55,17 @@ def _name_parameter(context: Context, parameter: Element, row: int) -> None:
         if (id := document.id(child))
     ]
     for reference in references[:1]:
-        target = context.unit.find_target(context.file, reference.target, reference.is_href)
+        target = file.find_target(reference)
         if target is not None and not parameter.name:
-            context.graph.rename(parameter, target.name)
+            file.unit.graph.rename(parameter, target.name)
 
 
 def _make_value_handler(key: str) -> RowHandler:
     """Return a handler that stores a value as an attribute of its owner."""
 
-    def lower(context: Context, row: int) -> None:
-        owner = context.find_owner(row)
-        value = lower_value(context, row).value
+    def lower(file: File, row: int) -> None:
+        owner = file.find_owner(row)
+        value = lower_value(file, row).value
         if owner is not None:
             owner.attrs[key] = value
 

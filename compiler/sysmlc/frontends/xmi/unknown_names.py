@@ -6,8 +6,8 @@ from typing import NamedTuple, TypeVar
 
 from sysmlc.diagnostics import Rule, Subject, Verdict
 from sysmlc.frontends.xmi import namespaces, rules
-from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.uml_features import FEATURES, VALUES, is_misplaced
+from sysmlc.frontends.xmi.unit import File
 from sysmlc.frontends.xmi.vocabulary import NOTATION_FEATURES
 from sysmlc.sources import DEFAULT_LIMITS
 from sysmlc.support.suggestions import did_you_mean
@@ -84,13 +84,13 @@ def suggest(name: str, names: Iterable[str]) -> str:
 # -- attributes ------------------------------------------------------------------------------------
 
 
-def report_unknown_attributes(context: Context) -> None:
+def report_unknown_attributes(file: File) -> None:
     """Report attributes that the metaclass of their element lacks, and approximate the elements.
 
     Tags of stereotypes, the content of extensions, and attributes in namespaces of tools are no
     attributes of UML.
     """
-    document, applications = context.document, frozenset(context.applications)
+    document, applications = file.document, frozenset(file.applications)
     # Nearly all files have only known attributes: the distinct names are checked first.
     names_by_type: dict[str, set[str]] = {}
     for row, type_name in enumerate(document.types):
@@ -99,14 +99,13 @@ def report_unknown_attributes(context: Context) -> None:
     if not any(_check(type_, name) for type_, names in names_by_type.items() for name in names):
         return
     groups: dict[_UnknownAttribute, list[int]] = {}
-    for row, unknown in _find_rows(context, applications):
-        if context.verdicts[row] is Verdict.MAPPED:
-            context.verdicts[row] = Verdict.APPROXIMATED
-            context.loss_rules[row] = unknown[0].rule, f"read without {_format_names(unknown)}"
+    for row, unknown in _find_rows(file, applications):
+        if file.verdicts[row] is Verdict.MAPPED:
+            file.approximate(row, unknown[0].rule, f"read without {_format_names(unknown)}")
         for attribute in unknown:
             groups.setdefault(attribute, []).append(row)
     for attribute, rows, notes in _list_reports(groups, "names"):
-        _report_attribute(context, attribute, rows, notes)
+        _report_attribute(file, attribute, rows, notes)
 
 
 def _list_unknown(metaclass: str, names: Iterable[str]) -> list[_UnknownAttribute]:
@@ -135,23 +134,23 @@ def _is_known(name: str) -> bool:
 
 
 def _find_rows(
-    context: Context, applications: frozenset[int]
+    file: File, applications: frozenset[int]
 ) -> Iterator[tuple[int, list[_UnknownAttribute]]]:
     """Yield the rows of the model that have unknown attributes, with these."""
-    document = context.document
+    document = file.document
     for row, (type_name, values) in enumerate(
         zip(document.types, document.attributes, strict=True)
     ):
         # The file does not write the type of a retyped row, so that no attribute is misplaced.
         unknown = _list_unknown("" if row in document.retyped else type_name, values)
-        is_read = bool(unknown) and row not in applications and context.verdicts[row] in _READ
-        if is_read and not _is_beside_model(context, row, applications):
+        is_read = bool(unknown) and row not in applications and file.verdicts[row] in _READ
+        if is_read and not _is_beside_model(file, row, applications):
             yield row, unknown
 
 
-def _is_beside_model(context: Context, row: int, applications: frozenset[int]) -> bool:
+def _is_beside_model(file: File, row: int, applications: frozenset[int]) -> bool:
     """Whether the row is the root of XMI, or inside notation or an application."""
-    document = context.document
+    document = file.document
     if row == 0:
         return namespaces.is_xmi(document.namespace(0))
     while row > 0 and row not in applications and document.features[row] not in NOTATION_FEATURES:
@@ -169,14 +168,14 @@ def _format_name(name: str) -> str:
 
 
 def _report_attribute(
-    context: Context, attribute: _UnknownAttribute, rows: list[int], notes: tuple[str, ...]
+    file: File, attribute: _UnknownAttribute, rows: list[int], notes: tuple[str, ...]
 ) -> None:
     name, metaclass = attribute
-    element = context.qualified_name(rows[0])
+    element = file.qualified_name(rows[0])
     known_names = [f"xmi:{known}" for known in _XMI_ATTRIBUTES] if "}" in name else FEATURES
-    context.sink.report(
+    file.unit.sink.report(
         attribute.rule,
-        Subject(element, context.element_ids[rows[0]], context.locate(rows[0])),
+        file.subject(rows[0]),
         notes=notes,
         help="" if metaclass else suggest(_format_name(name), known_names),
         attribute=_format_name(name),
@@ -189,20 +188,19 @@ def _report_attribute(
 # -- values ----------------------------------------------------------------------------------------
 
 
-def report_unknown_values(context: Context) -> None:
+def report_unknown_values(file: File) -> None:
     """Report values that UML does not list for an attribute; their elements are approximated."""
     groups: dict[tuple[str, str], list[int]] = {}
-    for row, name, value in context.unknown_values:
+    for row, name, value in file.unknown_values:
         groups.setdefault((name, value), []).append(row)
-        if context.verdicts[row] is Verdict.MAPPED:
-            context.verdicts[row] = Verdict.APPROXIMATED
+        if file.verdicts[row] is Verdict.MAPPED:
             reason = f"'{name}' has a value that UML does not know"
-            context.loss_rules[row] = rules.UNKNOWN_VALUE, reason
+            file.approximate(row, rules.UNKNOWN_VALUE, reason)
     for (name, value), rows, notes in _list_reports(groups, "values"):
-        element = context.qualified_name(rows[0])
-        context.sink.report(
+        element = file.qualified_name(rows[0])
+        file.unit.sink.report(
             rules.UNKNOWN_VALUE,
-            Subject(element, context.element_ids[rows[0]], context.locate(rows[0])),
+            file.subject(rows[0]),
             notes=notes,
             attribute=name,
             element=element,
@@ -220,25 +218,24 @@ def is_sysml_tag(name: str) -> bool:
     return name.lower() in _SYSML_TAGS
 
 
-def report_unknown_tags(context: Context) -> None:
+def report_unknown_tags(file: File) -> None:
     """Report tags on stereotypes of SysML that SysML does not have; these are approximated.
 
     Tags of other profiles are not checked: those profiles are often not available.
     """
-    document = context.document
+    document = file.document
     groups: dict[tuple[str, str], list[int]] = {}
-    for row in context.applications:
+    for row in file.applications:
         tags = _list_unknown_tags(document.attributes[row])
         tags += _list_unknown_tags(document.features[child] for child in document.children(row))
-        is_read = bool(tags) and context.element_ids[row] in context.graph
+        is_read = bool(tags) and file.element_ids[row] in file.unit.graph
         if is_read and namespaces.is_sysml(document.namespace(row)):
-            if context.verdicts[row] is Verdict.MAPPED:
-                context.verdicts[row] = Verdict.APPROXIMATED
-                context.loss_rules[row] = rules.UNKNOWN_TAG, f"SysML has no tag '{tags[0]}'"
+            if file.verdicts[row] is Verdict.MAPPED:
+                file.approximate(row, rules.UNKNOWN_TAG, f"SysML has no tag '{tags[0]}'")
             for tag in dict.fromkeys(tags):
                 groups.setdefault((document.features[row], tag), []).append(row)
     for (stereotype, tag), rows, notes in _list_reports(groups, "tags"):
-        _report_tag(context, stereotype, tag, rows, notes)
+        _report_tag(file, stereotype, tag, rows, notes)
 
 
 def _list_unknown_tags(names: Iterable[str]) -> list[str]:
@@ -250,13 +247,13 @@ def _list_unknown_tags(names: Iterable[str]) -> list[str]:
 
 
 def _report_tag(
-    context: Context, stereotype: str, tag: str, rows: list[int], notes: tuple[str, ...]
+    file: File, stereotype: str, tag: str, rows: list[int], notes: tuple[str, ...]
 ) -> None:
-    application = context.graph[context.element_ids[rows[0]]]
-    element = context.graph.qualified_name(context.graph.owner(application) or application)
-    context.sink.report(
+    application = file.unit.graph[file.element_ids[rows[0]]]
+    element = file.unit.graph.qualified_name(file.unit.graph.owner(application) or application)
+    file.unit.sink.report(
         rules.UNKNOWN_TAG,
-        Subject(element, application.id, context.locate(rows[0])),
+        Subject(element, application.id, file.locate(rows[0])),
         notes=notes,
         help=suggest(tag, _SYSML_TAGS),
         tag=tag,

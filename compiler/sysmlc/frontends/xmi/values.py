@@ -7,7 +7,7 @@ from typing import NamedTuple
 from sysmlc.frontends.xmi.document import Document
 from sysmlc.frontends.xmi.metaclasses import LITERALS
 from sysmlc.frontends.xmi.vocabulary import TRUE
-from sysmlc.ir import AttrValue
+from sysmlc.ir import AttrValue, Element
 
 _LANGUAGE_RANKS = (
     frozenset({"", "kerml", "sysml", "sysmlv2", "sysml v2", "ocl", "ocl2.0", "ltl", "promela"}),
@@ -45,6 +45,14 @@ class Value(NamedTuple):
         if isinstance(self.value, bool):
             return "true" if self.value else "false"
         return "" if self.value is None else str(self.value)
+
+
+def store_alternatives(element: Element, value: Value, key: str = "") -> None:
+    """Store all bodies and languages of an expression that has several."""
+    if value.bodies:
+        prefix = f"{key}_" if key else ""
+        element.attrs[f"{prefix}bodies"] = value.bodies
+        element.attrs[f"{prefix}languages"] = value.languages
 
 
 _NestedValues = dict[int, Value]

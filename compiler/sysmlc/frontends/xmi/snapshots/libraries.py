@@ -12,7 +12,6 @@ from sysmlc.diagnostics import Coverage, Place, Sink, Subject, Verdict
 from sysmlc.diagnostics.coverage import Loss
 from sysmlc.frontends.xmi import hrefs, rules
 from sysmlc.frontends.xmi import vocabulary as v
-from sysmlc.frontends.xmi.context import Context
 from sysmlc.frontends.xmi.metaclasses import OWNERS, kind_of
 from sysmlc.frontends.xmi.namespaces import mangle_name, profile_in_namespace
 from sysmlc.frontends.xmi.snapshots.entries import (
@@ -24,7 +23,7 @@ from sysmlc.frontends.xmi.snapshots.entries import (
     is_snapshot,
 )
 from sysmlc.frontends.xmi.uml_features import FEATURES
-from sysmlc.frontends.xmi.unit import Unit
+from sysmlc.frontends.xmi.unit import File, Unit
 from sysmlc.frontends.xmi.unknown_names import TOOL_ATTRIBUTES, suggest
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, Reference, list_items
 from sysmlc.ir.element import derived_id
@@ -266,7 +265,6 @@ _UNUSED = "belongs to a used project, and no model needs it"
 
 def add_libraries(
     unit: Unit,
-    contexts: Sequence[Context],
     models: Sequence[Source],
     snapshots: Sequence[Source],
     sink: Sink,
@@ -280,7 +278,7 @@ def add_libraries(
     sources = [*snapshots, *parts]
     if sources:
         library = _read_snapshots(sources, sink)
-        _add_needed(unit, contexts, models, library)
+        _add_needed(unit, models, library)
         approximated = report_unknown_attributes(library, sources, unit, sink)
         _report_coverage(library, snapshots, unit, coverage, approximated)
 
@@ -339,9 +337,7 @@ def _read_snapshots(sources: Sequence[Source], sink: Sink) -> Snapshots:
     return snapshots
 
 
-def _add_needed(
-    unit: Unit, contexts: Sequence[Context], models: Sequence[Source], snapshots: Snapshots
-) -> None:
+def _add_needed(unit: Unit, models: Sequence[Source], snapshots: Snapshots) -> None:
     references = [reference for model in models for reference in _iter_hrefs(model)]
     files = _name_libraries(references, snapshots)
     wanted: dict[str, None] = {}
@@ -349,7 +345,7 @@ def _add_needed(
         entry = snapshots.entries.get(id)
         if entry is not None and hrefs.can_lead_into(files[entry.source], path, id):
             wanted[id] = None
-    wanted.update(dict.fromkeys(_find_applied_stereotypes(contexts, snapshots)))
+    wanted.update(dict.fromkeys(_find_applied_stereotypes(unit.files, snapshots)))
     lowering = LibraryLowering(snapshots, unit.graph, files, unit.has_id)
     ids = (id for id in wanted if not unit.has_id(id))
     lowering.add_entries(compute_closure(snapshots, ids))
@@ -364,7 +360,7 @@ def _iter_hrefs(model: Source) -> Iterator[tuple[str, str]]:
         yield path.decode("utf-8", "replace"), id.decode("utf-8", "replace")
 
 
-def _find_applied_stereotypes(contexts: Iterable[Context], snapshots: Snapshots) -> Iterator[str]:
+def _find_applied_stereotypes(files: Iterable[File], snapshots: Snapshots) -> Iterator[str]:
     """Yield the ids of the custom stereotypes that the models apply.
 
     Applications do not refer to them; they are in a namespace that MagicDraw derives from the name
@@ -372,9 +368,9 @@ def _find_applied_stereotypes(contexts: Iterable[Context], snapshots: Snapshots)
     """
     applied = {
         (mangle_name(document.features[row]), profile_in_namespace(document.namespace(row)))
-        for context in contexts
-        for document in (context.document,)
-        for row in context.applications
+        for file in files
+        for document in (file.document,)
+        for row in file.applications
         if document.namespace(row).endswith(".xmi")
     }
     for entry in snapshots.entries.values():
