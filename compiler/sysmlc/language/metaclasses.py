@@ -166,6 +166,20 @@ _PARAMETERS = kinds_of("ParameterMembership")
 _PORT_OWNERS = kinds_of("PortDefinition") | kinds_of("PortUsage")
 _ATTRIBUTES = kinds_of("AttributeDefinition") | kinds_of("AttributeUsage")
 
+RELATIONSHIP_ENDS = {
+    "Dependency": ("client", "supplier"),
+    "Specialization": ("specific", "general"),
+    "Subclassification": ("subclassifier", "superclassifier"),
+    "FeatureTyping": ("typedFeature", "type"),
+    "Subsetting": ("subsettingFeature", "subsettedFeature"),
+    "Redefinition": ("redefiningFeature", "redefinedFeature"),
+    "Conjugation": ("conjugatedType", "originalType"),
+    "Disjoining": ("typeDisjoined", "disjoiningType"),
+    "FeatureInverting": ("featureInverted", "invertingFeature"),
+    "TypeFeaturing": ("featureOfType", "featuringType"),
+}
+"""Relationships that may be elements of their own, with their ends in the order of the text."""
+
 
 def is_composite(node: Node) -> bool:
     """Whether a usage is composite: not ``ref``, and not referential by its kind or place.

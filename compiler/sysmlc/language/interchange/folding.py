@@ -10,9 +10,8 @@ from sysmlc.language.interchange.frames import Frame, complete_literal
 from sysmlc.language.interchange.metamodel import (
     REFERRING_KINDS,
     RELATION_TARGETS,
-    RELATIONSHIP_ENDS,
 )
-from sysmlc.language.metaclasses import USAGES, is_composite, kinds_of
+from sysmlc.language.metaclasses import RELATIONSHIP_ENDS, USAGES, is_composite, kinds_of
 from sysmlc.language.tree import Node, Relation
 
 _LAZY_OPERATORS = {"if", "and", "or", "implies", "??"}

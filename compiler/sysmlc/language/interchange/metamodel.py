@@ -2,7 +2,7 @@
 
 from functools import cache
 
-from sysmlc.language.metaclasses import ALL_GENERALS, kinds_of
+from sysmlc.language.metaclasses import ALL_GENERALS, RELATIONSHIP_ENDS, kinds_of
 
 _STATED = {
     "Element": "declaredName declaredShortName elementId aliasIds isImpliedIncluded"
@@ -144,40 +144,17 @@ def is_concrete(kind: str) -> bool:
 
 
 RELATION_TARGETS = {
-    "Specialization": "general",
-    "Subclassification": "superclassifier",
-    "FeatureTyping": "type",
+    **{kind: target for kind, (_, target) in RELATIONSHIP_ENDS.items() if kind != "Dependency"},
     "ConjugatedPortTyping": "conjugatedPortDefinition",
-    "Subsetting": "subsettedFeature",
-    "Redefinition": "redefinedFeature",
     "ReferenceSubsetting": "referencedFeature",
     "CrossSubsetting": "crossedFeature",
-    "Conjugation": "originalType",
-    "Disjoining": "disjoiningType",
     "Unioning": "unioningType",
     "Intersecting": "intersectingType",
     "Differencing": "differencingType",
     "FeatureChaining": "chainingFeature",
-    "FeatureInverting": "invertingFeature",
-    "TypeFeaturing": "featuringType",
     "Annotation": "annotatedElement",
 }
 """Owned relationships, and the feature that refers to their target."""
-
-RELATIONSHIP_ENDS = {
-    "Dependency": ("client", "supplier"),
-    "Specialization": ("specific", "general"),
-    "Subclassification": ("subclassifier", "superclassifier"),
-    "FeatureTyping": ("typedFeature", "type"),
-    "Subsetting": ("subsettingFeature", "subsettedFeature"),
-    "Redefinition": ("redefiningFeature", "redefinedFeature"),
-    "Conjugation": ("conjugatedType", "originalType"),
-    "Disjoining": ("typeDisjoined", "disjoiningType"),
-    "FeatureInverting": ("featureInverted", "invertingFeature"),
-    "TypeFeaturing": ("featureOfType", "featuringType"),
-}
-"""Relationships that may be elements of their own, with their ends in the order of the text."""
-
 REFERRING_KINDS = (
     kinds_of("InstantiationExpression")
     | kinds_of("FeatureReferenceExpression")
@@ -186,16 +163,7 @@ REFERRING_KINDS = (
 )
 """Elements that refer to others by a membership."""
 
-OWN_ENDS = {
-    "Specialization": "specific",
-    "Subclassification": "subclassifier",
-    "FeatureTyping": "typedFeature",
-    "ConjugatedPortTyping": "typedFeature",
-    "Subsetting": "subsettingFeature",
-    "Redefinition": "redefiningFeature",
-    "Conjugation": "conjugatedType",
-    "Disjoining": "typeDisjoined",
-    "FeatureInverting": "featureInverted",
-    "TypeFeaturing": "featureOfType",
+OWN_ENDS = {kind: end for kind, (end, _) in RELATIONSHIP_ENDS.items() if kind != "Dependency"} | {
+    "ConjugatedPortTyping": "typedFeature"
 }
 """The feature by which an owned relationship refers to its owner."""

@@ -10,10 +10,16 @@ from sysmlc.language.interchange.metamodel import (
     OWN_ENDS,
     REFERRING_KINDS,
     RELATION_TARGETS,
-    RELATIONSHIP_ENDS,
     list_features,
 )
-from sysmlc.language.metaclasses import USAGES, is_a, is_composite, is_end, kinds_of
+from sysmlc.language.metaclasses import (
+    RELATIONSHIP_ENDS,
+    USAGES,
+    is_a,
+    is_composite,
+    is_end,
+    kinds_of,
+)
 from sysmlc.language.tree import AttributeValue, Node, Reference, Relation
 
 
