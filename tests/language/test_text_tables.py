@@ -12,7 +12,7 @@ from sysmlc.language.text.builders import ACTIONS
 from sysmlc.language.text.table_generator import generate_tables
 
 LANGUAGES = ("kerml", "sysml")
-CONFLICTS = {"kerml": 13, "sysml": 5}
+CONFLICTS = {"kerml": 12, "sysml": 5}
 """Conflicts in which shifting is right, such as the dangling else, and ``accept`` after ``do``."""
 
 

@@ -2,7 +2,7 @@
 
 import hashlib
 import marshal
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from functools import cache
 from operator import itemgetter
@@ -11,7 +11,7 @@ from typing import Any
 
 from msgspec import Struct
 
-from sysmlc.language.text.lexer import Tokens, TokenTypes
+from sysmlc.language.text.lexer import Action, Tokens, TokenTypes
 from sysmlc.language.text.table_generator import ACCEPT, generate_tables
 from sysmlc.support import resources
 from sysmlc.support.atomic_files import write as write_file
@@ -118,10 +118,13 @@ def _decode(raw: dict[str, Any]) -> Tables:
 
 
 def _decode_rule(symbol: int, length: int, name: str, positions: tuple[int, ...]) -> TableRule:
-    return symbol, length, name, itemgetter(1 - 3 * length, *(positions or (0,)))
+    # A single position as a slice: the getter returns a sequence for any number of positions.
+    if len(positions) < 2:
+        first = positions[0] if positions else 0
+        return symbol, length, name, itemgetter(slice(first, first + len(positions)))
+    return symbol, length, name, itemgetter(*positions)
 
 
-Action = Callable[..., Any]
 Stack = list[Any]
 """None, then three entries for each symbol: value, index of its first token, next state."""
 Rules = list[tuple[int, int, Any, Action | None]]
@@ -139,9 +142,8 @@ def run(tables: Tables, rules: Rules, tokens: Tokens, stack: Stack, index: int) 
     """Shift and reduce from token ``index`` on; return the index of the first that does not fit.
 
     The result is -1 at the end of the text, where ``stack[-3]`` has the value of the whole text. A
-    build action is called with the tokens, the index after the last token of its rule (``stop``),
-    the index of its first token (``begin``), and the values of its arguments. An absent argument is
-    None.
+    build action is called with the tokens, whose ``begin`` and ``stop`` are the span of the rule,
+    and the values of its arguments. An absent argument is None.
     """
     rows, defaults, types = tables.rows, tables.defaults, tokens.types
     state, token_type = stack[-1], types[index]
@@ -163,10 +165,11 @@ def run(tables: Tables, rules: Rules, tokens: Tokens, stack: Stack, index: int) 
             if action is None:
                 state = stack[-1] = rows[stack[-4]][symbol]
             else:
-                arguments = getter(stack)
-                value = action(tokens, index, *arguments)
+                begin = stack[1 - size]
+                tokens.begin, tokens.stop = begin, index
+                value = action(tokens, *getter(stack))
                 del stack[-size:]
                 state = rows[stack[-1]][symbol]
-                stack += (value, arguments[0], state)
+                stack += (value, begin, state)
         else:
             return -1

@@ -1,7 +1,9 @@
 """The lexer of KerML and SysML v2 (KerML 8.2.2): one regular expression, one pass."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
 
 from msgspec import Struct
 
@@ -74,10 +76,18 @@ class BuildFault(Struct, frozen=True):
     advice: str
 
 
-class Tokens(Struct, frozen=True, eq=False):
+Span = tuple[int, int]
+"""The index of the first token, and the index after the last one."""
+Action = Callable[..., Any]
+"""A build action: a function of the tokens and the values of the symbols of a rule."""
+
+
+@dataclass(slots=True, eq=False)
+class Tokens:
     """The tokens of ``text``: the number of their types, and where each starts and ends.
 
     The last token is the end of the text. ``faults`` has the parts of the text that are no tokens.
+    ``begin`` and ``stop`` are the span of the rule whose builder is running.
     Builders collect nodes and faults in the other lists: ``ref_usages`` has usages with the keyword
     `ref`, which is redundant or not depending on their owners; ``restricted_nodes`` has members
     that only some bodies may have; ``build_faults`` has other faults. ``corrections`` has the
@@ -85,14 +95,16 @@ class Tokens(Struct, frozen=True, eq=False):
     """
 
     text: str
-    types: bytearray
-    starts: list[int]
-    ends: list[int]
-    faults: list[LexicalFault]
-    ref_usages: list[Node]
-    restricted_nodes: list[Node]
-    build_faults: list[BuildFault]
-    corrections: dict[tuple[int, int], str]
+    types: bytearray = field(default_factory=bytearray)
+    starts: list[int] = field(default_factory=list)
+    ends: list[int] = field(default_factory=list)
+    faults: list[LexicalFault] = field(default_factory=list)
+    ref_usages: list[Node] = field(default_factory=list)
+    restricted_nodes: list[Node] = field(default_factory=list)
+    build_faults: list[BuildFault] = field(default_factory=list)
+    corrections: dict[Span, str] = field(default_factory=dict)
+    begin: int = 0
+    stop: int = 0
 
     def __getitem__(self, index: int) -> str:
         start, end = self.starts[index], self.ends[index]
@@ -164,7 +176,7 @@ class TokenTypes(Struct, frozen=True):
 
 def tokenize(text: str, types: TokenTypes) -> Tokens:
     """Return all tokens of ``text``; never fails. A text that is not UTF-8 has no tokens."""
-    tokens = Tokens(text, bytearray(), [], [], [], [], [], [], {})
+    tokens = Tokens(text)
     position = 0
     # Decoded as UTF-8, such a file would give thousands of faults instead of one.
     if "\0" in text[:_PROBE_LENGTH] or _is_binary(text):

@@ -2,9 +2,9 @@
 
 Each module has a table ``ACTIONS`` of functions by the names that the rules of the grammars have
 (``grammars/kerml-common.lark``, ``kerml.lark``, ``sysml.lark``). The parser calls the action of a
-rule when it reduces the rule, with these arguments: the tokens, the index after the last token of
-the rule (``stop``), the index of its first token (``begin``), and the values of its symbols. The
-value of a terminal is the index of its token, and the value of an absent optional symbol is None.
+rule when it reduces the rule, with the tokens, whose ``begin`` and ``stop`` are the span of the
+rule, and the values of its symbols. The value of a terminal is the index of its token, and the
+value of an absent optional symbol is None.
 """
 
 from collections.abc import Mapping
@@ -24,7 +24,7 @@ from sysmlc.language.text.builders import (
     relationships,
     usages,
 )
-from sysmlc.language.text.lalr import Action
+from sysmlc.language.text.lexer import Action
 
 # KerML reuses the builders of SysML where both notations agree.
 _COMMON = (nodes, declarations, namespaces, operators, expressions, connections)

@@ -3,10 +3,11 @@
 KerML 8.2.2.3, 8.2.3.4.1, 8.2.4.3, 8.2.5.10, 8.2.5.11.
 """
 
+from functools import partial
 from typing import NamedTuple
 
-from sysmlc.language.text.builders.nodes import OWNING, make_node
-from sysmlc.language.text.lexer import Tokens
+from sysmlc.language.text.builders.nodes import OWNING, make_node, omit_first
+from sysmlc.language.text.lexer import Span, Tokens
 from sysmlc.language.tree import Node, Reference, Relation
 
 
@@ -18,6 +19,25 @@ class Names(NamedTuple):
     token: int
 
 
+SpecializationPart = Relation | Node | int
+"""A relationship, a multiplicity, or the token `ordered` or `nonunique`."""
+Parts = list[SpecializationPart] | None
+"""Everything between the name of a feature and its value."""
+
+
+def make_element(
+    kind: str,
+    membership: str,
+    tokens: Tokens,
+    names: Names | None = None,
+    parts: Parts = None,
+    value: Node | None = None,
+) -> Node:
+    """Return a node for the rule that is reduced, with its names, specialisations and value."""
+    node = apply_names(make_node(kind, membership, tokens), names, tokens)
+    return complete_element(node, tokens, parts, value)
+
+
 def apply_names(node: Node, names: Names | None, tokens: Tokens) -> Node:
     """Set the names of ``node``, and return it."""
     if names is not None:
@@ -26,54 +46,8 @@ def apply_names(node: Node, names: Names | None, tokens: Tokens) -> Node:
     return node
 
 
-def _build_name(tokens: Tokens, _stop: int, begin: int, name: int, *_follow: object) -> Names:
-    return Names(None, tokens.read_name(name), begin)
-
-
-def _build_short_name(
-    tokens: Tokens, _stop: int, _begin: int, short: int, *_follow: object
-) -> Names:
-    return Names(tokens.read_name(short), None, short)
-
-
-def _build_both_names(
-    tokens: Tokens, _stop: int, _begin: int, short: int, name: int, *_follow: object
-) -> Names:
-    return Names(tokens.read_name(short), tokens.read_name(name), name)
-
-
-def _build_simple_name(tokens: Tokens, _stop: int, _begin: int, name: int) -> Reference:
-    return Reference(((tokens.read_name(name),),), tokens.starts[name], tokens.ends[name])
-
-
-def _build_global_name(tokens: Tokens, _stop: int, begin: int, name: int) -> Reference:
-    return Reference((("$", tokens.read_name(name)),), tokens.starts[begin], tokens.ends[name])
-
-
-def _extend_name(
-    tokens: Tokens, _stop: int, _begin: int, reference: Reference, name: int
-) -> Reference:
-    reference.chain = ((*reference.chain[0], tokens.read_name(name)),)
-    reference.end = tokens.ends[name]
-    return reference
-
-
-def _extend_chain(
-    _tokens: Tokens, _stop: int, _begin: int, reference: Reference, link: Reference
-) -> Reference:
-    reference.chain += link.chain
-    reference.end = link.end
-    return reference
-
-
-SpecializationPart = Relation | Node | int
-"""A relationship, a multiplicity, or the token `ordered` or `nonunique`."""
-
-
-def apply_specializations(
-    node: Node, parts: list[SpecializationPart] | None, tokens: Tokens
-) -> Node:
-    """Apply everything between the name of a feature and its value, and return the feature."""
+def complete_element(node: Node, tokens: Tokens, parts: Parts, value: Node | None) -> Node:
+    """Add the specialisations and the value to a node that has its names, and return it."""
     for part in parts or ():
         if isinstance(part, Relation):
             node.relations.append(part)
@@ -83,53 +57,70 @@ def apply_specializations(
             node.attributes["isOrdered"] = True
         else:
             node.attributes["isUnique"] = False
-    return node
-
-
-def apply_value(node: Node, value: Node | None) -> Node:
-    """Let a feature own its value, if it has one, and return the feature."""
     if value is not None:
         node.add_member(value)
     return node
 
 
-def _build_typing(_tokens: Tokens, _stop: int, _begin: int, name: Reference) -> Relation:
-    return Relation("FeatureTyping", name)
+def _build_name(tokens: Tokens, name: int, *_follow: object) -> Names:
+    return Names(None, tokens.read_name(name), name)
 
 
-def _build_conjugated_typing(_tokens: Tokens, _stop: int, _begin: int, name: Reference) -> Relation:
-    return Relation("ConjugatedPortTyping", name)
+def _build_short_name(tokens: Tokens, short: int, *_follow: object) -> Names:
+    return Names(tokens.read_name(short), None, short)
 
 
-def _build_typings(
-    _tokens: Tokens, _stop: int, _begin: int, _typed_by: list[Node], types: list[Relation]
+def _build_both_names(tokens: Tokens, short: int, name: int, *_follow: object) -> Names:
+    return Names(tokens.read_name(short), tokens.read_name(name), name)
+
+
+def _build_heading(
+    tokens: Tokens, name: Names | int | None, parts: Parts = None
+) -> tuple[Names | None, Parts]:
+    """Build what precedes the source of a transition or the ends of a binding."""
+    names = Names(None, tokens.read_name(name), name) if isinstance(name, int) else name
+    return names, parts
+
+
+def _build_simple_name(tokens: Tokens, name: int) -> Reference:
+    return Reference(((tokens.read_name(name),),), tokens.starts[name], tokens.ends[name])
+
+
+def _build_global_name(tokens: Tokens, name: int) -> Reference:
+    chain = (("$", tokens.read_name(name)),)
+    return Reference(chain, tokens.starts[tokens.begin], tokens.ends[name])
+
+
+def _extend_name(tokens: Tokens, reference: Reference, name: int) -> Reference:
+    reference.chain = ((*reference.chain[0], tokens.read_name(name)),)
+    reference.end = tokens.ends[name]
+    return reference
+
+
+def _extend_chain(_tokens: Tokens, reference: Reference, link: Reference) -> Reference:
+    reference.chain += link.chain
+    reference.end = link.end
+    return reference
+
+
+def _build_relation(kind: str, _tokens: Tokens, name: Reference) -> Relation:
+    return Relation(kind, name)
+
+
+def build_relations(
+    kind: str, _tokens: Tokens, names: Reference | list[Reference]
 ) -> list[Relation]:
+    """Build one relation to each of the names after a keyword."""
+    return [Relation(kind, name) for name in (names if isinstance(names, list) else [names])]
+
+
+def _build_typings(_tokens: Tokens, _typed_by: list[Node], types: list[Relation]) -> list[Relation]:
     return types
 
 
-def _build_subsettings(
-    _tokens: Tokens, _stop: int, _begin: int, names: list[Reference]
-) -> list[Relation]:
-    return [Relation("Subsetting", name) for name in names]
-
-
-def _build_redefinitions(
-    _tokens: Tokens, _stop: int, _begin: int, names: list[Reference]
-) -> list[Relation]:
-    return [Relation("Redefinition", name) for name in names]
-
-
-def _build_references(_tokens: Tokens, _stop: int, _begin: int, name: Reference) -> list[Relation]:
-    return [Relation("ReferenceSubsetting", name)]
-
-
-def _build_crosses(_tokens: Tokens, _stop: int, _begin: int, name: Reference) -> list[Relation]:
-    return [Relation("CrossSubsetting", name)]
-
-
-def make_multiplicity(bounds: Node, tokens: Tokens, begin: int, stop: int) -> Node:
+def make_multiplicity(bounds: Node, tokens: Tokens, span: Span | None = None) -> Node:
     """Return the multiplicity of an expression between brackets."""
-    node = make_node("MultiplicityRange", OWNING, tokens, begin, stop)
+    node = make_node("MultiplicityRange", OWNING, tokens, span)
     is_range = bounds.attributes.get("operator") == ".." and bounds.kind == "OperatorExpression"
     for bound in bounds.members if is_range else [bounds]:
         bound.membership = OWNING
@@ -137,59 +128,42 @@ def make_multiplicity(bounds: Node, tokens: Tokens, begin: int, stop: int) -> No
     return node
 
 
-def _build_multiplicity(tokens: Tokens, stop: int, begin: int, bounds: Node) -> list[Node]:
-    return [make_multiplicity(bounds, tokens, begin, stop)]
+def _build_multiplicity(tokens: Tokens, bounds: Node) -> list[Node]:
+    return [make_multiplicity(bounds, tokens)]
 
 
-def _build_ordering(_tokens: Tokens, _stop: int, _begin: int, token: int) -> list[int]:
+def _build_ordering(_tokens: Tokens, token: int) -> list[int]:
     return [token]
 
 
-def _mark_value(role: str, value: Node) -> Node:
+def mark_value(role: str, _tokens: Tokens, value: Node) -> Node:
+    """Make an expression the value of a feature; ``role`` says how the value is given."""
     value.membership, value.role = "FeatureValue", role
     return value
-
-
-def _build_bound_value(_tokens: Tokens, _stop: int, _begin: int, value: Node) -> Node:
-    return _mark_value("=", value)
-
-
-def _build_initial_value(_tokens: Tokens, _stop: int, _begin: int, value: Node) -> Node:
-    return _mark_value(":=", value)
-
-
-def _build_default_value(_tokens: Tokens, _stop: int, _begin: int, value: Node) -> Node:
-    return _mark_value("default", value)
-
-
-def _build_default_bound_value(_tokens: Tokens, _stop: int, _begin: int, value: Node) -> Node:
-    return _mark_value("default =", value)
-
-
-def _build_default_initial_value(_tokens: Tokens, _stop: int, _begin: int, value: Node) -> Node:
-    return _mark_value("default :=", value)
 
 
 ACTIONS = {
     "named": _build_name,
     "short_named": _build_short_name,
     "both_named": _build_both_names,
+    "heading": _build_heading,
+    "nameless_heading": omit_first(_build_heading),
     "simple_name": _build_simple_name,
     "global_name": _build_global_name,
     "longer_name": _extend_name,
     "longer_chain": _extend_chain,
-    "typing": _build_typing,
-    "conjugated_typing": _build_conjugated_typing,
+    "typing": partial(_build_relation, "FeatureTyping"),
+    "conjugated_typing": partial(_build_relation, "ConjugatedPortTyping"),
     "typings": _build_typings,
-    "subsettings": _build_subsettings,
-    "redefinitions": _build_redefinitions,
-    "references": _build_references,
-    "crosses": _build_crosses,
+    "subsettings": partial(build_relations, "Subsetting"),
+    "redefinitions": partial(build_relations, "Redefinition"),
+    "references": partial(build_relations, "ReferenceSubsetting"),
+    "crosses": partial(build_relations, "CrossSubsetting"),
     "multiplicity": _build_multiplicity,
     "ordering_part": _build_ordering,
-    "bound_value": _build_bound_value,
-    "initial_value": _build_initial_value,
-    "default_value": _build_default_value,
-    "default_bound_value": _build_default_bound_value,
-    "default_initial_value": _build_default_initial_value,
+    "bound_value": partial(mark_value, "="),
+    "initial_value": partial(mark_value, ":="),
+    "default_value": partial(mark_value, "default"),
+    "default_bound_value": partial(mark_value, "default ="),
+    "default_initial_value": partial(mark_value, "default :="),
 }

@@ -2,18 +2,12 @@
 
 from functools import partial
 
-from sysmlc.language.text.builders.declarations import (
-    Names,
-    SpecializationPart,
-    apply_names,
-    apply_specializations,
-    apply_value,
-)
+from sysmlc.language.text.builders.declarations import Names, Parts, make_element
 from sysmlc.language.text.builders.nodes import (
     FEATURE,
     OWNING,
     add_members,
-    make_node,
+    omit_first,
     prepend_members,
 )
 from sysmlc.language.text.lexer import BuildFault, Tokens
@@ -39,7 +33,7 @@ _STEMS = {
     "case": "Case",
     "analysis": "AnalysisCase",
     "verification": "VerificationCase",
-    "use": "UseCase",
+    "use case": "UseCase",
     "view": "View",
     "viewpoint": "Viewpoint",
     "rendering": "Rendering",
@@ -64,39 +58,35 @@ _CONTROL_NODES = {"merge", "decide", "join", "fork"}
 Keyword = int | str
 
 
-def _build_use_case_keyword(_tokens: Tokens, _stop: int, _begin: int, use: int, _case: int) -> int:
-    return use
+def read_keyword(tokens: Tokens, keyword: Keyword) -> str:
+    """Return the text of a keyword: several words are a text already, a single one is a token."""
+    return keyword if isinstance(keyword, str) else tokens[keyword]
 
 
-def _build_succession_flow_keyword(
-    _tokens: Tokens, _stop: int, _begin: int, _first: int, _second: int
-) -> str:
-    return "succession flow"
+def join_words(tokens: Tokens, *words: int) -> str:
+    """Build a keyword of several words."""
+    return " ".join(tokens[word] for word in words)
 
 
 def _build_definition(
     tokens: Tokens,
-    stop: int,
-    begin: int,
     keyword: Keyword,
     names: Names | None,
     general: list[Reference] | None,
     body: list[Node],
 ) -> Node:
     kind = f"{_STEMS.get(read_keyword(tokens, keyword), '')}Definition"
-    return _make_definition(kind, tokens, stop, begin, names, general, body)
+    return _make_definition(kind, tokens, names, general, body)
 
 
 def _make_definition(
     kind: str,
     tokens: Tokens,
-    stop: int,
-    begin: int,
     names: Names | None,
     general: list[Reference] | None,
     body: list[Node],
 ) -> Node:
-    node = apply_names(make_node(kind, OWNING, tokens, begin, stop), names, tokens)
+    node = make_element(kind, OWNING, tokens, names)
     node.relations += [Relation("Subclassification", name) for name in general or ()]
     if isinstance(body, ParallelBody):
         _mark_parallel(node, tokens)
@@ -105,13 +95,12 @@ def _make_definition(
     return add_members(node, body)
 
 
-def read_keyword(tokens: Tokens, keyword: Keyword) -> str:
-    """Return the text of a keyword: several words are a text already, a single one is a token."""
-    return keyword if isinstance(keyword, str) else tokens[keyword]
-
-
 class ParallelBody(list[Node]):
     """The members of a body that begins with `parallel`."""
+
+
+def _build_parallel_body(_tokens: Tokens, body: list[Node]) -> ParallelBody:
+    return ParallelBody(body)
 
 
 def _mark_parallel(node: Node, tokens: Tokens) -> None:
@@ -122,103 +111,68 @@ def _mark_parallel(node: Node, tokens: Tokens) -> None:
         tokens.build_faults.append(remark)
 
 
-def _build_parallel_body(
-    _tokens: Tokens, _stop: int, _begin: int, body: list[Node]
-) -> ParallelBody:
-    return ParallelBody(body)
-
-
-def _build_declaration(
+def build_declaration(
     tokens: Tokens,
-    stop: int,
-    begin: int,
     keyword: Keyword,
-    names: Names | None,
-    parts: list[SpecializationPart] | None,
-    value: Node | None,
+    names: Names | None = None,
+    parts: Parts = None,
+    value: Node | None = None,
 ) -> Node:
+    """Build a usage by its keyword, without its body."""
     word = read_keyword(tokens, keyword)
     kind, membership = USAGE_KINDS[word]
-    node = apply_names(make_node(kind, membership, tokens, begin, stop), names, tokens)
+    node = make_element(kind, membership, tokens, names, parts, value)
     # A message is an abstract flow (SysML 8.2.2.16.2).
     if word == "message":
         node.attributes["isAbstract"] = True
     if membership != FEATURE or word in _CONTROL_NODES:
         tokens.restricted_nodes.append(node)
-    if parts is not None:
-        apply_specializations(node, parts, tokens)
-    return apply_value(node, value)
+    return node
 
 
 def _build_declaration_with_metadata(
     tokens: Tokens,
-    stop: int,
-    begin: int,
     keyword: Keyword,
     metadata: list[Node],
     names: Names | None,
-    parts: list[SpecializationPart] | None,
+    parts: Parts,
     value: Node | None,
 ) -> Node:
-    node = _build_declaration(tokens, stop, begin, keyword, names, parts, value)
-    return prepend_members(node, metadata)
+    return prepend_members(build_declaration(tokens, keyword, names, parts, value), metadata)
 
 
-def finish_usage(node: Node, tokens: Tokens, stop: int, body: list[Node]) -> Node:
+def finish_usage(tokens: Tokens, node: Node, body: list[Node] | None) -> Node:
     """Set the end of a usage and add the members of its body."""
-    node.end = tokens.ends[stop - 1]
+    node.end = tokens.ends[tokens.stop - 1]
     if isinstance(body, ParallelBody):
         _mark_parallel(node, tokens)
     return add_members(node, body) if body else node
 
 
-def _build_usage(tokens: Tokens, stop: int, _begin: int, node: Node, body: list[Node]) -> Node:
-    return finish_usage(node, tokens, stop, body)
-
-
-def build_keywordless_usage(
+def build_keywordless(
+    kind: str,
     tokens: Tokens,
-    stop: int,
-    begin: int,
     names: Names | None,
-    parts: list[SpecializationPart] | None,
+    parts: Parts,
     value: Node | None,
     body: list[Node],
 ) -> Node:
-    """Build a usage without keyword (SysML 8.2.2.6.3)."""
-    node = apply_names(make_node("ReferenceUsage", FEATURE, tokens, begin, stop), names, tokens)
-    apply_specializations(node, parts, tokens)
-    return add_members(apply_value(node, value), body)
+    """Build a usage or feature without keyword (SysML 8.2.2.6.3)."""
+    return add_members(make_element(kind, FEATURE, tokens, names, parts, value), body)
 
 
-def _build_nameless_usage(
-    tokens: Tokens,
-    stop: int,
-    begin: int,
-    parts: list[SpecializationPart],
-    value: Node | None,
-    body: list[Node],
-) -> Node:
-    return build_keywordless_usage(tokens, stop, begin, None, parts, value, body)
-
-
-def _build_value_usage(
-    tokens: Tokens, stop: int, begin: int, value: Node, body: list[Node]
-) -> Node:
-    return build_keywordless_usage(tokens, stop, begin, None, None, value, body)
-
-
+_build_keywordless_usage = partial(build_keywordless, "ReferenceUsage")
 ACTIONS = {
-    "use_case": _build_use_case_keyword,
-    "succession_flow": _build_succession_flow_keyword,
+    "use_case": join_words,
+    "succession_flow": join_words,
     "definition": _build_definition,
     "metadata_definition": partial(_make_definition, "MetadataDefinition"),
     "bare_definition": partial(_make_definition, "Definition"),
     "parallel": _build_parallel_body,
-    "declared": _build_declaration,
+    "declared": build_declaration,
     "declared_with_metadata": _build_declaration_with_metadata,
-    "usage": _build_usage,
-    "loose": build_keywordless_usage,
-    "loose_nameless": _build_nameless_usage,
-    "loose_value": _build_value_usage,
+    "usage": finish_usage,
+    "loose": _build_keywordless_usage,
+    "loose_nameless": omit_first(_build_keywordless_usage),
+    "loose_value": omit_first(_build_keywordless_usage, 2),
 }

@@ -1,41 +1,42 @@
 """Types, features, prefixes and members of KerML (8.2.3.4, 8.2.4, 8.2.5)."""
 
-from collections.abc import Callable
-from typing import ParamSpec
+from functools import partial
 
-from sysmlc.language.text.builders import definitions, usages
 from sysmlc.language.text.builders.connections import (
-    ConnectorPart,
     End,
     Tail,
-    apply_tail,
-    split_ends_and_body,
+    build_tail_of_ends,
+    build_usage_with_tail,
 )
 from sysmlc.language.text.builders.declarations import (
     Names,
-    SpecializationPart,
+    Parts,
     apply_names,
-    apply_specializations,
-    apply_value,
+    make_element,
     make_multiplicity,
 )
 from sysmlc.language.text.builders.definitions import (
     Keyword,
-    build_keywordless_usage,
+    build_keywordless,
     finish_usage,
+    join_words,
     read_keyword,
 )
-from sysmlc.language.text.builders.namespaces import build_metadata, build_prefix_metadata
-from sysmlc.language.text.builders.nodes import (
-    FEATURE,
-    OWNING,
-    add_members,
-    make_node,
-    prepend_members,
+from sysmlc.language.text.builders.namespaces import (
+    build_metadata,
+    build_namespace,
+    build_prefix_metadata,
 )
-from sysmlc.language.text.builders.usages import Prefix, check_prefixes
+from sysmlc.language.text.builders.nodes import FEATURE, OWNING, add_members, omit_first
+from sysmlc.language.text.builders.usages import (
+    apply_prefixes,
+    build_cross_feature,
+    build_crossed,
+    build_prefixed_nothing,
+    build_return,
+)
 from sysmlc.language.text.lexer import Tokens
-from sysmlc.language.tree import AttributeValue, Node, Reference, Relation
+from sysmlc.language.tree import Node, Reference, Relation
 
 _TYPE_KINDS = {
     "type": "Type",
@@ -64,25 +65,16 @@ _FEATURE_KINDS = {
 }
 
 
-def _join_words(tokens: Tokens, _stop: int, _begin: int, *words: int) -> str:
-    return " ".join(tokens[word] for word in words)
-
-
 def _build_type(
     tokens: Tokens,
-    stop: int,
-    begin: int,
     keyword: Keyword,
     sufficient: int | None,
     names: Names | None,
-    parts: list[SpecializationPart] | None,
+    parts: Parts,
     body: list[Node],
 ) -> Node:
     kind = _TYPE_KINDS[read_keyword(tokens, keyword)]
-    node = apply_names(make_node(kind, OWNING, tokens, begin, stop), names, tokens)
-    if sufficient is not None:
-        node.attributes["isSufficient"] = True
-    apply_specializations(node, parts, tokens)
+    node = _mark_sufficient(make_element(kind, OWNING, tokens, names, parts), sufficient)
     # A specialisation between classifiers is a subclassification.
     if kind != "Type":
         for relation in node.relations:
@@ -91,287 +83,100 @@ def _build_type(
     return add_members(node, body)
 
 
-def _build_declaration(
-    tokens: Tokens,
-    stop: int,
-    begin: int,
-    keyword: Keyword,
-    sufficient: int | None,
-    names: Names | None,
-    parts: list[SpecializationPart] | None,
-    value: Node | None,
-) -> Node:
-    keywords = read_keyword(tokens, keyword).removesuffix(" true")
-    is_negated = keywords.endswith(" false")
-    kind = _FEATURE_KINDS[keywords.removesuffix(" false")]
-    node = apply_names(make_node(kind, FEATURE, tokens, begin, stop), names, tokens)
-    if is_negated:
-        node.attributes["isNegated"] = True
+def _mark_sufficient(node: Node, sufficient: int | None) -> Node:
     if sufficient is not None:
         node.attributes["isSufficient"] = True
-    return apply_value(apply_specializations(node, parts, tokens), value)
-
-
-def _build_connector(
-    tokens: Tokens, stop: int, begin: int, keyword: Keyword, *rest: ConnectorPart
-) -> Node:
-    node = _build_declaration(tokens, stop, begin, keyword, None, None, None, None)
-    ends, body = split_ends_and_body(rest)
-    return finish_usage(apply_tail(node, Tail(ends=ends), tokens), tokens, stop, body)
-
-
-def _build_sufficient_connector(
-    tokens: Tokens, stop: int, begin: int, keyword: Keyword, _all: int, *rest: ConnectorPart
-) -> Node:
-    node = _build_connector(tokens, stop, begin, keyword, *rest)
-    node.attributes["isSufficient"] = True
     return node
 
 
-def _build_named_connector(
+def _build_declaration(
     tokens: Tokens,
-    stop: int,
-    _begin: int,
-    node: Node,
-    first: End,
-    rest: list[End],
-    body: list[Node],
+    keyword: Keyword,
+    sufficient: int | None,
+    names: Names | None = None,
+    parts: Parts = None,
+    value: Node | None = None,
 ) -> Node:
-    return finish_usage(apply_tail(node, Tail(ends=[first, *rest]), tokens), tokens, stop, body)
+    keywords = read_keyword(tokens, keyword).removesuffix(" true")
+    kind = _FEATURE_KINDS[keywords.removesuffix(" false")]
+    node = make_element(kind, FEATURE, tokens, names, parts, value)
+    if keywords.endswith(" false"):
+        node.attributes["isNegated"] = True
+    return _mark_sufficient(node, sufficient)
 
 
-def _build_nameless_binding(
-    _tokens: Tokens,
-    _stop: int,
-    _begin: int,
-    parts: list[SpecializationPart],
-    further_parts: list[SpecializationPart] | None = None,
-) -> tuple[None, list[SpecializationPart]]:
-    return None, [*parts, *(further_parts or ())]
+def _build_connector(
+    tokens: Tokens, keyword: Keyword, sufficient: int | None, ends: list[End], body: list[Node]
+) -> Node:
+    node = _build_declaration(tokens, keyword, sufficient)
+    return build_usage_with_tail(tokens, node, Tail(ends=ends), body)
 
 
-def _build_binding_name(
-    tokens: Tokens, _stop: int, _begin: int, name: int, parts: list[SpecializationPart]
-) -> tuple[Names, list[SpecializationPart]]:
-    return Names(None, tokens.read_name(name), name), parts
-
-
-def _build_bare_binding_name(
-    tokens: Tokens, _stop: int, _begin: int, name: int
-) -> tuple[Names, list[SpecializationPart]]:
-    return Names(None, tokens.read_name(name), name), []
+def _build_named_connector(tokens: Tokens, node: Node, ends: list[End], body: list[Node]) -> Node:
+    return build_usage_with_tail(tokens, node, Tail(ends=ends), body)
 
 
 def _build_binding(
     tokens: Tokens,
-    stop: int,
-    begin: int,
     sufficient: int | None,
-    name: tuple[Names | None, list[SpecializationPart]] | None,
+    heading: tuple[Names | None, Parts] | None,
     ends: list[End] | None,
     body: list[Node],
 ) -> Node:
-    node = make_node("BindingConnector", FEATURE, tokens, begin, stop)
-    if name is not None:
-        apply_specializations(apply_names(node, name[0], tokens), name[1], tokens)
-    if sufficient is not None:
-        node.attributes["isSufficient"] = True
-    return finish_usage(apply_tail(node, Tail(ends=ends or []), tokens), tokens, stop, body)
-
-
-def _build_first_between(
-    _tokens: Tokens, _stop: int, _begin: int, source: End, target: End
-) -> Tail:
-    return Tail("", "then", ends=[source, target])
-
-
-def _build_namespace(
-    tokens: Tokens, stop: int, begin: int, names: Names | None, body: list[Node]
-) -> Node:
-    return add_members(
-        apply_names(make_node("Namespace", OWNING, tokens, begin, stop), names, tokens), body
-    )
+    names, parts = heading or (None, None)
+    node = make_element("BindingConnector", FEATURE, tokens, names, parts)
+    tail = Tail(ends=ends or [])
+    return build_usage_with_tail(tokens, _mark_sufficient(node, sufficient), tail, body)
 
 
 def _build_multiplicity_range(
-    tokens: Tokens, stop: int, begin: int, names: Names | None, bounds: Node, body: list[Node]
+    tokens: Tokens, names: Names | None, bounds: Node, body: list[Node]
 ) -> Node:
-    return add_members(
-        apply_names(make_multiplicity(bounds, tokens, begin, stop), names, tokens), body
-    )
+    return add_members(apply_names(make_multiplicity(bounds, tokens), names, tokens), body)
 
 
 def _build_multiplicity_subset(
-    tokens: Tokens, stop: int, begin: int, names: Names | None, subset: Reference, body: list[Node]
+    tokens: Tokens, names: Names | None, subset: Reference, body: list[Node]
 ) -> Node:
-    node = apply_names(make_node("Multiplicity", OWNING, tokens, begin, stop), names, tokens)
-    node.relations.append(Relation("Subsetting", subset))
-    return add_members(node, body)
+    parts: Parts = [Relation("Subsetting", subset)]
+    return add_members(make_element("Multiplicity", OWNING, tokens, names, parts), body)
 
 
-_ATTRIBUTES_BY_PREFIX: dict[str, tuple[tuple[str, AttributeValue], ...]] = {
-    "in": (("direction", "in"),),
-    "out": (("direction", "out"),),
-    "inout": (("direction", "inout"),),
-    "derived": (("isDerived", True),),
-    "abstract": (("isAbstract", True),),
-    "composite": (("isComposite", True),),
-    "portion": (("isPortion", True),),
-    "var": (("isVariable", True),),
-    "const": (("isConstant", True), ("isVariable", True)),
-    "end": (("isEnd", True),),
-    "standard": (("isStandard", True),),
-}
-
-
-def apply_prefixes(tokens: Tokens, begin: int, prefixes: list[Prefix], node: Node) -> Node:
-    """Apply the prefixes of a member, and return it."""
-    node.start = tokens.starts[begin]
-    check_prefixes(tokens, prefixes, node)
-    for prefix in prefixes:
-        if isinstance(prefix, Node):
-            continue
-        word = tokens[prefix]
-        if word == "library":
-            node.kind = "LibraryPackage"
-        elif word == "member":
-            node.membership = OWNING
-        else:
-            node.attributes.update(_ATTRIBUTES_BY_PREFIX.get(word, ()))
-    return prepend_members(node, [prefix for prefix in prefixes if isinstance(prefix, Node)])
-
-
-def _build_prefixed(
-    tokens: Tokens, _stop: int, begin: int, prefixes: list[Prefix], node: Node
+def _build_sufficient_feature(
+    tokens: Tokens, names: Names, parts: Parts, value: Node | None, body: list[Node]
 ) -> Node:
-    return apply_prefixes(tokens, begin, prefixes, node)
+    node = build_keywordless("Feature", tokens, names, parts, value, body)
+    return _mark_sufficient(node, tokens.begin)
 
 
-def _build_prefixed_nothing(
-    tokens: Tokens, stop: int, begin: int, prefixes: list[Prefix], body: list[Node]
-) -> Node:
-    feature = _turn_into_feature(
-        build_keywordless_usage(tokens, stop, begin, None, None, None, body)
-    )
-    return apply_prefixes(tokens, begin, prefixes, feature)
-
-
-def _turn_into_feature(node: Node) -> Node:
-    node.kind = "Feature"
-    return node
-
-
-_Parameters = ParamSpec("_Parameters")
-
-
-def _adapt(
-    change: Callable[[Node], Node], build: Callable[_Parameters, Node]
-) -> Callable[_Parameters, Node]:
-    """Return a builder of SysML, adapted to the element of KerML with the same notation."""
-
-    def build_adapted(*args: _Parameters.args, **kwargs: _Parameters.kwargs) -> Node:
-        return change(build(*args, **kwargs))
-
-    return build_adapted
-
-
-def _make_sufficient(node: Node) -> Node:
-    node.attributes["isSufficient"] = True
-    return node
-
-
-_build_keywordless_feature = _adapt(_turn_into_feature, build_keywordless_usage)
-
-
-def _build_nameless_feature(
-    tokens: Tokens,
-    stop: int,
-    begin: int,
-    parts: list[SpecializationPart],
-    value: Node | None,
-    body: list[Node],
-) -> Node:
-    return _build_keywordless_feature(tokens, stop, begin, None, parts, value, body)
-
-
-def _build_value_feature(
-    tokens: Tokens, stop: int, begin: int, value: Node, body: list[Node]
-) -> Node:
-    return _build_keywordless_feature(tokens, stop, begin, None, None, value, body)
-
-
-def _build_cross_feature(
-    tokens: Tokens,
-    stop: int,
-    begin: int,
-    names: Names | None,
-    parts: list[SpecializationPart] | None,
-) -> usages.CrossFeature:
-    node = apply_names(make_node("Feature", OWNING, tokens, begin, stop), names, tokens)
-    return usages.CrossFeature(apply_specializations(node, parts, tokens))
-
-
-def _build_nameless_cross_feature(
-    tokens: Tokens, stop: int, begin: int, parts: list[SpecializationPart]
-) -> usages.CrossFeature:
-    return _build_cross_feature(tokens, stop, begin, None, parts)
-
-
-def _build_with_cross_feature(
-    tokens: Tokens,
-    _stop: int,
-    begin: int,
-    prefixes: list[Prefix],
-    cross: usages.CrossFeature,
-    *rest: Node | list[Prefix],
-) -> Node:
-    """Build a feature with a cross feature; further prefixes may stand between the two."""
-    further_prefixes, node = rest[0], rest[-1]
-    all_prefixes = prefixes
-    if isinstance(further_prefixes, list):
-        all_prefixes = [*prefixes, *further_prefixes]
-    assert isinstance(node, Node)
-    return prepend_members(apply_prefixes(tokens, begin, all_prefixes, node), [cross.node])
-
-
-def _turn_into_metadata_feature(node: Node) -> Node:
-    node.kind = "MetadataFeature"
-    return node
-
-
+_build_keywordless_feature = partial(build_keywordless, "Feature")
+_build_cross = partial(build_cross_feature, "Feature")
 ACTIONS = {
-    "inv": _join_words,
-    "assoc_struct": _join_words,
-    "succession_flow": _join_words,
+    "inv": join_words,
+    "assoc_struct": join_words,
+    "succession_flow": join_words,
     "type": _build_type,
     "declared_all": _build_declaration,
-    "usage": definitions.ACTIONS["usage"],
+    "usage": finish_usage,
     "usage_ends": _build_connector,
-    "usage_ends_all": _build_sufficient_connector,
-    "usage_many_ends": _build_connector,
     "declared_many_ends": _build_named_connector,
-    "bound_name": _build_binding_name,
-    "bound_name_of": _build_bare_binding_name,
-    "bound_nameless": _build_nameless_binding,
     "binding": _build_binding,
-    "namespace": _build_namespace,
-    "first_between": _build_first_between,
+    "namespace": partial(build_namespace, "Namespace"),
+    "first_between": partial(build_tail_of_ends, "", "then"),
     "multiplicity_range": _build_multiplicity_range,
     "multiplicity_subset": _build_multiplicity_subset,
-    "prefixed": _build_prefixed,
-    "prefixed_loose": _build_prefixed,
-    "prefixed_nothing": _build_prefixed_nothing,
+    "prefixed": apply_prefixes,
+    "prefixed_loose": apply_prefixes,
+    "prefixed_nothing": partial(build_prefixed_nothing, "Feature", apply_prefixes),
     "loose": _build_keywordless_feature,
-    "loose_all": _adapt(_make_sufficient, _build_keywordless_feature),
-    "loose_nameless": _build_nameless_feature,
-    "loose_value": _build_value_feature,
-    "cross": _build_cross_feature,
-    "cross_nameless": _build_nameless_cross_feature,
-    "crossed": _build_with_cross_feature,
-    "crossed_prefixed": _build_with_cross_feature,
-    "crossed_prefixed_loose": _build_with_cross_feature,
-    "metadata": _adapt(_turn_into_metadata_feature, build_metadata),
-    "prefix_metadata": _adapt(_turn_into_metadata_feature, build_prefix_metadata),
-    "return": usages.ACTIONS["return"],
-    "visible_return": usages.ACTIONS["visible_return"],
+    "loose_all": _build_sufficient_feature,
+    "loose_nameless": omit_first(_build_keywordless_feature),
+    "loose_value": omit_first(_build_keywordless_feature, 2),
+    "cross": _build_cross,
+    "cross_nameless": omit_first(_build_cross),
+    "crossed": partial(build_crossed, apply_prefixes),
+    "crossed_loose": partial(build_crossed, apply_prefixes),
+    "metadata": partial(build_metadata, "MetadataFeature"),
+    "prefix_metadata": partial(build_prefix_metadata, "MetadataFeature"),
+    "return": build_return,
 }

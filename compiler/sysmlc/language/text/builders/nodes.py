@@ -6,11 +6,12 @@ Some members depend on an owner that is built after them. ``add_members`` correc
 from collections.abc import Callable, Sequence
 from typing import TypeVar
 
-from sysmlc.language.text.lexer import Tokens
+from sysmlc.language.text.lexer import Action, Span, Tokens
 from sysmlc.language.tree import Node, Reference, Relation
 
 FEATURE = "FeatureMembership"
 OWNING = "OwningMembership"
+PARAMETER = "ParameterMembership"
 _ANNOTATING = {
     "Comment",
     "Documentation",
@@ -18,11 +19,11 @@ _ANNOTATING = {
     "MetadataUsage",
     "MetadataFeature",
 }
-_STATES = ("StateDefinition", "StateUsage", "ExhibitStateUsage")
 
 
-def make_node(kind: str, membership: str, tokens: Tokens, begin: int, stop: int) -> Node:
-    """Return a node for the tokens from ``begin`` to before ``stop``."""
+def make_node(kind: str, membership: str, tokens: Tokens, span: Span | None = None) -> Node:
+    """Return a node for the tokens of *span*, by default those of the rule that is reduced."""
+    begin, stop = span or (tokens.begin, tokens.stop)
     node = Node(kind, membership=membership, start=tokens.starts[begin])
     node.end = tokens.ends[stop - 1]
     return node
@@ -104,13 +105,12 @@ def _has_source(member: Node) -> bool:
 
 
 def _begins_with_parameter(member: Node) -> bool:
-    return bool(member.members) and member.members[0].membership == "ParameterMembership"
+    return bool(member.members) and member.members[0].membership == PARAMETER
 
 
 def _make_empty_parameter(member: Node) -> Node:
-    return Node(
-        "ReferenceUsage", membership="ParameterMembership", start=member.start, end=member.start
-    )
+    start = member.start
+    return Node("ReferenceUsage", membership=PARAMETER, start=start, end=start)
 
 
 def prepend_members(node: Node, members: list[Node]) -> Node:
@@ -132,43 +132,31 @@ def _turn_into_transition(member: Node) -> None:
 
 
 _ADAPTERS: dict[str, Callable[[Node, Sequence[Node]], None]] = {
-    "Namespace": _adapt_to_namespace,
-    "Package": _adapt_to_namespace,
-    "LibraryPackage": _adapt_to_namespace,
-    "Dependency": _adapt_to_relationship,
-    "Membership": _adapt_to_relationship,
-    "MembershipImport": _adapt_to_relationship,
-    "NamespaceImport": _adapt_to_relationship,
-    "MembershipExpose": _adapt_to_relationship,
-    "NamespaceExpose": _adapt_to_relationship,
+    **dict.fromkeys(("Namespace", "Package", "LibraryPackage"), _adapt_to_namespace),
+    **dict.fromkeys(("Dependency", "Membership"), _adapt_to_relationship),
+    **dict.fromkeys(("MembershipImport", "NamespaceImport"), _adapt_to_relationship),
+    **dict.fromkeys(("MembershipExpose", "NamespaceExpose"), _adapt_to_relationship),
     "EnumerationDefinition": _adapt_to_enumeration,
-    "InterfaceDefinition": _adapt_to_interface,
-    "InterfaceUsage": _adapt_to_interface,
-    "MetadataUsage": _adapt_to_metadata,
-    "MetadataFeature": _adapt_to_metadata,
-    **dict.fromkeys(_STATES, _adapt_to_state),
+    **dict.fromkeys(("InterfaceDefinition", "InterfaceUsage"), _adapt_to_interface),
+    **dict.fromkeys(("MetadataUsage", "MetadataFeature"), _adapt_to_metadata),
+    **dict.fromkeys(("StateDefinition", "StateUsage", "ExhibitStateUsage"), _adapt_to_state),
 }
 
 
 T = TypeVar("T")
 
 
-def _start_list(_tokens: Tokens, _stop: int, _begin: int, item: T) -> list[T]:
-    return [item]
+def omit_first(build: Action, count: int = 1) -> Action:
+    """Return a builder for a notation without the first values of *build*, which are None."""
+    absent = [None] * count
+    return lambda tokens, *values: build(tokens, *absent, *values)
 
 
-def _append_item(_tokens: Tokens, _stop: int, _begin: int, items: list[T], item: T) -> list[T]:
-    items.append(item)
-    return items
-
-
-def _start_members(_tokens: Tokens, _stop: int, _begin: int, item: Node | list[Node]) -> list[Node]:
+def _start_list(_tokens: Tokens, item: T | list[T]) -> list[T]:
     return item if isinstance(item, list) else [item]
 
 
-def _append_members(
-    _tokens: Tokens, _stop: int, _begin: int, items: list[Node], item: Node | list[Node]
-) -> list[Node]:
+def _append_item(_tokens: Tokens, items: list[T], item: T | list[T]) -> list[T]:
     if isinstance(item, list):
         items += item
     else:
@@ -176,51 +164,25 @@ def _append_members(
     return items
 
 
-def _extend_list(
-    _tokens: Tokens, _stop: int, _begin: int, items: list[T], further_items: list[T]
-) -> list[T]:
-    items += further_items
-    return items
-
-
-def _pass_on(_tokens: Tokens, _stop: int, _begin: int, value: T) -> T:
+def _pass_on(_tokens: Tokens, value: T) -> T:
     return value
 
 
-def _build_empty_list(_tokens: Tokens, _stop: int, _begin: int, *_ignored: object) -> list[Node]:
+def _build_empty_list(_tokens: Tokens) -> list[Node]:
     return []
 
 
-def _mark_result(tokens: Tokens, node: Node) -> Node:
-    node.membership = "ResultExpressionMembership"
-    tokens.restricted_nodes.append(node)
-    return node
-
-
-def _build_result_body(tokens: Tokens, _stop: int, _begin: int, result: Node) -> list[Node]:
-    return [_mark_result(tokens, result)]
-
-
-def _append_result(
-    tokens: Tokens, _stop: int, _begin: int, items: list[Node], result: Node
-) -> list[Node]:
-    items.append(_mark_result(tokens, result))
-    return items
+def _append_result(tokens: Tokens, items: list[Node] | None, result: Node) -> list[Node]:
+    result.membership = "ResultExpressionMembership"
+    tokens.restricted_nodes.append(result)
+    return [*(items or ()), result]
 
 
 ACTIONS = {
     "first": _start_list,
     "more": _append_item,
-    "items_first": _start_members,
-    "items_more": _append_members,
-    "join": _extend_list,
-    "nothing": _build_empty_list,
-    "block": _pass_on,
-    "only_result": _build_result_body,
+    **dict.fromkeys(("nothing", "from", "of", "typed_by"), _build_empty_list),
+    "only_result": omit_first(_append_result),
     "with_result": _append_result,
-    "bracket": _pass_on,
-    "arguments": _pass_on,
-    "general": _pass_on,
-    "from": _build_empty_list,
-    "typed_by": _build_empty_list,
+    **dict.fromkeys(("block", "bracket", "arguments", "general", "same"), _pass_on),
 }

@@ -1,6 +1,6 @@
 """Operator precedence: flat lists of operands and operators become trees (KerML 8.2.5.8.1)."""
 
-from sysmlc.language.text.builders.nodes import make_node
+from sysmlc.language.text.builders.nodes import PARAMETER, make_node
 from sysmlc.language.text.lexer import Tokens
 from sysmlc.language.tree import Node, Reference, Relation
 
@@ -23,9 +23,6 @@ PRECEDENCE = {
     operator: level for level, group in enumerate(PRECEDENCE_LEVELS) for operator in group
 }
 """The precedence of each operator: the index of its row."""
-
-
-ARGUMENT = "ParameterMembership"
 Operand = Node | Reference
 ExpressionPart = Operand | int
 """An operand, a type, or the token of an operator."""
@@ -36,8 +33,8 @@ _CASTS = {"as", "meta"}
 _METACLASS_OPERATORS = {"@@", "meta"}
 
 
-def _group_operands(tokens: Tokens, parts: list[ExpressionPart]) -> Node:
-    """Return the tree of alternating operands and operators, given as numbers of tokens.
+def _build_grouped(tokens: Tokens, parts: list[ExpressionPart]) -> Node:
+    """Build the tree of alternating operands and operators, given as numbers of tokens.
 
     This is operator-precedence parsing with two stacks. A type completes its operation at once: the
     next operator takes the whole as its left operand.
@@ -92,72 +89,51 @@ def _make_operation(operator: str, left: Node, right: Node | Reference) -> Node:
 
 def make_argument(node: Node) -> Node:
     """Make an expression an argument, and return it."""
-    node.membership = ARGUMENT
+    node.membership = PARAMETER
     return node
 
 
 def _make_type_argument(operator: str, name: Reference) -> Node:
     """Return a feature with the type ``name``: the result of a cast, else an argument."""
-    membership = "ReturnParameterMembership" if operator in _CASTS else ARGUMENT
+    membership = "ReturnParameterMembership" if operator in _CASTS else PARAMETER
     feature = Node("Feature", membership=membership, start=name.start, end=name.end)
     feature.relations.append(Relation("FeatureTyping", name))
     return feature
 
 
-def _build_grouped(tokens: Tokens, _stop: int, _begin: int, parts: list[ExpressionPart]) -> Node:
-    return _group_operands(tokens, parts)
-
-
-def _start_operands(
-    _tokens: Tokens, _stop: int, _begin: int, *parts: ExpressionPart
-) -> list[ExpressionPart]:
+def _start_operands(_tokens: Tokens, *parts: ExpressionPart) -> list[ExpressionPart]:
     return list(parts)
 
 
 def _append_operand(
-    _tokens: Tokens,
-    _stop: int,
-    _begin: int,
-    parts: list[ExpressionPart],
-    operator: int,
-    operand: Operand,
+    _tokens: Tokens, parts: list[ExpressionPart], operator: int, operand: Operand
 ) -> list[ExpressionPart]:
     parts += (operator, operand)
     return parts
 
 
-def _build_conditional(
-    tokens: Tokens, stop: int, begin: int, condition: Node, then: Node, otherwise: Node
-) -> Node:
-    node = make_node("OperatorExpression", "", tokens, begin, stop)
-    node.attributes["operator"] = "if"
-    for member in (condition, then, otherwise):
-        node.add_member(make_argument(member))
+def _make_operator(tokens: Tokens, operator: str, *operands: Node) -> Node:
+    node = make_node("OperatorExpression", "", tokens)
+    node.attributes["operator"] = operator
+    for operand in operands:
+        node.add_member(operand)
+    return node
+
+
+def _build_conditional(tokens: Tokens, condition: Node, then: Node, otherwise: Node) -> Node:
     then.role = otherwise.role = "expression"
-    return node
+    return _make_operator(tokens, "if", *map(make_argument, (condition, then, otherwise)))
 
 
-def _build_unary(tokens: Tokens, stop: int, begin: int, operator: int, operand: Node) -> Node:
-    node = make_node("OperatorExpression", "", tokens, begin, stop)
-    node.attributes["operator"] = tokens[operator]
-    node.add_member(make_argument(operand))
-    return node
+def _build_unary(tokens: Tokens, operator: int, operand: Operand) -> Node:
+    word = tokens[operator]
+    if isinstance(operand, Reference):
+        return _make_operator(tokens, word, _make_type_argument(word, operand))
+    return _make_operator(tokens, word, make_argument(operand))
 
 
-def _build_unary_type(
-    tokens: Tokens, stop: int, begin: int, operator: int, name: Reference
-) -> Node:
-    node = make_node("OperatorExpression", "", tokens, begin, stop)
-    node.attributes["operator"] = tokens[operator]
-    node.add_member(_make_type_argument(tokens[operator], name))
-    return node
-
-
-def _build_extent(tokens: Tokens, stop: int, begin: int, name: Reference) -> Node:
-    node = make_node("OperatorExpression", "", tokens, begin, stop)
-    node.attributes["operator"] = "all"
-    node.add_member(_make_type_argument("all", name))
-    return node
+def _build_extent(tokens: Tokens, name: Reference) -> Node:
+    return _make_operator(tokens, "all", _make_type_argument("all", name))
 
 
 ACTIONS = {
@@ -166,6 +142,5 @@ ACTIONS = {
     "more_infix": _append_operand,
     "conditional": _build_conditional,
     "unary": _build_unary,
-    "unary_type": _build_unary_type,
     "extent": _build_extent,
 }

@@ -2,70 +2,53 @@
 
 from sysmlc.language.text.builders.actions import make_parameter
 from sysmlc.language.text.builders.connections import Tail, apply_tail
-from sysmlc.language.text.builders.declarations import (
-    SpecializationPart,
-    apply_specializations,
-    apply_value,
+from sysmlc.language.text.builders.declarations import Parts, complete_element
+from sysmlc.language.text.builders.definitions import (
+    Keyword,
+    finish_usage,
+    join_words,
+    read_keyword,
 )
-from sysmlc.language.text.builders.definitions import finish_usage
 from sysmlc.language.text.builders.nodes import FEATURE, make_node
 from sysmlc.language.text.builders.usages import Prefix, apply_prefixes
 from sysmlc.language.text.lexer import BuildFault, Tokens
 from sysmlc.language.tree import Node, Reference, Relation
 
 _SUBACTION = "StateSubactionMembership"
+_CONSTRAINT = "RequirementConstraintMembership"
 _REFERRING_KINDS = {
-    "perform": ("PerformActionUsage", FEATURE, ""),
-    "exhibit": ("ExhibitStateUsage", FEATURE, ""),
-    "include": ("IncludeUseCaseUsage", FEATURE, ""),
-    "event": ("EventOccurrenceUsage", FEATURE, ""),
-    "assert": ("AssertConstraintUsage", FEATURE, ""),
-    "satisfy": ("SatisfyRequirementUsage", FEATURE, ""),
-    "assume": ("ConstraintUsage", "RequirementConstraintMembership", "assumption"),
-    "require": ("ConstraintUsage", "RequirementConstraintMembership", "requirement"),
-    "frame": ("ConcernUsage", "FramedConcernMembership", ""),
-    "verify": ("RequirementUsage", "RequirementVerificationMembership", ""),
-    "render": ("RenderingUsage", "ViewRenderingMembership", ""),
-    "entry": ("PerformActionUsage", _SUBACTION, "entry"),
-    "do": ("PerformActionUsage", _SUBACTION, "do"),
-    "exit": ("PerformActionUsage", _SUBACTION, "exit"),
+    "perform": ("action", "PerformActionUsage", FEATURE, ""),
+    "exhibit": ("state", "ExhibitStateUsage", FEATURE, ""),
+    "include": ("use case", "IncludeUseCaseUsage", FEATURE, ""),
+    "event": ("occurrence", "EventOccurrenceUsage", FEATURE, ""),
+    "assert": ("constraint", "AssertConstraintUsage", FEATURE, ""),
+    "satisfy": ("requirement", "SatisfyRequirementUsage", FEATURE, ""),
+    "assume": ("constraint", "ConstraintUsage", _CONSTRAINT, "assumption"),
+    "require": ("constraint", "ConstraintUsage", _CONSTRAINT, "requirement"),
+    "frame": ("concern", "ConcernUsage", "FramedConcernMembership", ""),
+    "verify": ("requirement", "RequirementUsage", "RequirementVerificationMembership", ""),
+    "render": ("rendering", "RenderingUsage", "ViewRenderingMembership", ""),
+    "entry": ("action", "PerformActionUsage", _SUBACTION, "entry"),
+    "do": ("action", "PerformActionUsage", _SUBACTION, "do"),
+    "exit": ("action", "PerformActionUsage", _SUBACTION, "exit"),
 }
-
-_DECLARED_AS = {
-    "perform": "action",
-    "exhibit": "state",
-    "include": "use case",
-    "event": "occurrence",
-    "assert": "constraint",
-    "satisfy": "requirement",
-    "assume": "constraint",
-    "require": "constraint",
-    "frame": "concern",
-    "verify": "requirement",
-    "render": "rendering",
-    "entry": "action",
-    "do": "action",
-    "exit": "action",
-}
-"""The keyword that may stand between each of these words and the declaration of a new usage."""
+"""The keyword that may stand between each of these words and the declaration of a new usage, and
+the metaclass, membership and role of the usage."""
 
 
-def _build_assertion_keyword(
-    tokens: Tokens, stop: int, _begin: int, *words: int
-) -> tuple[str, bool]:
-    texts = [tokens[word] for word in words]
-    return ("satisfy" if "satisfy" in texts else "assert", "not" in texts)
+def _read_referrer(tokens: Tokens, referrer: Keyword) -> tuple[str, bool]:
+    """Return the word for the kind of the usage, and whether an assertion is negated."""
+    words = read_keyword(tokens, referrer).split()
+    return "satisfy" if "satisfy" in words else words[0], "not" in words
 
 
-def _make_usage(
-    tokens: Tokens, stop: int, begin: int, referrer: int | tuple[str, bool], node: Node | None
-) -> Node:
-    word, is_negated = (tokens[referrer], False) if isinstance(referrer, int) else referrer
-    kind, membership, role = _REFERRING_KINDS[word]
+def _make_usage(tokens: Tokens, referrer: Keyword, node: Node | None) -> Node:
+    word, is_negated = _read_referrer(tokens, referrer)
+    _, kind, membership, role = _REFERRING_KINDS[word]
     if node is None:
-        node = make_node(kind, membership, tokens, begin, stop)
+        node = make_node(kind, membership, tokens)
     node.kind, node.membership, node.role = kind, membership, role
-    node.start = tokens.starts[begin]
+    node.start = tokens.starts[tokens.begin]
     if membership != FEATURE:
         tokens.restricted_nodes.append(node)
     if is_negated:
@@ -73,101 +56,69 @@ def _make_usage(
     return node
 
 
-def _add_subject(node: Node, subject: Reference | None) -> Node:
+def _finish_usage(tokens: Tokens, node: Node, subject: Reference | None, body: list[Node]) -> Node:
+    """Finish a usage, after the element that satisfies a requirement."""
     if subject is not None:
         value = Node("FeatureReferenceExpression", start=subject.start, end=subject.end)
         value.relations.append(Relation("Membership", subject))
         member = node.add_member(make_parameter(value, subject.start))
         member.membership = "SubjectMembership"
-    return node
+    return finish_usage(tokens, node, body)
 
 
 def _build_reference(
     tokens: Tokens,
-    stop: int,
-    begin: int,
-    referrer: int | tuple[str, bool],
+    referrer: Keyword,
     name: Reference,
-    parts: list[SpecializationPart] | None,
+    parts: Parts,
     value: Node | None,
     subject: Reference | None,
     body: list[Node],
 ) -> Node:
-    node = _make_usage(tokens, stop, begin, referrer, None)
+    node = _make_usage(tokens, referrer, None)
     node.relations.append(Relation("ReferenceSubsetting", name))
-    apply_value(apply_specializations(node, parts, tokens), value)
-    return finish_usage(_add_subject(node, subject), tokens, stop, body)
+    return _finish_usage(tokens, complete_element(node, tokens, parts, value), subject, body)
 
 
 def _build_declaration(
-    tokens: Tokens,
-    stop: int,
-    begin: int,
-    referrer: int | tuple[str, bool],
-    node: Node,
-    subject: Reference | None,
-    body: list[Node],
+    tokens: Tokens, referrer: Keyword, node: Node, subject: Reference | None, body: list[Node]
 ) -> Node:
-    _check_keyword(tokens, referrer, node)
-    return finish_usage(
-        _add_subject(_make_usage(tokens, stop, begin, referrer, node), subject), tokens, stop, body
-    )
-
-
-def _check_keyword(tokens: Tokens, referrer: int | tuple[str, bool], node: Node) -> None:
-    """Record a fault for a keyword that does not go with the word before it."""
-    word = tokens[referrer] if isinstance(referrer, int) else referrer[0]
-    keyword = _DECLARED_AS[word]
+    word = _read_referrer(tokens, referrer)[0]
+    keyword = _REFERRING_KINDS[word][0]
     if node.kind != f"{keyword.title().replace(' ', '')}Usage":
         text = f"'{word}' goes with '{keyword}', not with this declaration"
         advice = f"write '{word} {keyword}', or '{word}' before a name alone"
         tokens.build_faults.append(BuildFault("combination", node.start, text, advice))
+    return _finish_usage(tokens, _make_usage(tokens, referrer, node), subject, body)
 
 
 def _build_prefixed(
     tokens: Tokens,
-    stop: int,
-    begin: int,
-    referrer: int | tuple[str, bool],
+    referrer: Keyword,
     prefixes: list[Prefix],
     node: Node,
     subject: Reference | None,
     body: list[Node],
 ) -> Node:
-    apply_prefixes(tokens, begin, prefixes, node)
-    return _build_declaration(tokens, stop, begin, referrer, node, subject, body)
+    apply_prefixes(tokens, prefixes, node)
+    return _build_declaration(tokens, referrer, node, subject, body)
 
 
 def _build_keywordless(
-    tokens: Tokens,
-    stop: int,
-    begin: int,
-    referrer: int | tuple[str, bool],
-    prefixes: list[Prefix],
-    node: Node,
+    tokens: Tokens, referrer: Keyword, prefixes: list[Prefix], node: Node
 ) -> Node:
-    return _make_usage(tokens, stop, begin, referrer, apply_prefixes(tokens, begin, prefixes, node))
+    return _make_usage(tokens, referrer, apply_prefixes(tokens, prefixes, node))
 
 
 def _build_step(
-    tokens: Tokens,
-    stop: int,
-    begin: int,
-    referrer: int | tuple[str, bool],
-    *parts: Node | Tail | list[Node],
+    tokens: Tokens, referrer: Keyword, declared: Node | None, step: Tail, body: list[Node]
 ) -> Node:
-    declared = parts[0] if isinstance(parts[0], Node) else None
-    node = _make_usage(tokens, stop, begin, referrer, declared)
-    tail, body = parts[-2:]
-    if isinstance(tail, Tail):
-        apply_tail(node, tail, tokens)
-    return finish_usage(node, tokens, stop, body if isinstance(body, list) else [])
+    node = apply_tail(_make_usage(tokens, referrer, declared), step, tokens)
+    return finish_usage(tokens, node, body)
 
 
-def _build_without_action(
-    tokens: Tokens, stop: int, begin: int, referrer: int | tuple[str, bool]
-) -> Node:
-    node = _make_usage(tokens, stop, begin, referrer, None)
+def _build_without_action(tokens: Tokens, referrer: Keyword) -> Node:
+    node = _make_usage(tokens, referrer, None)
     # `entry;` owns an empty action and performs nothing.
     if node.membership == _SUBACTION:
         node.kind = "ActionUsage"
@@ -175,12 +126,11 @@ def _build_without_action(
 
 
 ACTIONS = {
-    "asserted": _build_assertion_keyword,
+    "asserted": join_words,
     "referring": _build_reference,
     "referring_declared": _build_declaration,
     "referring_prefixed": _build_prefixed,
     "referring_loose": _build_keywordless,
     "referring_step": _build_step,
-    "referring_declared_step": _build_step,
     "referring_nothing": _build_without_action,
 }

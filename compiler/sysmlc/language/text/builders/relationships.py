@@ -1,63 +1,31 @@
 """Relationships of KerML: owned ones, and those that are elements of their own (8.2.4)."""
 
-from collections.abc import Callable
+from functools import partial
 
-from sysmlc.language.text.builders.declarations import Names, apply_names
-from sysmlc.language.text.builders.nodes import OWNING, add_members, make_node
+from sysmlc.language.metaclasses import RELATIONSHIP_ENDS
+from sysmlc.language.text.builders.declarations import Names, build_relations, make_element
+from sysmlc.language.text.builders.nodes import OWNING, add_members, omit_first
 from sysmlc.language.text.lexer import Tokens
 from sysmlc.language.tree import Node, Reference, Relation
 
 
-def _pass_on_name(_tokens: Tokens, _stop: int, _begin: int, names: Names | None) -> Names | None:
-    return names
-
-
-def _make_relations_builder(kind: str) -> Callable[..., list[Relation]]:
-    """Return a builder of one relation to each of the names after a keyword."""
-
-    def relations(
-        _tokens: Tokens, _stop: int, _begin: int, names: Reference | list[Reference]
-    ) -> list[Relation]:
-        references = names if isinstance(names, list) else [names]
-        return [Relation(kind, name) for name in references]
-
-    return relations
-
-
-def _make_relationship_builder(kind: str, source: str, target: str) -> Callable[..., Node]:
-    """Return a builder of an element that is a relationship with two ends."""
-
-    def relationship(
-        tokens: Tokens,
-        stop: int,
-        begin: int,
-        names: Names | None,
-        first: Reference,
-        *remaining: Reference | list[Node],
-    ) -> Node:
-        node = apply_names(make_node(kind, OWNING, tokens, begin, stop), names, tokens)
-        node.relations.append(Relation(source, first))
-        *_, second, body = remaining
-        assert isinstance(second, Reference)
-        assert isinstance(body, list)
-        node.relations.append(Relation(target, second))
-        return add_members(node, body)
-
-    return relationship
-
-
-_build_named_featuring = _make_relationship_builder(
-    "TypeFeaturing", "featureOfType", "featuringType"
-)
-
-
-def _build_featuring(
-    tokens: Tokens, stop: int, begin: int, first: Reference, second: Reference, body: list[Node]
+def _build_relationship(
+    kind: str,
+    tokens: Tokens,
+    names: Names | None,
+    first: Reference,
+    *remaining: Reference | list[Node],
 ) -> Node:
-    return _build_named_featuring(tokens, stop, begin, None, first, second, body)
+    """Build an element that is a relationship with two ends."""
+    *_, second, body = remaining
+    assert isinstance(second, Reference)
+    assert isinstance(body, list)
+    source, target = RELATIONSHIP_ENDS[kind]
+    ends = [Relation(source, first), Relation(target, second)]
+    return add_members(make_element(kind, OWNING, tokens, names, [*ends]), body)
 
 
-def _build_chaining(_tokens: Tokens, _stop: int, _begin: int, chain: Reference) -> list[Relation]:
+def _build_chaining(_tokens: Tokens, chain: Reference) -> list[Relation]:
     """Build a feature chain: a relation to each of its links."""
     return [
         Relation("FeatureChaining", Reference((link,), chain.start, chain.end))
@@ -65,32 +33,25 @@ def _build_chaining(_tokens: Tokens, _stop: int, _begin: int, chain: Reference) 
     ]
 
 
+_build_featuring = partial(_build_relationship, "TypeFeaturing")
 ACTIONS = {
-    "relationship_name": _pass_on_name,
-    "of": _pass_on_name,
-    "specializations": _make_relations_builder("Specialization"),
-    "conjugation_part": _make_relations_builder("Conjugation"),
-    "disjoining_part": _make_relations_builder("Disjoining"),
-    "unioning_part": _make_relations_builder("Unioning"),
-    "intersecting_part": _make_relations_builder("Intersecting"),
-    "differencing_part": _make_relations_builder("Differencing"),
+    "specializations": partial(build_relations, "Specialization"),
+    "conjugation_part": partial(build_relations, "Conjugation"),
+    "disjoining_part": partial(build_relations, "Disjoining"),
+    "unioning_part": partial(build_relations, "Unioning"),
+    "intersecting_part": partial(build_relations, "Intersecting"),
+    "differencing_part": partial(build_relations, "Differencing"),
     "chaining_part": _build_chaining,
-    "inverting_part": _make_relations_builder("FeatureInverting"),
-    "featuring_part": _make_relations_builder("TypeFeaturing"),
-    "specialization": _make_relationship_builder("Specialization", "specific", "general"),
-    "subclassification": _make_relationship_builder(
-        "Subclassification", "subclassifier", "superclassifier"
-    ),
-    "feature_typing": _make_relationship_builder("FeatureTyping", "typedFeature", "type"),
-    "subsetting": _make_relationship_builder("Subsetting", "subsettingFeature", "subsettedFeature"),
-    "redefinition": _make_relationship_builder(
-        "Redefinition", "redefiningFeature", "redefinedFeature"
-    ),
-    "conjugation": _make_relationship_builder("Conjugation", "conjugatedType", "originalType"),
-    "disjoining": _make_relationship_builder("Disjoining", "typeDisjoined", "disjoiningType"),
-    "feature_inverting": _make_relationship_builder(
-        "FeatureInverting", "featureInverted", "invertingFeature"
-    ),
-    "named_type_featuring": _build_named_featuring,
-    "type_featuring": _build_featuring,
+    "inverting_part": partial(build_relations, "FeatureInverting"),
+    "featuring_part": partial(build_relations, "TypeFeaturing"),
+    "specialization": partial(_build_relationship, "Specialization"),
+    "subclassification": partial(_build_relationship, "Subclassification"),
+    "feature_typing": partial(_build_relationship, "FeatureTyping"),
+    "subsetting": partial(_build_relationship, "Subsetting"),
+    "redefinition": partial(_build_relationship, "Redefinition"),
+    "conjugation": partial(_build_relationship, "Conjugation"),
+    "disjoining": partial(_build_relationship, "Disjoining"),
+    "feature_inverting": partial(_build_relationship, "FeatureInverting"),
+    "named_type_featuring": _build_featuring,
+    "type_featuring": omit_first(_build_featuring),
 }

@@ -1,25 +1,21 @@
 """Prefixes and their order, cross features, `variant`, `return`, `then` (SysML 8.2.2.6, 9.3)."""
 
-from typing import NamedTuple
+from collections.abc import Callable
+from functools import partial
 
-from sysmlc.language.text.builders.connections import End, make_connector_end
+from sysmlc.language.text.builders.connections import End, make_end
 from sysmlc.language.text.builders.declarations import (
     Names,
-    SpecializationPart,
-    apply_names,
-    apply_specializations,
+    Parts,
+    make_element,
     make_multiplicity,
 )
-from sysmlc.language.text.builders.definitions import (
-    build_keywordless_usage,
-    finish_usage,
-)
-from sysmlc.language.text.builders.namespaces import apply_visibility
+from sysmlc.language.text.builders.definitions import build_keywordless, finish_usage
 from sysmlc.language.text.builders.nodes import (
     FEATURE,
     OWNING,
-    add_members,
     make_node,
+    omit_first,
     prepend_members,
 )
 from sysmlc.language.text.lexer import BuildFault, Tokens
@@ -79,19 +75,23 @@ _TYPES = {
 }
 
 
-def check_prefixes(tokens: Tokens, prefixes: list[int | Node], node: Node) -> None:
+Prefix = int | Node
+
+
+def _check_prefixes(tokens: Tokens, prefixes: list[Prefix], node: Node) -> None:
     """Record a fault for prefixes that are out of order, or invalid for this declaration."""
-    words = [(prefix, tokens[prefix]) for prefix in prefixes if isinstance(prefix, int)]
-    for token, word in words:
-        if word and not _is_allowed(word, node):
+    for prefix in prefixes:
+        if isinstance(prefix, int) and not _is_allowed(tokens[prefix], node):
+            word = tokens[prefix]
             text = f"'{word}' cannot stand before {_describe(node)}"
-            _report_prefix(tokens, token, text, f"take '{word}' away")
+            fault = BuildFault("prefix", tokens.starts[prefix], text, f"take '{word}' away")
+            tokens.build_faults.append(fault)
             return
     if len(prefixes) > 1:
         _check_order(tokens, prefixes)
 
 
-def _check_order(tokens: Tokens, prefixes: list[int | Node]) -> None:
+def _check_order(tokens: Tokens, prefixes: list[Prefix]) -> None:
     last_rank, last_word = -1, ""
     for prefix in prefixes:
         word = "metadata" if isinstance(prefix, Node) else tokens[prefix]
@@ -100,26 +100,15 @@ def _check_order(tokens: Tokens, prefixes: list[int | Node]) -> None:
         if (last_word, word) == ("const", "end"):
             rank = last_rank + 1
         if rank < last_rank or (rank == last_rank != _METADATA):
+            text = f"'{word}' stands after '{last_word}'"
+            advice = f"write '{word}' before '{last_word}'"
+            if rank == last_rank:
+                text = f"'{word}' and '{last_word}' exclude one another"
+                advice = "say only one of both"
             start = prefix.start if isinstance(prefix, Node) else tokens.starts[prefix]
-            _report_order(tokens, start, word, last_word, rank == last_rank)
+            tokens.build_faults.append(BuildFault("prefix", start, text, advice))
             return
         last_rank, last_word = rank, word
-
-
-def _report_order(
-    tokens: Tokens, start: int, word: str, last_word: str, is_same_rank: bool
-) -> None:
-    if is_same_rank:
-        text = f"'{word}' and '{last_word}' exclude one another"
-        advice = "say only one of both"
-    else:
-        text = f"'{word}' stands after '{last_word}'"
-        advice = f"write '{word}' before '{last_word}'"
-    tokens.build_faults.append(BuildFault("prefix", start, text, advice))
-
-
-def _report_prefix(tokens: Tokens, token: int, text: str, advice: str) -> None:
-    tokens.build_faults.append(BuildFault("prefix", tokens.starts[token], text, advice))
 
 
 def _is_allowed(word: str, node: Node) -> bool:
@@ -142,45 +131,43 @@ def _describe(node: Node) -> str:
     return "a definition" if node.kind.endswith("Definition") else "this declaration"
 
 
-Prefix = int | Node
-
-_ATTRIBUTES_BY_PREFIX: dict[str, tuple[str, AttributeValue]] = {
-    "in": ("direction", "in"),
-    "out": ("direction", "out"),
-    "inout": ("direction", "inout"),
-    "derived": ("isDerived", True),
-    "abstract": ("isAbstract", True),
-    "variation": ("isVariation", True),
-    "constant": ("isConstant", True),
-    "ref": ("isReference", True),
-    "end": ("isEnd", True),
-    "individual": ("isIndividual", True),
-    "snapshot": ("portionKind", "snapshot"),
-    "timeslice": ("portionKind", "timeslice"),
-    "standard": ("isStandard", True),
+_ATTRIBUTES_BY_PREFIX: dict[str, tuple[tuple[str, AttributeValue], ...]] = {
+    "in": (("direction", "in"),),
+    "out": (("direction", "out"),),
+    "inout": (("direction", "inout"),),
+    "derived": (("isDerived", True),),
+    "abstract": (("isAbstract", True),),
+    "variation": (("isVariation", True),),
+    "constant": (("isConstant", True),),
+    "composite": (("isComposite", True),),
+    "portion": (("isPortion", True),),
+    "var": (("isVariable", True),),
+    "const": (("isConstant", True), ("isVariable", True)),
+    "ref": (("isReference", True),),
+    "end": (("isEnd", True),),
+    "individual": (("isIndividual", True),),
+    "snapshot": (("portionKind", "snapshot"), ("isPortion", True)),
+    "timeslice": (("portionKind", "timeslice"), ("isPortion", True)),
+    "standard": (("isStandard", True),),
 }
 _OCCURRENCE_PREFIXES = ("individual", "snapshot", "timeslice")
 
 
-def apply_prefixes(tokens: Tokens, begin: int, prefixes: list[Prefix], node: Node) -> Node:
+def apply_prefixes(tokens: Tokens, prefixes: list[Prefix], node: Node) -> Node:
     """Apply the prefixes of a member, and return it."""
-    node.start = tokens.starts[begin]
+    node.start = tokens.starts[tokens.begin]
     metadata = [prefix for prefix in prefixes if isinstance(prefix, Node)]
     words = [tokens[prefix] for prefix in prefixes if isinstance(prefix, int)]
     if words:
-        check_prefixes(tokens, prefixes, node)
+        _check_prefixes(tokens, prefixes, node)
     for word in words:
+        node.attributes.update(_ATTRIBUTES_BY_PREFIX.get(word, ()))
         if word == "library":
             node.kind = "LibraryPackage"
-            continue
-        if word == "ref":
+        elif word == "member":
+            node.membership = OWNING
+        elif word == "ref":
             tokens.ref_usages.append(node)
-        if word not in _ATTRIBUTES_BY_PREFIX:
-            continue
-        name, value = _ATTRIBUTES_BY_PREFIX[word]
-        node.attributes[name] = value
-        if name == "portionKind":
-            node.attributes["isPortion"] = True
     # `individual def` is an occurrence definition without a kind of its own (SysML 8.2.2.9).
     if node.kind == "Definition" and "individual" in words:
         node.kind = "OccurrenceDefinition"
@@ -191,15 +178,7 @@ def apply_prefixes(tokens: Tokens, begin: int, prefixes: list[Prefix], node: Nod
     return prepend_members(node, metadata) if metadata else node
 
 
-def _build_prefixed(
-    tokens: Tokens, _stop: int, begin: int, prefixes: list[Prefix], node: Node
-) -> Node:
-    return apply_prefixes(tokens, begin, prefixes, node)
-
-
-def _build_prefixed_keywordless(
-    tokens: Tokens, _stop: int, begin: int, prefixes: list[Prefix], node: Node
-) -> Node:
+def _build_prefixed_keywordless(tokens: Tokens, prefixes: list[Prefix], node: Node) -> Node:
     """Build a usage without keyword, whose kind depends on its prefixes."""
     if any(
         isinstance(prefix, int) and tokens[prefix] in _OCCURRENCE_PREFIXES for prefix in prefixes
@@ -207,168 +186,94 @@ def _build_prefixed_keywordless(
         node.kind = "OccurrenceUsage"
     elif any(isinstance(prefix, Node) for prefix in prefixes):
         node.kind = "Usage"
-    return apply_prefixes(tokens, begin, prefixes, node)
+    return apply_prefixes(tokens, prefixes, node)
 
 
-def _build_prefixed_nothing(
-    tokens: Tokens, stop: int, begin: int, prefixes: list[Prefix], body: list[Node]
-) -> Node:
-    node = build_keywordless_usage(tokens, stop, begin, None, None, None, body)
-    return _build_prefixed_keywordless(tokens, stop, begin, prefixes, node)
-
-
-class CrossFeature(NamedTuple):
-    """The declaration between `end` and the keyword of a usage (SysML 8.2.2.6.2)."""
-
-    node: Node
-
-
-def _build_cross_feature(
+def build_prefixed_nothing(
+    kind: str,
+    apply: Callable[[Tokens, list[Prefix], Node], Node],
     tokens: Tokens,
-    stop: int,
-    begin: int,
-    names: Names | None,
-    parts: list[SpecializationPart] | None,
-) -> CrossFeature:
-    node = apply_names(make_node("ReferenceUsage", OWNING, tokens, begin, stop), names, tokens)
-    return CrossFeature(apply_specializations(node, parts, tokens))
-
-
-def _build_nameless_cross_feature(
-    tokens: Tokens, stop: int, begin: int, parts: list[SpecializationPart]
-) -> CrossFeature:
-    return _build_cross_feature(tokens, stop, begin, None, parts)
-
-
-def _build_with_cross_feature(
-    tokens: Tokens, _stop: int, begin: int, prefixes: list[Prefix], cross: CrossFeature, node: Node
-) -> Node:
-    return prepend_members(apply_prefixes(tokens, begin, prefixes, node), [cross.node])
-
-
-def _build_prefixed_with_cross_feature(
-    tokens: Tokens,
-    _stop: int,
-    begin: int,
     prefixes: list[Prefix],
-    cross: CrossFeature,
-    further_prefixes: list[Prefix],
+    body: list[Node],
+) -> Node:
+    """Build a member that has nothing but prefixes and a body."""
+    return apply(tokens, prefixes, build_keywordless(kind, tokens, None, None, None, body))
+
+
+def build_cross_feature(kind: str, tokens: Tokens, names: Names | None, parts: Parts) -> Node:
+    """Build the declaration between `end` and the keyword of a usage (SysML 8.2.2.6.2)."""
+    return make_element(kind, OWNING, tokens, names, parts)
+
+
+def build_crossed(
+    apply: Callable[[Tokens, list[Prefix], Node], Node],
+    tokens: Tokens,
+    prefixes: list[Prefix],
+    cross: Node,
+    further_prefixes: list[Prefix] | None,
     node: Node,
 ) -> Node:
-    return prepend_members(
-        apply_prefixes(tokens, begin, [*prefixes, *further_prefixes], node), [cross.node]
-    )
+    """Build a member with a cross feature; further prefixes may stand between the two."""
+    node = apply(tokens, [*prefixes, *(further_prefixes or ())], node)
+    return prepend_members(node, [cross])
 
 
-def _build_keywordless_with_cross_feature(
-    tokens: Tokens,
-    stop: int,
-    begin: int,
-    prefixes: list[Prefix],
-    cross: CrossFeature,
-    further_prefixes: list[Prefix],
-    node: Node,
-) -> Node:
-    return prepend_members(
-        _build_prefixed_keywordless(tokens, stop, begin, [*prefixes, *further_prefixes], node),
-        [cross.node],
-    )
-
-
-def _build_variant(tokens: Tokens, _stop: int, begin: int, node: Node) -> Node:
+def _build_variant(tokens: Tokens, node: Node) -> Node:
     node.membership = "VariantMembership"
-    node.start = tokens.starts[begin]
+    node.start = tokens.starts[tokens.begin]
     return node
-
-
-def _build_visible_variant(
-    tokens: Tokens, stop: int, begin: int, visibility: int, node: Node
-) -> Node:
-    apply_visibility(tokens, stop, begin, visibility, node)
-    return _build_variant(tokens, stop, begin, node)
 
 
 def _build_variant_reference(
-    tokens: Tokens,
-    stop: int,
-    begin: int,
-    name: Reference,
-    parts: list[SpecializationPart] | None,
-    body: list[Node],
+    tokens: Tokens, name: Reference, parts: Parts, body: list[Node]
 ) -> Node:
-    node = make_node("ReferenceUsage", FEATURE, tokens, begin, stop)
-    node.relations.append(Relation("ReferenceSubsetting", name))
-    return add_members(apply_specializations(node, parts, tokens), body)
+    parts = [Relation("ReferenceSubsetting", name), *(parts or ())]
+    return build_keywordless("ReferenceUsage", tokens, None, parts, None, body)
 
 
-def _build_return(tokens: Tokens, _stop: int, begin: int, node: Node) -> Node:
+def build_return(tokens: Tokens, node: Node) -> Node:
+    """Build a result parameter."""
     node.membership = "ReturnParameterMembership"
     tokens.restricted_nodes.append(node)
-    node.start = tokens.starts[begin]
+    node.start = tokens.starts[tokens.begin]
     return node
 
 
-def _build_visible_return(
-    tokens: Tokens, stop: int, begin: int, visibility: int, node: Node
-) -> Node:
-    apply_visibility(tokens, stop, begin, visibility, node)
-    return _build_return(tokens, stop, begin, node)
-
-
-def _make_source_succession(tokens: Tokens, begin: int, bounds: Node | None) -> Node:
+def _make_source_succession(tokens: Tokens, bounds: Node | None) -> Node:
     """Return the succession whose source is the member before it (SysML 8.2.2.9.3)."""
-    node = make_node("SuccessionAsUsage", FEATURE, tokens, begin, begin + 1)
-    end = node.add_member(
-        make_node("ReferenceUsage", "EndFeatureMembership", tokens, begin, begin + 1)
-    )
+    begin = tokens.begin
+    node = make_node("SuccessionAsUsage", FEATURE, tokens, (begin, begin + 1))
+    end = make_node("ReferenceUsage", "EndFeatureMembership", tokens, (begin, begin + 1))
+    node.add_member(end)
     if bounds is not None:
-        end.add_member(make_multiplicity(bounds, tokens, begin + 1, begin + 2))
+        end.add_member(make_multiplicity(bounds, tokens, (begin + 1, begin + 2)))
     return node
 
 
-def _build_then_member(
-    tokens: Tokens, _stop: int, begin: int, bounds: Node | None, node: Node
-) -> list[Node]:
-    return [_make_source_succession(tokens, begin, bounds), node]
+def _build_then_member(tokens: Tokens, bounds: Node | None, node: Node) -> list[Node]:
+    return [_make_source_succession(tokens, bounds), node]
 
 
-def _build_then_visible_member(
-    tokens: Tokens, stop: int, begin: int, bounds: Node | None, visibility: int, node: Node
-) -> list[Node]:
-    apply_visibility(tokens, stop, visibility, visibility, node)
-    return [_make_source_succession(tokens, begin, bounds), node]
+def _build_then_end(tokens: Tokens, end: End, body: list[Node]) -> Node:
+    node = _make_source_succession(tokens, None)
+    node.add_member(make_end("ReferenceUsage", end, tokens))
+    return finish_usage(tokens, node, body)
 
 
-def _build_then_end(tokens: Tokens, stop: int, begin: int, end: End, body: list[Node]) -> Node:
-    node = _make_source_succession(tokens, begin, None)
-    node.add_member(make_connector_end(end, tokens))
-    return finish_usage(node, tokens, stop, body)
-
-
-def _build_visible_then_end(
-    tokens: Tokens, stop: int, begin: int, visibility: int, end: End, body: list[Node]
-) -> Node:
-    node = _build_then_end(tokens, stop, begin, end, body)
-    apply_visibility(tokens, stop, begin, visibility, node)
-    return node
-
-
+_build_cross = partial(build_cross_feature, "ReferenceUsage")
 ACTIONS = {
-    "prefixed": _build_prefixed,
+    "prefixed": apply_prefixes,
     "prefixed_loose": _build_prefixed_keywordless,
-    "prefixed_nothing": _build_prefixed_nothing,
-    "cross": _build_cross_feature,
-    "cross_nameless": _build_nameless_cross_feature,
-    "crossed": _build_with_cross_feature,
-    "crossed_prefixed": _build_prefixed_with_cross_feature,
-    "crossed_prefixed_loose": _build_keywordless_with_cross_feature,
+    "prefixed_nothing": partial(
+        build_prefixed_nothing, "ReferenceUsage", _build_prefixed_keywordless
+    ),
+    "cross": _build_cross,
+    "cross_nameless": omit_first(_build_cross),
+    "crossed": partial(build_crossed, apply_prefixes),
+    "crossed_loose": partial(build_crossed, _build_prefixed_keywordless),
     "variant": _build_variant,
-    "visible_variant": _build_visible_variant,
     "variant_reference": _build_variant_reference,
-    "return": _build_return,
-    "visible_return": _build_visible_return,
+    "return": build_return,
     "then_member": _build_then_member,
-    "then_visible_member": _build_then_visible_member,
     "then_end": _build_then_end,
-    "visible_then_end": _build_visible_then_end,
 }
