@@ -29,7 +29,6 @@ WIDE_OBJECTS = {
     "sysmlc.backends.aml.context.Context": 13,
     "sysmlc.backends.sysml.plan.Member": 14,
     "sysmlc.backends.sysml.writer.Writer": 14,
-    "sysmlc.cli.contract_files.ContractFile": 13,
     "sysmlc.cli.session.Settings": 22,
     "sysmlc.config.Config": 15,
     "sysmlc.driver.compilation.Request": 14,

@@ -260,9 +260,12 @@ def test_an_observer_sees_each_step_and_the_graph_after_each_pass(plant):
         def after(self, step_name, graph):
             self.graphs.append((step_name, len(graph)))
 
+    class OutlineOfRecipes(OutlineBackend):
+        needs = ("recipe",)
+
     observer = RecordingObserver()
-    request = Request((plant,), passes=(CheckPorts(),), backends=(OutlineBackend(),))
-    compile_model(request, observer, analyses=["recipe"])
+    request = Request((plant,), passes=(CheckPorts(),), backends=(OutlineOfRecipes(),))
+    compile_model(request, observer, analyses=())
     assert observer.steps == [
         "0/5 read 1 ir",
         "1/5 pass ports",

@@ -4,24 +4,21 @@ The games and the interpreter double the time that ``import`` takes, so that pro
 compile models do not import this module.
 """
 
-from msgspec import Struct
+from msgspec.structs import replace
 
-from sysmlc.diagnostics import Diagnostic, Sink, Subject
+from sysmlc.analyses.analysis import analyse
+from sysmlc.analyses.controllers import synthesise as synthesise_contract
+from sysmlc.analyses.verdicts import ContractChecks, Verdicts
+from sysmlc.diagnostics import Sink, Subject
 from sysmlc.driver import Compilation
-from sysmlc.ir.query.libraries import find_unused_library_elements
-from sysmlc.logic.components.derivation import ComponentBehaviour
-from sysmlc.logic.composition.derivation import compose_blocks, list_checked_composites
-from sysmlc.logic.contract import Composite, Contract
-from sysmlc.logic.formats.lowering import rename_ambiguous_literals
+from sysmlc.logic.contract import Contract
 from sysmlc.simulation import Report as SimulationReport
 from sysmlc.simulation import run_scenarios
 from sysmlc.sources import Source
-from sysmlc.support.suggestions import did_you_mean
 from sysmlc.synthesis import Limits
-from sysmlc.synthesis.composition_check import CompositionVerdict, check_compositions
+from sysmlc.synthesis.composition_check import CompositionVerdict
 from sysmlc.synthesis.contract_checks import CheckedContract
-from sysmlc.synthesis.contract_checks import check_contracts as check_each_contract
-from sysmlc.synthesis.controller_synthesis import Synthesis, synthesise_controller
+from sysmlc.synthesis.controller_synthesis import Synthesis
 from sysmlc.synthesis.decision import Options
 
 __all__ = [
@@ -36,49 +33,21 @@ __all__ = [
 ]
 
 
-class ContractChecks(Struct, frozen=True):
-    """The verdicts of ``check_contracts``, and the findings that explain them."""
-
-    contracts: tuple[CheckedContract, ...]
-    """The verdict on each contract by itself, and on the requirements of its component."""
-    compositions: tuple[CompositionVerdict, ...]
-    """The verdict on the parts of each block."""
-    diagnostics: tuple[Diagnostic, ...]
-
-
 def check_contracts(
     compilation: Compilation, component: str = "", *, seconds: float = 10.0
 ) -> ContractChecks:
     """Decide the contracts of a model as ``sysmlc contracts check`` does.
 
     *component* selects one component by its qualified name. A question that takes longer than
-    *seconds* of CPU time is not decided; 0 sets no limit. Raises ValueError for an unknown
-    component, with a suggestion.
+    *seconds* of CPU time is not decided; 0 sets no limit. Verdicts are computed again only after a
+    change of the graph or with other arguments. Raises ValueError for an unknown component, with a
+    suggestion.
     """
-    graph, sink = compilation.graph, Sink()
-    contracts = graph.derived(Contract)
-    unused = frozenset[str]() if component else find_unused_library_elements(graph)
-    behaviours = {b.contract.component: b for b in graph.derived(ComponentBehaviour)}
-    composites = list_checked_composites(compose_blocks(graph, contracts, sink), behaviours)
-
-    names = {contract.component for contract in contracts}
-    names |= {composite.component for composite in composites}
-    if component and component not in names:
-        raise ValueError(f"no component '{component}'; {did_you_mean(component, names)}")
-
-    def is_selected(item: Contract | Composite) -> bool:
-        return component in ("", item.component) and item.origin not in unused
-
-    def place(origin: str) -> Subject:
-        element = graph.get(origin)
-        return Subject() if element is None else graph.subject(element)
-
-    chosen, options = filter(is_selected, contracts), Options("", Limits(seconds=seconds))
-    return ContractChecks(
-        tuple(check_each_contract(chosen, contracts, place, sink, options, behaviours)),
-        tuple(check_compositions(filter(is_selected, composites), place, sink, options)),
-        tuple(sink),
-    )
+    sink = Sink()
+    step = Verdicts(Options("", Limits(seconds=seconds)), component)
+    analyse(compilation.graph, step, sink)
+    (checks,) = compilation.graph.derived(ContractChecks)
+    return replace(checks, diagnostics=(*sink, *checks.diagnostics))
 
 
 def synthesise(contract: Contract, *, seconds: float = 0.0) -> Synthesis:
@@ -87,9 +56,7 @@ def synthesise(contract: Contract, *, seconds: float = 0.0) -> Synthesis:
     The controller is checked against the contract. *seconds* limits the CPU time; 0 sets no limit.
     """
     options = Options("", Limits(seconds=seconds), is_explained=True)
-    return synthesise_controller(
-        rename_ambiguous_literals(contract), lambda _: Subject(), Sink(), options
-    )
+    return synthesise_contract(contract, lambda _: Subject(), Sink(), options)
 
 
 def simulate(compilation: Compilation, scenarios: str, sink: Sink) -> SimulationReport:

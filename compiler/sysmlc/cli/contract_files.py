@@ -18,37 +18,39 @@ if TYPE_CHECKING:
     from sysmlc.config import Config
     from sysmlc.diagnostics import Sink, Subject
     from sysmlc.diagnostics.renderers import Finding
-    from sysmlc.logic.components.derivation import ComponentBehaviour
-    from sysmlc.logic.contract import Composite, Contract
-    from sysmlc.logic.requirements.statements import StatedRequirement
-    from sysmlc.recipe.recipe_times import LimitVerdict
+    from sysmlc.ir import Graph
+    from sysmlc.logic.contract import Contract
     from sysmlc.sources import Source
-    from sysmlc.synthesis.decision import Place
-
-_PLACE = re.compile(r"(?P<file>.*):(?P<line>\d+):(?P<column>\d+)")
 
 
 class ContractFile(Struct, frozen=True):
-    """The contracts of a file; ``place`` returns the location of an origin for diagnostics."""
+    """The contracts of a model or of a contract file."""
 
-    contracts: "tuple[Contract, ...]"
-    composites: "tuple[Composite, ...]"
+    graph: "Graph"
+    """The graph of the model; for a contract file it has no elements, only contracts."""
     sink: "Sink"
-    place: "Place"
     findings: "tuple[Finding, ...]"
+    """The findings of the compilation."""
     sources: "tuple[Source, ...]"
     inputs: "tuple[InputFile, ...]"
     root: Path
     is_whole: bool = True
     """Whether every contract of the file could be read."""
-    behaviours: "Mapping[str, ComponentBehaviour]" = {}
-    """The behaviours of a model by component."""
-    requirements: "tuple[StatedRequirement, ...]" = ()
-    """The requirements of a model."""
-    unused: frozenset[str] = frozenset()
-    """Ids of elements of libraries that the model does not use."""
-    time_verdicts: "Mapping[str, LimitVerdict]" = {}
-    """Verdicts on the times that requirements state, by the id of the requirement."""
+    reasons: "Mapping[str, str]" = {}
+    """Why a requirement is in no contract, by the id of the requirement."""
+
+    @property
+    def contracts(self) -> "tuple[Contract, ...]":
+        """All contracts."""
+        from sysmlc.logic.contract import Contract
+
+        return tuple(self.graph.derived(Contract))
+
+    def place(self, origin: str) -> "Subject":
+        """Return what diagnostics about the origin of a contract or conjunct are about."""
+        from sysmlc.logic.contract import locate_origin
+
+        return locate_origin(self.graph, origin)
 
 
 def split_operand(text: str) -> tuple[Path, str]:
@@ -59,13 +61,10 @@ def split_operand(text: str) -> tuple[Path, str]:
     return Path(file), component
 
 
-def select_contracts(
-    contracts: "tuple[Contract, ...]", component: str, composites: "Sequence[Composite]" = ()
-) -> "tuple[Contract, ...]":
+def select_contracts(contracts: "tuple[Contract, ...]", component: str) -> "tuple[Contract, ...]":
     """Return the contracts of *component*, or all contracts if it is empty.
 
-    A composite is a valid name too, even if it has no contract of its own. Exits with code 2 if the
-    name is unknown.
+    Exits with code 2 if the name is unknown.
     """
     from sysmlc.cli.session import fail
     from sysmlc.support.suggestions import did_you_mean
@@ -73,7 +72,6 @@ def select_contracts(
     if not component:
         return contracts
     names = [contract.component for contract in contracts]
-    names += [composite.component for composite in composites]
     if component not in names:
         fail(f"no component '{component}'; {did_you_mean(component, names)}")
     return tuple(contract for contract in contracts if contract.component == component)
@@ -99,50 +97,28 @@ def read_contracts(
 def _read_model(files: tuple[Path, ...], config: "Config", settings: "Settings") -> ContractFile:
     from sysmlc.cli import reports, session
     from sysmlc.diagnostics import Sink
-    from sysmlc.ir.query.libraries import find_unused_library_elements
-    from sysmlc.logic.components.derivation import ComponentBehaviour
-    from sysmlc.logic.composition.derivation import compose_blocks
     from sysmlc.logic.contract import Contract
-    from sysmlc.logic.requirements.statements import list_stated_requirements
-    from sysmlc.recipe.model import Model
-    from sysmlc.recipe.recipe_times import decide_limits
 
     compilation = session.compile_unit(files, config, settings)
     findings = tuple(reports.list_findings(compilation, only_errors=not settings.verbose))
-
-    def place(origin: str) -> "Subject":
-        from sysmlc.diagnostics import Subject
-
-        element = compilation.graph.get(origin)
-        return Subject() if element is None else compilation.graph.subject(element)
-
-    contracts = compilation.graph.derived(Contract) if compilation.exit_code() < 2 else ()
-    if not contracts and not findings and compilation.exit_code() < 2:
+    if compilation.exit_code() == 2:
+        compilation.graph.store(Contract, ())
+    elif not compilation.graph.derived(Contract) and not findings:
         names = ", ".join(f"'{file}'" for file in files)
         verb = "has" if len(files) == 1 else "have"
         session.fail(f"{names} {verb} no behaviour and no requirement that gives a contract")
-    sink = Sink(config.rules)
-    unused = find_unused_library_elements(compilation.graph)
-    composites = compose_blocks(compilation.graph, contracts, sink)
-    behaviours = compilation.graph.derived(ComponentBehaviour)
-    reasons = {
-        diagnostic.subject.id: diagnostic.message
-        for diagnostic in compilation.diagnostics
-        if diagnostic.rule.code in ("SM522", "SM523")
-    }
     return ContractFile(
-        tuple(contracts),
-        tuple(composites),
-        sink,
-        place,
+        compilation.graph,
+        Sink(config.rules),
         findings,
         compilation.sources,
         compilation.inputs,
         compilation.root,
-        behaviours={behaviour.contract.component: behaviour for behaviour in behaviours},
-        requirements=tuple(list_stated_requirements(compilation.graph, contracts, reasons, unused)),
-        unused=unused,
-        time_verdicts=decide_limits(compilation.graph.derived(Model)),
+        reasons={
+            diagnostic.subject.id: diagnostic.message
+            for diagnostic in compilation.diagnostics
+            if diagnostic.rule.code in ("SM522", "SM523")
+        },
     )
 
 
@@ -152,7 +128,9 @@ def _read_specification(
     from sysmlc.backends.base import InputFile
     from sysmlc.cli.session import fail
     from sysmlc.diagnostics import Sink
+    from sysmlc.ir import Graph
     from sysmlc.logic import formats
+    from sysmlc.logic.contract import Contract
     from sysmlc.sources import Source, SourceError
     from sysmlc.sources.files import read_whole
     from sysmlc.sources.source import DOCUMENT_LIMITS
@@ -171,14 +149,17 @@ def _read_specification(
     sink = Sink(config.rules)
     name = file.name.partition(".")[0]
     read = formats.read(text, source.name, sink, language, include)
-    contracts = tuple(
-        contract if contract.component else replace(contract, component=name) for contract in read
+    graph = Graph()
+    graph.store(
+        Contract,
+        (
+            contract if contract.component else replace(contract, component=name)
+            for contract in read
+        ),
     )
     is_whole = not sink.has_errors()
     inputs = (InputFile(source.name, source.sha256, "contract"),)
-    return ContractFile(
-        contracts, (), sink, _locate_in_text, (), (source,), inputs, Path.cwd(), is_whole
-    )
+    return ContractFile(graph, sink, (), (source,), inputs, Path.cwd(), is_whole)
 
 
 def _read_part_file(file: Path, formula: bytes) -> str:
@@ -199,16 +180,6 @@ def _read_part_file(file: Path, formula: bytes) -> str:
         return ""
     content = read_whole(parts, parts.as_posix(), DOCUMENT_LIMITS)
     return "\n" + content.decode("utf-8-sig")
-
-
-def _locate_in_text(origin: str) -> "Subject":
-    from sysmlc.diagnostics import Place, Subject
-
-    parsed = _PLACE.fullmatch(origin)
-    if parsed is None:
-        return Subject()
-    place = Place(parsed["file"], line=int(parsed["line"]), column=int(parsed["column"]))
-    return Subject(place=place)
 
 
 def show_results(

@@ -106,36 +106,33 @@ def _check(
     options: "Options",
     output: Path | None,
 ) -> int:
-    from sysmlc.cli.contract_files import select_contracts, show_results
+    from sysmlc.analyses.verdicts import ContractChecks, UnknownComponentError, Verdicts
+    from sysmlc.cli.contract_files import show_results
     from sysmlc.cli.reports import publish_results
     from sysmlc.cli.session import fail
-    from sysmlc.logic.composition.derivation import list_checked_composites
-    from sysmlc.synthesis.composition_check import check_compositions
-    from sysmlc.synthesis.contract_checks import check_contracts
+    from sysmlc.ir.query.libraries import find_unused_library_elements
+    from sysmlc.logic.requirements.statements import list_stated_requirements
+    from sysmlc.recipe.model import Model
+    from sysmlc.recipe.recipe_times import decide_limits
     from sysmlc.synthesis.witnesses import witness_files
 
-    contracts = (
-        select_contracts(contract_file.contracts, component, contract_file.composites)
-        if contract_file.contracts
-        else ()
-    )
-    if contracts and not component:
-        contracts = tuple(item for item in contracts if item.origin not in contract_file.unused)
-        if not contracts:
-            fail("all contracts are about libraries that the model does not use; name one with -c")
-    place, sink, behaviours = contract_file.place, contract_file.sink, contract_file.behaviours
-    composites = [
-        composite
-        for composite in list_checked_composites(contract_file.composites, behaviours)
-        if component == composite.component
-        or (not component and composite.origin not in contract_file.unused)
-    ]
-    alone = list(
-        check_contracts(contracts, contract_file.contracts, place, sink, options, behaviours)
-    )
-    together = list(check_compositions(composites, place, sink, options))
+    graph, contracts = contract_file.graph, contract_file.contracts
+    unused = find_unused_library_elements(graph)
+    if contracts and not component and all(item.origin in unused for item in contracts):
+        fail("all contracts are about libraries that the model does not use; name one with -c")
+    try:
+        # A model that could not be read has no components to select.
+        Verdicts(options, component if contracts else "").run(graph, contract_file.sink)
+    except UnknownComponentError as problem:
+        fail(str(problem))
+    (checks,) = graph.derived(ContractChecks)
+    contract_file.sink.extend(checks.diagnostics)
+    alone, together = checks.contracts, checks.compositions
+    time_verdicts = decide_limits(graph.derived(Model))
     requirements = [
-        item for item in contract_file.requirements if component in ("", item.component)
+        item
+        for item in list_stated_requirements(graph, contracts, contract_file.reasons, unused)
+        if component in ("", item.component)
     ]
     refusals: Sequence[Finding] = ()
     if output is not None:
@@ -150,11 +147,11 @@ def _check(
         (
             *(line for result in alone for line in _format_result(result, settings.verbose)),
             *(result.text() for result in together),
-            *describe_omitted(requirements, alone, contract_file.time_verdicts),
-            *describe_texts(requirements, contract_file.time_verdicts, settings.verbose),
+            *describe_omitted(requirements, alone, time_verdicts),
+            *describe_texts(requirements, time_verdicts, settings.verbose),
         ),
         {
-            "requirements": list_verdicts(requirements, alone, contract_file.time_verdicts),
+            "requirements": list_verdicts(requirements, alone, time_verdicts),
             "behaviours": list_behaviours(alone),
         },
         refusals,
@@ -164,7 +161,7 @@ def _check(
     if not contract_file.is_whole or not (alone or together):
         return 2
     formal = [requirement for requirement in requirements if requirement.is_formal]
-    verdicts = list_verdicts(formal, alone, contract_file.time_verdicts)
+    verdicts = list_verdicts(formal, alone, time_verdicts)
     if settings.strict and any(entry["verdict"] == "not-decided" for entry in verdicts):
         return 1
     return _find_exit_code(contract_file, alone, together, settings)
@@ -172,8 +169,8 @@ def _check(
 
 def _find_exit_code(
     contract_file: "ContractFile",
-    alone: "list[CheckedContract]",
-    together: "list[CompositionVerdict]",
+    alone: "Iterable[CheckedContract]",
+    together: "Iterable[CompositionVerdict]",
     settings: "Settings",
 ) -> int:
     """Return 1 if something is violated, else 2 if something is not decided, else 1 after errors.

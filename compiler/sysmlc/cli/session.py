@@ -235,10 +235,9 @@ def compute_outcome(unit: "Unit", settings: Settings, has_files: bool = True) ->
     All analyses run if only the findings are wanted, else those that the back ends need.
     """
     from sysmlc.driver import summarize
-    from sysmlc.driver.registry import list_needs
 
     request = _set_backends(unit.request, unit.emit, settings)
-    analyses = list_needs(request.backends) if has_files else None
+    analyses = () if has_files else None
     return summarize(_compile(request, settings, unit.opened, analyses), has_files)
 
 
@@ -293,7 +292,7 @@ def _compile(
     opened: "OpenedUnit | None" = None,
     analyses: Iterable[str] | None = None,
 ) -> "Compilation":
-    """Compile a unit with these analyses, by default with all."""
+    """Compile a unit with these analyses, by default with those that report findings."""
     from sysmlc.analyses import analysis
     from sysmlc.cli.progress import Progress
     from sysmlc.config import ConfigError
@@ -301,10 +300,10 @@ def _compile(
 
     progress = Progress(settings.verbose, settings.print_after)
     try:
-        names = [*(step.name for step in request.load_passes()), *analysis.NAMES]
+        names = [*(step.name for step in request.load_passes()), *analysis.CHECKED]
         _check_pass_names(names, settings.print_after)
-        wanted = analysis.NAMES if analyses is None else analyses
-        printed = [name for name in settings.print_after if name in analysis.NAMES]
+        wanted = analysis.CHECKED if analyses is None else analyses
+        printed = [name for name in settings.print_after if name in analysis.CHECKED]
         return compile_model(request, progress, opened, [*wanted, *printed])
     except ConfigError as problem:
         from sysmlc.config import locate_key

@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
-from msgspec.structs import replace
 
 from sysmlc.cli import options, terminal
 from sysmlc.cli.limits import LIMITS
@@ -14,8 +13,8 @@ if TYPE_CHECKING:
 
     from sysmlc.cli.contract_files import ContractFile
     from sysmlc.cli.session import Settings
-    from sysmlc.config import Config
     from sysmlc.diagnostics.renderers import Finding
+    from sysmlc.logic.contract import Contract
     from sysmlc.synthesis.controller_synthesis import Synthesis
     from sysmlc.synthesis.decision import Deadline, Options, Verdict
 
@@ -105,6 +104,7 @@ def command(
     SysML v2; with --play you take the part of the component against it.
     """
     from sysmlc.cli import session
+    from sysmlc.cli.contract_files import read_contracts
     from sysmlc.cli.progress import Progress
     from sysmlc.synthesis import Limits
     from sysmlc.synthesis.decision import Options
@@ -116,7 +116,7 @@ def command(
     config = session.load_config(files, settings)
     progress = Progress(settings.verbose)
     limits = Limits(nodes, LIMITS.memory, seconds or LIMITS.seconds)
-    contract_file = _read_contracts(files, language, config, settings)
+    contract_file = read_contracts(files, language, config, settings)
     options = Options(engine or "", limits, progress.note, is_explained=not is_decided_only)
     try:
         if is_played:
@@ -132,35 +132,25 @@ def command(
         progress.clear()
 
 
-def _read_contracts(
-    files: tuple[Path, ...], language: str, config: "Config", settings: "Settings"
-) -> "ContractFile":
-    """Return the contracts of the files, in which no literal has the name of a variable."""
-    from sysmlc.cli.contract_files import read_contracts
+def _select(contract_file: "ContractFile", component: str) -> "tuple[Contract, ...]":
+    """Return the selected contracts, in which no literal has the name of a variable."""
+    from sysmlc.cli.contract_files import select_contracts
     from sysmlc.logic.formats.lowering import rename_ambiguous_literals
 
-    contract_file = read_contracts(files, language, config, settings)
-    contracts = tuple(map(rename_ambiguous_literals, contract_file.contracts))
-    return replace(contract_file, contracts=contracts)
+    contracts = contract_file.contracts
+    selected = select_contracts(contracts, component) if contracts else ()
+    return tuple(map(rename_ambiguous_literals, selected))
 
 
 def _decide(
     contract_file: "ContractFile", component: str, settings: "Settings", options: "Options"
 ) -> int:
-    from sysmlc.cli.contract_files import select_contracts
     from sysmlc.synthesis.decision import decide
 
-    contracts = (
-        select_contracts(contract_file.contracts, component) if contract_file.contracts else ()
-    )
-    return _report(
-        contract_file,
-        settings,
-        [
-            decide(contract, contract_file.place, contract_file.sink, options)
-            for contract in contracts
-        ],
-    )
+    place, sink = contract_file.place, contract_file.sink
+    contracts = _select(contract_file, component)
+    verdicts = [decide(contract, place, sink, options) for contract in contracts]
+    return _report(contract_file, settings, verdicts)
 
 
 def _find_deadlines(
@@ -170,16 +160,11 @@ def _find_deadlines(
     settings: "Settings",
     options: "Options",
 ) -> int:
-    from sysmlc.cli.contract_files import select_contracts
     from sysmlc.synthesis.decision import find_deadline
 
-    contracts = (
-        select_contracts(contract_file.contracts, component) if contract_file.contracts else ()
-    )
-    results = [
-        find_deadline(c, timers, contract_file.place, contract_file.sink, options)
-        for c in contracts
-    ]
+    place, sink = contract_file.place, contract_file.sink
+    contracts = _select(contract_file, component)
+    results = [find_deadline(contract, timers, place, sink, options) for contract in contracts]
     return _report(contract_file, settings, results)
 
 
@@ -191,20 +176,19 @@ def _synthesize(
     output: Path | None,
     form: str,
 ) -> int:
-    from sysmlc.cli.contract_files import select_contracts
+    from sysmlc.analyses.controllers import Controllers
     from sysmlc.cli.reports import publish_results
     from sysmlc.synthesis.controller_files import TABLE, write_controllers
-    from sysmlc.synthesis.controller_synthesis import Form, synthesise_controller
+    from sysmlc.synthesis.controller_synthesis import Form, Synthesis
 
-    contracts = (
-        select_contracts(contract_file.contracts, component) if contract_file.contracts else ()
-    )
+    graph, place, sink = contract_file.graph, contract_file.place, contract_file.sink
+    _select(contract_file, component)  # exits if there is no such component
     kind = Form.TABLE if form == TABLE else Form.ANY
-    controllers = [
-        synthesise_controller(contract, contract_file.place, contract_file.sink, options, kind)
-        for contract in contracts
-    ]
-    written = write_controllers(controllers, contract_file.place, contract_file.sink, form)
+    Controllers(options, component, kind).run(graph, sink)
+    controllers = graph.derived(Synthesis)
+    for controller in controllers:
+        sink.extend(controller.diagnostics)
+    written = write_controllers(controllers, place, sink, form)
     refusals: Sequence[Finding] = ()
     if output is not None:
         files = (*written.files, *_find_counter_strategies(contract_file, controllers, options))
@@ -231,7 +215,6 @@ def _find_counter_strategies(
 
 def _play(contract_file: "ContractFile", component: str, options: "Options") -> int:
     """Let the user play against the counter-strategy of the selected contract."""
-    from sysmlc.cli.contract_files import select_contracts
     from sysmlc.cli.session import fail
     from sysmlc.synthesis import LimitError
     from sysmlc.synthesis.counterstrategy.counter_machine import find_environment_strategy
@@ -239,7 +222,7 @@ def _play(contract_file: "ContractFile", component: str, options: "Options") -> 
     from sysmlc.synthesis.counterstrategy.play import Player
     from sysmlc.synthesis.games.game import OutsideGr1Error
 
-    contracts = select_contracts(contract_file.contracts, component)
+    contracts = _select(contract_file, component)
     if len(contracts) != 1:
         fail(f"{len(contracts)} contracts are in the file: choose one with -c")
     try:

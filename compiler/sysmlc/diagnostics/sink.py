@@ -102,6 +102,11 @@ class Sink:
         sink._diagnostics = {_make_key(diagnostic): diagnostic for diagnostic in diagnostics}
         return sink
 
+    def extend(self, diagnostics: Iterable[Diagnostic]) -> None:
+        """Add diagnostics of another sink as they are."""
+        for diagnostic in diagnostics:
+            self._diagnostics.setdefault(_make_key(diagnostic), diagnostic)
+
     def set_element(self, diagnostic: Diagnostic, id: str) -> None:
         """Add the id of an element to a diagnostic that was reported with only a place."""
         subject = replace(diagnostic.subject, id=id)

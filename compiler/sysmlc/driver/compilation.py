@@ -185,15 +185,17 @@ def compile_model(
     request: Request,
     observer: Observer | None = None,
     opened: OpenedUnit | None = None,
-    analyses: Iterable[str] = analysis.NAMES,
+    analyses: Iterable[str] = analysis.CHECKED,
 ) -> Compilation:
     """Compile one unit. The result has the diagnostics; nothing is written to disk.
 
-    *analyses* names those whose results are wanted; the analyses that they need run as well. Raises
-    ConfigError for options that a pass does not have.
+    *analyses* names those whose results are wanted, in addition to those that the back ends need;
+    the analyses that they need run as well. Raises ConfigError for options that a pass does not
+    have.
     """
     observer, opened = observer or Observer(), opened or open_unit(request)
-    return _CompilationRun(request, observer, opened, analysis.expand(analyses)).compile()
+    names = analysis.expand([*analyses, *registry.list_needs(request.backends)])
+    return _CompilationRun(request, observer, opened, names).compile()
 
 
 class _CompilationRun:
@@ -225,6 +227,7 @@ class _CompilationRun:
         store_refinements(reading.overlays, self._graph)
         # all() stops at the first step with a fault: later steps rely on its result.
         is_broken = not all(map(self._refine, self._passes)) or is_broken
+        self._analyses = [n for n in self._analyses if analysis.has_result(n, self._graph)]
         is_broken = is_broken or not all(map(self._analyse, self._analyses))
         artefacts = [] if is_broken else self._emit(inputs, reading)
         if self._request.strict_input:
@@ -287,10 +290,10 @@ class _CompilationRun:
 
     def _analyse(self, name: str) -> bool:
         self._begin_step(f"analysis {name}")
-        if not analysis.has_result(name, self._graph):
-            return True
         step = registry.load_analysis(name, self._request.config.passes)
-        succeeded = self._run_guarded(f"analysis {name}", lambda: step.run(self._graph, self._sink))
+        succeeded = self._run_guarded(
+            f"analysis {name}", lambda: analysis.analyse(self._graph, step, self._sink)
+        )
         return self._check_graph(name) and succeeded
 
     def _check_graph(self, step: str) -> bool:
@@ -327,7 +330,7 @@ class _CompilationRun:
                 failed |= {a.path for a in self._output.artefacts()} - before
         return [a for a in self._output.artefacts() if a.path not in failed]
 
-    def _run_guarded(self, where: str, run: Callable[[], None]) -> bool:
+    def _run_guarded(self, where: str, run: Callable[[], object]) -> bool:
         """Run a step of sysmlc or of a plug-in; return whether it had no internal fault.
 
         An exception in it becomes a diagnostic, because no model may cause a traceback.

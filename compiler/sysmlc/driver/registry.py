@@ -112,12 +112,12 @@ def load_passes(options: Mapping[str, Mapping[str, object]]) -> list[Pass]:
     analysis or an option that does not exist.
     """
     plug_ins = find_plug_ins(PASS_GROUP)
-    names = [*pipeline.NAMES, *analysis.NAMES, *plug_ins]
+    names = [*pipeline.NAMES, *analysis.CHECKED, *plug_ins]
     for name in options:
         if name not in names:
             advice = did_you_mean(name, names)
             raise ConfigError(f"passes.{name}: unknown pass; {advice}", ("passes", name))
-    for name in analysis.NAMES:
+    for name in analysis.CHECKED:
         if name in options:
             load_analysis(name, options)
     loaded = [pipeline.load(name) for name in pipeline.NAMES]
@@ -299,8 +299,8 @@ def select_backends(wanted: Sequence[str]) -> list[Backend]:
 
 
 def list_needs(backends: Iterable[Backend]) -> tuple[str, ...]:
-    """Return the analyses that back ends need; all of them for a plug-in that names none."""
-    needs = [getattr(backend, "needs", analysis.NAMES) for backend in backends]
+    """Return the analyses that back ends need; those of ``check`` for a plug-in that names none."""
+    needs = [getattr(backend, "needs", analysis.CHECKED) for backend in backends]
     return tuple(dict.fromkeys(name for names in needs for name in names))
 
 

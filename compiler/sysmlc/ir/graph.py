@@ -24,8 +24,8 @@ class Graph:
     """Typed property graph of one compile unit.
 
     Elements and edges keep the order in which they were added. ``pending`` holds the references
-    that the pass ``resolve`` turns into edges. Values that passes derive for back ends (recipes,
-    contracts) are stored by type beside the elements.
+    that the pass ``resolve`` turns into edges. Results of analyses (recipes, contracts) are stored
+    by type beside the elements.
     """
 
     def __init__(self) -> None:
@@ -38,7 +38,9 @@ class Graph:
         self._derived: dict[type, tuple[object, ...]] = {}
         self.pending: list[Reference] = []
         self.revision = 0
-        """Number of changes of elements so far. Derived indexes compare it; edges do not count."""
+        """Number of changes of elements and edges so far; derived values do not count."""
+        self.analysed: dict[str, tuple[object, ...]] = {}
+        """For each analysis whose result is stored, what the result depends on."""
 
     # -- elements ------------------------------------------------------------------------------
 
@@ -234,6 +236,7 @@ class Graph:
         start = elements[source if isinstance(source, str) else source.id]
         end = elements[target if isinstance(target, str) else target.id]
         if add_neighbour(self._targets[edge], start.id, end):
+            self.revision += 1
             add_neighbour(self._sources[edge], end.id, start)
 
     def disconnect(self, edge: Edge, source: Element | str, target: Element | str) -> None:
@@ -254,6 +257,7 @@ class Graph:
 
     def _unlink(self, edge: Edge, source: Element, target: Element) -> None:
         if remove_neighbour(self._targets[edge], source.id, target):
+            self.revision += 1
             remove_neighbour(self._sources[edge], target.id, source)
 
     def _isolate(self, element: Element) -> None:

@@ -3,12 +3,15 @@
 A contract has variables with owners and domains, and classified conjuncts.
 """
 
+import re
 from collections.abc import Iterable, Mapping
 from enum import StrEnum
 
 from msgspec import Struct
 from msgspec.structs import replace
 
+from sysmlc.diagnostics import Place, Subject
+from sysmlc.ir import Graph
 from sysmlc.logic.formula import FALSE, TRUE, Const, Formula, eq, fold_iff, prime, var
 
 
@@ -157,6 +160,25 @@ class GivenContract(Struct, frozen=True):
     """A contract that replaces the derived contract of the same component."""
 
     contract: Contract
+
+
+_POSITION = re.compile(r"(?P<file>.*):(?P<line>\d+):(?P<column>\d+)")
+
+
+def locate_origin(graph: Graph, origin: str) -> Subject:
+    """Return what diagnostics about the origin of a contract or conjunct are about.
+
+    That is the element of the graph with this id, or a position ``file:line:column`` in a file of
+    contracts.
+    """
+    element = graph.get(origin)
+    if element is not None:
+        return graph.subject(element)
+    position = _POSITION.fullmatch(origin)
+    if position is None:
+        return Subject()
+    line, column = int(position["line"]), int(position["column"])
+    return Subject(place=Place(position["file"], line=line, column=column))
 
 
 def mark_derived(contract: Contract) -> Contract:

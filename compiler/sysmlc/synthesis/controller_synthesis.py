@@ -16,7 +16,7 @@ from msgspec.structs import replace
 
 from sysmlc.controllers.machine import Machine
 from sysmlc.controllers.table import Table
-from sysmlc.diagnostics import Sink
+from sysmlc.diagnostics import Diagnostic, Sink
 from sysmlc.logic.contract import Contract, Owner
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import reduce_contract
@@ -66,6 +66,8 @@ class Synthesis(Struct, frozen=True):
     machine: Controller | None = None
     vacuity: str = ""
     """Why the controller need not do anything, if that is so."""
+    diagnostics: tuple[Diagnostic, ...] = ()
+    """The findings, in a result of the analysis ``controllers``."""
 
     @property
     def exit_code(self) -> int:

@@ -130,7 +130,8 @@ def _repeat_service(contract: Contract, handshake: Handshake | None) -> Contract
 
 def _list_blocks(graph: Graph, by_origin: Mapping[str, Contract]) -> list[Element]:
     """List the classifiers that have a part or an action with a contract, at any depth."""
-    types = [graph[id] for id in by_origin]
+    # The contracts of a file have no elements.
+    types = [element for id in by_origin if (element := graph.get(id)) is not None]
     worklist = list(types)
     owners: dict[str, Element] = {}
     while worklist:

@@ -360,7 +360,7 @@ class Enumerations:
 
 
 def enumerations_of(graph: Graph) -> Enumerations:
-    """Return the enumerations of a graph; they are collected again after a change of elements."""
+    """Return the enumerations of a graph; they are collected again after a change."""
     for enumerations in graph.derived(Enumerations):
         if enumerations.revision == graph.revision:
             return enumerations
