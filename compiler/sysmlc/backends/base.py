@@ -11,11 +11,11 @@ from typing import Protocol
 
 from msgspec import Struct
 
-from sysmlc.diagnostics import Place, Rule, Sink
+from sysmlc.diagnostics import Diagnostic, Place, Rule, Sink
 from sysmlc.ir import Element, Graph
 from sysmlc.ir.compare.titles import spell_kind
 from sysmlc.support import resources
-from sysmlc.support.output import Output
+from sysmlc.support.output import Artefact, Output
 
 
 class InputFile(Struct, frozen=True):
@@ -41,7 +41,7 @@ DERIVED, AUTHOR, BOTH = DIAGRAMS
 
 
 class EmitOptions(Struct, frozen=True):
-    """Options of the user for back ends, and functions of the driver that back ends may call."""
+    """What a back end gets beside the graph: options of the user, and facts of the compilation."""
 
     templates: Path | None = None
     """Folder of templates that replace shipped ones."""
@@ -50,10 +50,19 @@ class EmitOptions(Struct, frozen=True):
     diagrams: str = DERIVED
     faulty: frozenset[str] = frozenset()
     """Ids of the elements with errors; a back end may mark them."""
+    diagnostics: tuple[Diagnostic, ...] = ()
+    """For a back end with ``is_last``: the diagnostics so far, sorted by location."""
+    artefacts: tuple[Artefact, ...] = ()
+    """For a back end with ``is_last``: the files of the back ends before it that will be written,
+    sorted by path; ``Artefact.backend`` names the back end."""
 
 
 class Backend(Protocol):
-    """Writes one kind of output from the graph of a compile unit."""
+    """Writes one kind of output from the graph of a compile unit.
+
+    A back end with the further member ``is_last = True`` runs after the others, and its options
+    contain their files and the diagnostics.
+    """
 
     name: str
     summary: str

@@ -7,6 +7,7 @@ from traceback import format_exc
 from typing import TYPE_CHECKING
 
 from msgspec import Struct, field
+from msgspec.structs import replace
 
 from sysmlc.analyses import analysis
 from sysmlc.backends.base import DERIVED, Backend, EmitOptions, InputFile
@@ -234,10 +235,7 @@ class _CompilationRun:
             self._report_unsupported()
         diagnostics = self._list_diagnostics()
         withheld = find_withheld_artefacts(artefacts, self._graph, diagnostics)
-        # Findings about a sibling are reported when that file is named, or the folder.
-        siblings = reading.list_sibling_sources()
-        if siblings:
-            diagnostics = tuple(d for d in diagnostics if file_of(d) not in siblings)
+        diagnostics = _select_reported(diagnostics, reading)
         return Compilation(
             root=self._root,
             graph=self._graph,
@@ -318,15 +316,24 @@ class _CompilationRun:
         faulty = frozenset(d.subject.id for d in self._sink if d.is_error and d.subject.id)
         options = EmitOptions(request.templates, inputs, locate, request.diagrams, faulty)
         failed: set[str] = set()
-        for backend in self._request.backends:
+        for backend in sorted(request.backends, key=_is_last):
             self._begin_step(f"emit {backend.name}")
-            before = {artefact.path for artefact in self._output.artefacts()}
+            written = [a for a in self._output.artefacts() if a.path not in failed]
+            if _is_last(backend):
+                diagnostics = self._list_diagnostics()
+                withheld = find_withheld_artefacts(written, self._graph, diagnostics)
+                options = replace(
+                    options,
+                    diagnostics=_select_reported(diagnostics, reading),
+                    artefacts=tuple(a for a in written if a.path not in withheld),
+                )
             if not self._run_guarded(
                 f"back end {backend.name}",
-                lambda b=backend: b.emit(  # type: ignore[misc]
-                    self._graph, self._output, self._sink, options
+                lambda b=backend, o=options: b.emit(  # type: ignore[misc]
+                    self._graph, self._output, self._sink, o
                 ),
             ):
+                before = {artefact.path for artefact in written}
                 failed |= {a.path for a in self._output.artefacts()} - before
         return [a for a in self._output.artefacts() if a.path not in failed]
 
@@ -412,6 +419,18 @@ class _CompilationRun:
         return name in self._graph or any(
             self._graph.qualified_name(element) == name for element in candidates
         )
+
+
+def _is_last(backend: Backend) -> bool:
+    return getattr(backend, "is_last", False)
+
+
+def _select_reported(
+    diagnostics: tuple[Diagnostic, ...], reading: Reading
+) -> tuple[Diagnostic, ...]:
+    """Return the diagnostics without those about siblings, which are reported for these files."""
+    siblings = reading.list_sibling_sources()
+    return tuple(d for d in diagnostics if file_of(d) not in siblings)
 
 
 def _is_about_unread_part(diagnostic: Diagnostic) -> bool:

@@ -299,9 +299,19 @@ def select_backends(wanted: Sequence[str]) -> list[Backend]:
 
 
 def list_needs(backends: Iterable[Backend]) -> tuple[str, ...]:
-    """Return the analyses that back ends need; those of ``check`` for a plug-in that names none."""
-    needs = [getattr(backend, "needs", analysis.CHECKED) for backend in backends]
-    return tuple(dict.fromkeys(name for names in needs for name in names))
+    """Return the analyses that back ends need; those of ``check`` for a plug-in that names none.
+
+    Raises BackendError for an unknown analysis.
+    """
+    names: dict[str, None] = {}
+    for backend in backends:
+        for name in getattr(backend, "needs", analysis.CHECKED):
+            if name not in analysis.NAMES:
+                advice = did_you_mean(name, analysis.NAMES)
+                text = f"back end '{backend.name}' needs the unknown analysis '{name}'; {advice}"
+                raise BackendError(text)
+            names[name] = None
+    return tuple(names)
 
 
 def load_full_catalogue(note: Callable[[str], None] = lambda _: None) -> dict[str, Rule]:
@@ -341,11 +351,13 @@ def _load(name: str, foreign: dict[str, EntryPoint]) -> Backend:
         if name in _BACKENDS:
             module, _, variable = _BACKENDS[name].partition(":")
             return cast("Backend", getattr(import_module(module), variable))
-        return cast("Backend", _load_plug_in(foreign[name], "back end"))
+        backend = cast("Backend", _load_plug_in(foreign[name], "back end"))
     except PlugInError as problem:
         raise BackendError(str(problem)) from problem
     except Exception as problem:
         raise BackendError(f"back end '{name}' cannot be loaded: {problem!r}") from problem
+    list_needs([backend])
+    return backend
 
 
 def _iter_modules(package: str) -> Iterator[str]:
