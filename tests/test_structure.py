@@ -45,7 +45,7 @@ WIDE_OBJECTS = {
     "sysmlc.logic.components.performances.Performances": 17,
     "sysmlc.logic.machines.machine.Machine": 16,
     "sysmlc.logic.machines.machine.Vertex": 15,
-    "sysmlc.logic.machines.symbolic_path.Path": 14,
+    "sysmlc.logic.machines.paths.Path": 14,
     "sysmlc.analyses.activities.draft.Draft": 21,
     "sysmlc.analyses.recipe.context.Context": 20,
     "sysmlc.recipe.model.Recipe": 14,

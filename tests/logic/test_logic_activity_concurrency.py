@@ -11,9 +11,9 @@ from long_runs import examples
 from sysmlc.logic import evaluate
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.concurrency import ConcurrencyRelation
+from sysmlc.logic.activities.saturation import ValueAnalysis
 from sysmlc.logic.activities.step_formulas import StepFormulas
 from sysmlc.logic.activities.token_nodes import NodeKind, Store, Write
-from sysmlc.logic.activities.value_analysis import ValueAnalysis
 from sysmlc.logic.contract import IntegerDomain, Owner, Variable
 from sysmlc.logic.formula import Const, Op
 

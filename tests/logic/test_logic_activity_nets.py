@@ -15,7 +15,7 @@ from sysmlc.diagnostics import Sink
 from sysmlc.ir import Edge, Kind
 from sysmlc.ir.text import parse_text, print_text
 from sysmlc.logic import evaluate
-from sysmlc.logic.activities import net_safety
+from sysmlc.logic.activities import petri_net
 from sysmlc.logic.activities.derivation import derive_contract
 from sysmlc.logic.activities.petri_net import reduce_net
 from sysmlc.logic.activities.token_graph import TokenGraph
@@ -76,7 +76,7 @@ def single_token_graphs(draw) -> TokenGraph:
 
 def search_markings(tokens):
     """Return the result of the search through all markings of the whole net."""
-    return net_safety.search_markings(net_safety.build_net(tokens, ACTIVITY_REGION), 100_000)
+    return petri_net.search_markings(petri_net.build_net(tokens, ACTIVITY_REGION), 100_000)
 
 
 @settings(max_examples=examples(300), deadline=None)
@@ -84,9 +84,9 @@ def search_markings(tokens):
 def test_reductions_preserve_the_result_of_the_search(tokens):
     """Only an end that prevents the next firing may make the reduced net more careful."""
     whole = search_markings(tokens)
-    net = net_safety.build_net(tokens, ACTIVITY_REGION)
+    net = petri_net.build_net(tokens, ACTIVITY_REGION)
     reduce_net(net)
-    reduced = net_safety.search_markings(net, 100_000)
+    reduced = petri_net.search_markings(net, 100_000)
     ends = {edge.source for edge in tokens.ends(ACTIVITY_REGION)}
     if whole.unsafe or not ends:
         assert bool(whole.unsafe) == bool(reduced.unsafe)
@@ -99,21 +99,21 @@ def test_reductions_preserve_the_result_of_the_search(tokens):
 @given(random_graphs(), st.integers(0, 2**16))
 def test_no_run_of_a_safe_activity_has_a_second_token_on_a_flow(tokens, seed):
     """The interpreter raises an exception at a second token."""
-    if not net_safety.check_safety(tokens, ACTIVITY_REGION, 100_000).unsafe:
+    if not petri_net.check_safety(tokens, ACTIVITY_REGION, 100_000).unsafe:
         assert len(list(play(tokens, random.Random(seed), 61))) == 61
 
 
 @settings(max_examples=examples(300), deadline=None)
 @given(random_graphs())
 def test_following_a_single_token_gives_the_result_of_the_search_or_none(tokens):
-    result = net_safety.check_single_token(tokens, ACTIVITY_REGION)
+    result = petri_net.check_single_token(tokens, ACTIVITY_REGION)
     assert result in (None, search_markings(tokens))
 
 
 @settings(max_examples=examples(100), deadline=None)
 @given(single_token_graphs())
 def test_without_forks_and_joins_no_marking_is_built(tokens):
-    assert net_safety.check_single_token(tokens, ACTIVITY_REGION) == search_markings(tokens)
+    assert petri_net.check_single_token(tokens, ACTIVITY_REGION) == search_markings(tokens)
 
 
 def test_two_tokens_that_meet_at_a_merge_before_a_sink_are_found():
@@ -122,7 +122,7 @@ def test_two_tokens_that_meet_at_a_merge_before_a_sink_are_found():
     work = canvas.node(Kind.ACTION, "opaque", "work")
     for source, target in ((start, work), (work, merge), (work, merge), (merge, sink)):
         canvas.flow(source, target)
-    assert net_safety.check_safety(build_unchecked(canvas), ACTIVITY_REGION, 1000).unsafe
+    assert petri_net.check_safety(build_unchecked(canvas), ACTIVITY_REGION, 1000).unsafe
 
 
 @settings(max_examples=examples(100), deadline=None)
@@ -131,10 +131,10 @@ def test_series_and_parallel_reductions_reduce_blocks_to_three_places(block):
     canvas = Canvas()
     canvas.graph = draw_activity(block)
     tokens = build_unchecked(canvas)
-    net = net_safety.build_net(tokens, ACTIVITY_REGION)
+    net = petri_net.build_net(tokens, ACTIVITY_REGION)
     reduce_net(net)
     assert len(net.places) <= 3
-    assert not net_safety.search_markings(net, 10).unsafe
+    assert not petri_net.search_markings(net, 10).unsafe
 
 
 def test_many_parallel_branches_are_checked_without_building_their_markings():
@@ -146,7 +146,7 @@ def test_many_parallel_branches_are_checked_without_building_their_markings():
         canvas.flow(fork, first)
         canvas.flow(last, join)
     canvas.flow(join, canvas.control("final"))
-    safety = net_safety.check_safety(build_unchecked(canvas), ACTIVITY_REGION, 10)
+    safety = petri_net.check_safety(build_unchecked(canvas), ACTIVITY_REGION, 10)
     assert safety.is_complete
     assert not safety.unsafe
 

@@ -1,6 +1,6 @@
 """Search of a token graph for a second token on a flow, and reduction of large token graphs.
 
-Most activities are 1-safe in any order of moves, which ``net_safety`` proves fast. For the others,
+Most activities are 1-safe in any order of moves, which ``petri_net`` proves fast. For the others,
 ``reachability`` explores all synchronous steps. They may be 1-safe only because all nodes move in
 the same step, so that a flow is empty again before its next token arrives.
 """
@@ -11,7 +11,7 @@ from functools import lru_cache
 from msgspec import Struct
 from msgspec.structs import replace
 
-from sysmlc.logic.activities import net_safety as token_net
+from sysmlc.logic.activities import petri_net as token_net
 from sysmlc.logic.activities import reachability as token_search
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.activities.token_nodes import (

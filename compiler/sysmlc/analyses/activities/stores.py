@@ -30,7 +30,7 @@ from sysmlc.logic.expressions.elaboration import ElaborationError
 from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.feature_writes import FeatureWrite, WriterIndex, find_label
 from sysmlc.logic.formula import Formula
-from sysmlc.logic.machines.symbolic_path import split_by_range
+from sysmlc.logic.machines.paths import split_by_range
 from sysmlc.logic.simplification import is_satisfiable, remove_redundant, substitute
 
 _Cases = tuple[tuple[Formula, Formula], ...]

@@ -37,7 +37,7 @@ from sysmlc.logic.expressions.elaboration import ElaborationError, Symbol, elabo
 from sysmlc.logic.expressions.parsing import tree_of
 from sysmlc.logic.feature_writes import WriterIndex, find_bound_name
 from sysmlc.logic.formula import Formula
-from sysmlc.logic.machines.symbolic_path import split_by_range
+from sysmlc.logic.machines.paths import split_by_range
 from sysmlc.logic.simplification import substitute
 
 Cases = list[tuple[Formula, Formula]]

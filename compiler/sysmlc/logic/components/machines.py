@@ -34,9 +34,9 @@ from sysmlc.logic.machines.moves import (
     is_active_formula,
     is_chosen_formula,
 )
+from sysmlc.logic.machines.paths import Path
 from sysmlc.logic.machines.reader import MachineOptions, read_machine
 from sysmlc.logic.machines.supported_constructs import list_behaviours
-from sysmlc.logic.machines.symbolic_path import Path
 
 EVENT = "event"
 """The variable of a machine that names the event which occurs."""

@@ -23,7 +23,7 @@ from sysmlc.logic.composition.structure import join_path
 from sysmlc.logic.contract import BooleanDomain, Domain, Owner, Variable
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.identifiers import spell_name
-from sysmlc.logic.machines.region_names import choose_shortest, iter_region_names
+from sysmlc.logic.machines.reader import choose_shortest, iter_region_names
 
 if TYPE_CHECKING:
     from sysmlc.logic.components.component import Component

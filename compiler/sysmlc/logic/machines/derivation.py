@@ -36,7 +36,7 @@ from sysmlc.logic.machines.moves import (
     is_active_formula,
     is_chosen_formula,
 )
-from sysmlc.logic.machines.symbolic_path import Path
+from sysmlc.logic.machines.paths import Path
 from sysmlc.logic.simplification import is_satisfiable, remove_redundant
 
 _Touches = Callable[[Path, str], bool]

@@ -17,7 +17,7 @@ from sysmlc.logic.machines.machine import (
     Transition,
     Vertex,
 )
-from sysmlc.logic.machines.symbolic_path import Path
+from sysmlc.logic.machines.paths import Path
 from sysmlc.logic.printing import print_formula, print_literal
 from sysmlc.support.counts import count as count_nouns
 

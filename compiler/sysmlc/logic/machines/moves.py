@@ -32,8 +32,7 @@ from sysmlc.logic.machines.machine import (
     Vertex,
     element_id,
 )
-from sysmlc.logic.machines.paths import PathExplorer
-from sysmlc.logic.machines.symbolic_path import MAX_PATHS, Path, TooManyPathsError
+from sysmlc.logic.machines.paths import MAX_PATHS, Path, PathExplorer, TooManyPathsError
 from sysmlc.logic.simplification import remove_redundant, simplify_constant
 
 SATURATES = rule(
