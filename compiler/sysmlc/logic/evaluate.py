@@ -175,14 +175,6 @@ def _release(loop: int, goal: list[bool], stay: list[bool]) -> list[bool]:
     return _weak_until(loop, stay, meeting)
 
 
-def _eventually(loop: int, goal: list[bool]) -> list[bool]:
-    return _until(loop, [True] * len(goal), goal)
-
-
-def _always(loop: int, stay: list[bool]) -> list[bool]:
-    return _weak_until(loop, stay, [False] * len(stay))
-
-
 def _divide(left: int, right: int) -> int:
     if right == 0:
         return 0
@@ -207,8 +199,8 @@ _OPERATIONS: dict[Op, Callable[..., Literal]] = {
 }
 _TEMPORAL: dict[Op, Callable[..., list[bool]]] = {
     Op.NEXT: _shift,
-    Op.ALWAYS: _always,
-    Op.EVENTUALLY: _eventually,
+    Op.ALWAYS: lambda loop, stay: _weak_until(loop, stay, [False] * len(stay)),
+    Op.EVENTUALLY: lambda loop, goal: _until(loop, [True] * len(goal), goal),
     Op.UNTIL: _until,
     Op.WEAK_UNTIL: _weak_until,
     Op.RELEASE: _release,

@@ -152,7 +152,8 @@ class FormulaReader:
         if op in ARITHMETIC:
             formula = f.compare(op, self.require_number(left), self.require_number(right))
             return Term(formula, NUMBER, left.offset)
-        formula = _apply_connective(op, self.require_boolean(left), self.require_boolean(right))
+        operands = self.require_boolean(left), self.require_boolean(right)
+        formula = _FOLDING[op](*operands) if op in _FOLDING else Apply(op, operands)
         return Term(formula, BOOLEAN, left.offset)
 
     def _read_reserved_literal(self, op: Op, left: Term) -> Term | None:
@@ -319,10 +320,6 @@ def _compare_enumerations(op: Op, left: Term, right: Term) -> Formula:
         )
     )
     return equality if op is Op.EQ else f.negate(equality)
-
-
-def _apply_connective(op: Op, left: Formula, right: Formula) -> Formula:
-    return _FOLDING[op](left, right) if op in _FOLDING else Apply(op, (left, right))
 
 
 def parse_formula(

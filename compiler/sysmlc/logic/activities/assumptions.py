@@ -64,13 +64,9 @@ def _find_endless_entry(graph: TokenGraph, component: Collection[str]) -> TokenN
     entries = [
         node
         for node in nodes
-        if any(_enters_component(edge, component) for edge in graph.incoming(node))
+        if any(edge.source not in component or edge.marked for edge in graph.incoming(node))
     ]
     return next(iter(entries), nodes[0])
-
-
-def _enters_component(edge: TokenEdge, component: Collection[str]) -> bool:
-    return edge.source not in component or edge.marked
 
 
 def _iter_loops(graph: TokenGraph, nodes: Collection[str]) -> Iterator[Loop]:

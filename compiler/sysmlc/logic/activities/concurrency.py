@@ -122,12 +122,11 @@ class ConcurrencyRelation:
 
     def _listening_places(self, taken: list[TokenEdge]) -> list[str]:
         """List the listening edges that get a token when a node takes tokens from these edges."""
-        return [edge.id for edge in self._listening if self._is_heard(edge, taken)]
-
-    def _is_heard(self, edge: TokenEdge, taken: list[TokenEdge]) -> bool:
-        return any(
-            edge_into_region in taken for edge_into_region in self.graph.entering(edge.listens)
-        )
+        return [
+            edge.id
+            for edge in self._listening
+            if any(entering in taken for entering in self.graph.entering(edge.listens))
+        ]
 
     @cached_property
     def _listening(self) -> list[TokenEdge]:

@@ -392,7 +392,7 @@ def search_markings(net: Net, limit: int) -> Safety:
             # Checked where the region ends, too: in the token game, where all nodes move at once,
             # a second token may reach a merge in the step in which the first one leaves it.
             if remaining & gives & ~resets:
-                return Safety(unsafe=_first_place(remaining & gives, bits))
+                return Safety(unsafe=next(p for p, bit in bits.items() if bit & remaining & gives))
             if ended:
                 continue
             can_move = True
@@ -410,10 +410,6 @@ def search_markings(net: Net, limit: int) -> Safety:
 
 def _mask_of(places: Iterable[str], bits: dict[str, int]) -> int:
     return sum(bits[place] for place in places)
-
-
-def _first_place(mask: int, bits: dict[str, int]) -> str:
-    return next(place for place, bit in bits.items() if mask & bit)
 
 
 def check_single_token(graph: TokenGraph, region: str) -> Safety | None:

@@ -87,10 +87,6 @@ class StepFormulas:
         """A running node is done; what it writes counts even if a region around it ends now."""
         return f.both(f.var(node.run), self.done_formula(node))
 
-    def list_choosers(self) -> list[TokenNode]:
-        """List the decisions with several branches that can be open at the same time."""
-        return list(filter(self.graph.can_choose, self.graph.nodes))
-
     def is_chosen(self, edge: TokenEdge) -> bool:
         """Whether the edge leaves a decision with several branches open at the same time."""
         return self.graph.can_choose(self.graph.node(edge.source))

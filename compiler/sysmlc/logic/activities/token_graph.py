@@ -236,7 +236,7 @@ class TokenGraph(Struct, frozen=True, dict=True):
         chosen, where it interrupts a region, before the content of a structured node, and where a
         cycle has no action.
         """
-        return edge.id in self._delaying
+        return edge.id in self._passing[0]
 
     @property
     def passing_edges(self) -> list[TokenEdge]:
@@ -246,10 +246,6 @@ class TokenGraph(Struct, frozen=True, dict=True):
         that a computation that follows the flows back, in this order, needs no deep recursion.
         """
         return self._passing[1]
-
-    @cached_property
-    def _delaying(self) -> frozenset[str]:
-        return self._passing[0]
 
     @cached_property
     def _passing(self) -> tuple[frozenset[str], list[TokenEdge]]:
@@ -280,13 +276,14 @@ class TokenGraph(Struct, frozen=True, dict=True):
                 elif edge.target not in closed:
                     opened.add(edge.target)
                     path.append((edge.target, self._iter_passing(self._nodes[edge.target], edges)))
-        ordered = sorted(map(self.node, reversed(closed)), key=self._nesting_depth, reverse=True)
+        ordered = sorted(
+            map(self.node, reversed(closed)),
+            key=lambda node: len(list(self.regions_around(node.region))),
+            reverse=True,
+        )
         return frozenset(edges), [
             edge for node in ordered for edge in self._iter_passing(node, frozenset())
         ]
-
-    def _nesting_depth(self, node: TokenNode) -> int:
-        return sum(1 for _ in self.regions_around(node.region))
 
     def _iter_passing(self, node: TokenNode, delaying: Container[str]) -> Iterator[TokenEdge]:
         """Iterate over the edges on which a token leaves the node in the step in which it comes."""

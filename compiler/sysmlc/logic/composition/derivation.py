@@ -202,7 +202,7 @@ def _add_own_contracts(block: Block) -> Member | None:
         behaviour_member = None
     if requirement is None:
         return behaviour_member
-    if _has_read_outputs(block, requirement, parts) and not _has_decided_outputs(
+    if _shares_outputs(block, requirement, parts, Owner.ENVIRONMENT) and not _has_decided_outputs(
         block, requirement, parts
     ):
         if len(block.members) == len(parts):
@@ -218,11 +218,6 @@ def _as_member(block: Block, contract: Contract | None) -> Member | None:
 def _has_decided_outputs(block: Block, member: Member, parts: Iterable[Member]) -> bool:
     """Whether some output of the member is joined to an output of a part."""
     return _shares_outputs(block, member, parts, Owner.SYSTEM)
-
-
-def _has_read_outputs(block: Block, member: Member, parts: Iterable[Member]) -> bool:
-    """Whether some output of the member is joined to an input of a part."""
-    return _shares_outputs(block, member, parts, Owner.ENVIRONMENT)
 
 
 def _shares_outputs(block: Block, member: Member, parts: Iterable[Member], owner: Owner) -> bool:

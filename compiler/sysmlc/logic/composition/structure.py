@@ -55,15 +55,13 @@ def _type_of_usage(graph: Graph, feature: Element) -> Element | None:
         return graph.target(feature, Edge.METHOD)
     if feature.kind is Kind.ACTIVITY:
         return (
-            feature if _is_plain_usage(graph, feature) or _is_own_action(graph, feature) else None
+            feature
+            if (graph.targets(feature, Edge.SPECIALIZES) and not _is_drawn(graph, feature))
+            or _is_own_action(graph, feature)
+            else None
         )
     is_part = feature.role == "part" and feature.kind in (Kind.PROPERTY, Kind.PORT)
     return query.type_of(graph, feature) if is_part else None
-
-
-def _is_plain_usage(graph: Graph, action: Element) -> bool:
-    """Whether an action specialises another one and has no steps of its own."""
-    return bool(graph.targets(action, Edge.SPECIALIZES)) and not _is_drawn(graph, action)
 
 
 def _is_own_action(graph: Graph, action: Element) -> bool:

@@ -61,39 +61,29 @@ class SpecificationFile(Struct, frozen=True):
         other = SpecificationFile.from_text(text, path, self.sink)
         return replace(self, text=f"{self.text}\n{text}", appended=(*self.appended, (start, other)))
 
-    def find_path(self, offset: int) -> str:
-        """Return the path of the file that contains a character."""
-        return self._locate(offset)[0]
-
-    def locate(self, offset: int) -> tuple[int, int]:
-        """Return line and column of a character in its file, both counted from 1."""
-        return self._locate(offset)[1:]
-
-    def _locate(self, offset: int) -> tuple[str, int, int]:
+    def locate(self, offset: int) -> tuple[str, int, int]:
+        """Return the path of the file that contains a character, its line and column from 1."""
         for start, other in reversed(self.appended):
             if offset >= start:
-                return other._locate(offset - start)
+                return other.locate(offset - start)
         line = bisect_right(self.line_starts, offset)
         return self.path, line, offset - self.line_starts[line - 1] + 1
 
     def origin_at(self, offset: int) -> str:
         """Return a location as the origin of a conjunct: ``file:line:column``."""
-        path, line, column = self._locate(offset)
+        path, line, column = self.locate(offset)
         return f"{path}:{line}:{column}"
 
     def report(self, rule: Rule, offset: int, **facts: str) -> None:
         """Report a rule about the character at the offset."""
-        path, line, column = self._locate(offset)
+        path, line, column = self.locate(offset)
         place = Place(path, line=line, column=column)
         printable: dict[str, object] = {
-            name: _replace_surrogates(fact) for name, fact in facts.items()
+            # JSON can escape lone surrogates, which UTF-8 cannot encode.
+            name: fact.encode("utf-8", "replace").decode("utf-8")
+            for name, fact in facts.items()
         }
         self.sink.report(rule, Subject(place=place), notes=(), help="", cause="", **printable)
-
-
-def _replace_surrogates(text: str) -> str:
-    """Replace lone surrogates, which JSON can escape but UTF-8 cannot encode."""
-    return text.encode("utf-8", "replace").decode("utf-8")
 
 
 class ContractDraft:

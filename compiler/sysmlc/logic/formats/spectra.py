@@ -121,7 +121,7 @@ class _ModuleReader(StatementReader):
         name = self._cursor.expect_kind("string", "the name of a file")
         self._cursor.accept(";")
         file = self._draft.file
-        base = Path(file.find_path(name.offset))
+        base = Path(file.locate(name.offset)[0])
         path = _resolve_import(file, base, name.text[1:-1])
         if path is None:
             reason = "is no Spectra file below the folder of the specification or of --include"

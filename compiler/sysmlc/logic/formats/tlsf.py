@@ -196,7 +196,8 @@ class _TlsfReader:
     def _read_signal(self, owner: Owner) -> None:
         cursor = self._cursor
         token = cursor.expect_kind("name", "a name")
-        name = _replace_signs(token.text)
+        # Only TLSF allows the signs ' and @ in names.
+        name = re.sub(r"\W", "_", token.text)
         if not cursor.accept("["):
             cursor.expect(";")
             self._declare(name, token, owner)
@@ -240,11 +241,6 @@ class _TlsfReader:
         else:
             whole = f.always(formula) if class_ is Class.SAFETY else formula
             self._draft.add_ltl(owner, whole, offset)
-
-
-def _replace_signs(name: str) -> str:
-    """Replace the signs ``'`` and ``@``, which only TLSF allows in names."""
-    return re.sub(r"\W", "_", name)
 
 
 def _find_start(tree: Tree) -> int:

@@ -244,12 +244,6 @@ class Evaluator:
             raise FormulaError("the definitions take too many steps", tree.offset)
         return self._by_kind[tree.kind](self, tree, scope)
 
-    def _evaluate_group(self, tree: Tree, scope: Scope) -> Value:
-        return self.evaluate(tree.args[0], scope)
-
-    def _evaluate_literal(self, tree: Tree, scope: Scope) -> Value:
-        return int(tree.text)
-
     def _evaluate_name(self, tree: Tree, scope: Scope) -> Value:
         name = tree.text
         if name in ("true", "false"):
@@ -355,8 +349,8 @@ class Evaluator:
             yield dict(zip(names, values, strict=True))
 
     _by_kind: ClassVar[dict[str, Callable[..., Value]]] = {
-        "group": _evaluate_group,
-        "number": _evaluate_literal,
+        "group": lambda self, tree, scope: self.evaluate(tree.args[0], scope),
+        "number": lambda _, tree, scope: int(tree.text),
         "name": _evaluate_name,
         "call": _evaluate_call,
         "index": _evaluate_index,

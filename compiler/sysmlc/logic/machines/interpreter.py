@@ -294,11 +294,10 @@ def _is_blocked(machine: Machine, now: Mapping[str, Literal], transition: Transi
 
 def _is_complete(machine: Machine, now: Mapping[str, Literal], state: Vertex) -> bool:
     has_ended = not state.done or bool(now[state.done])
-    return has_ended and all(_is_final(machine, now, region) for region in state.regions)
-
-
-def _is_final(machine: Machine, now: Mapping[str, Literal], region: str) -> bool:
-    return any(vertex.kind == "final" for vertex in find_active_vertices(machine, now, region))
+    return has_ended and all(
+        any(vertex.kind == "final" for vertex in find_active_vertices(machine, now, region))
+        for region in state.regions
+    )
 
 
 def _has_occurrence(

@@ -262,12 +262,10 @@ def _firing_condition(machine: Machine, move: Move, moves: list[Move]) -> Formul
     """Return the condition that the move is enabled, not preempted, and chosen by its source."""
     source = machine.vertices[move.transition.source]
     choice = is_chosen_formula(source.pick, move.transition.literal) if source.pick else f.TRUE
-    return f.both(_eligibility_condition(machine, move, moves), choice)
-
-
-def _eligibility_condition(machine: Machine, move: Move, moves: list[Move]) -> Formula:
     return f.both(
-        move.enabled, *(f.negate(other.enabled) for other in _find_preempting(machine, move, moves))
+        move.enabled,
+        *(f.negate(other.enabled) for other in _find_preempting(machine, move, moves)),
+        choice,
     )
 
 
@@ -282,15 +280,12 @@ def _find_preempting(machine: Machine, move: Move, moves: list[Move]) -> Iterato
             if can_be_simultaneous(transition, other.transition):
                 yield other
         elif (
-            _yields_to_completion(transition, other.transition)
+            # Completion events are dispatched before all others (UML 2.5.1, 14.2.3.8.3).
+            transition.occurrences
+            and not other.transition.occurrences
             and transition.source in other.transition.sources
         ):
             yield other
-
-
-def _yields_to_completion(transition: Transition, other: Transition) -> bool:
-    # Completion events are dispatched before all others (UML 2.5.1, 14.2.3.8.3).
-    return bool(transition.occurrences) and not other.occurrences
 
 
 def is_chosen_formula(pick: str, literal: str) -> Formula:

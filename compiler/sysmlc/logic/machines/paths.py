@@ -157,7 +157,8 @@ class PathExplorer(Struct, frozen=True):
 
     def explore_start(self, values: Mapping[str, Formula]) -> list[Path]:
         """Return the feasible paths into the initial states; properties start with *values*."""
-        start = Path(values=values, config=self._inactive_regions())
+        inactive = {region.variable: INACTIVE for region in self.machine.regions.values()}
+        start = Path(values=values, config=inactive)
         paths = self._run_actions(start, self.machine.entry)
         for region in self.machine.top:
             paths = self._start_open_regions(
@@ -165,9 +166,6 @@ class PathExplorer(Struct, frozen=True):
             )
             check_path_count(paths)
         return list(self._drop_infeasible(paths))
-
-    def _inactive_regions(self) -> dict[str, str]:
-        return {region.variable: INACTIVE for region in self.machine.regions.values()}
 
     def _known_configuration(self, sources: tuple[str, ...]) -> dict[str, str]:
         """Return the literals of regions that follow from the fact that the sources are active."""
@@ -368,14 +366,12 @@ class PathExplorer(Struct, frozen=True):
                     for path_so_far in paths
                     for after in (
                         [path_so_far]
-                        if self._is_active(path_so_far, state)
+                        if path_so_far.config.get(self.machine.regions[state.region].variable)
+                        == state.literal
                         else self._enter(path_so_far, state)
                     )
                 ]
         return paths
-
-    def _is_active(self, path: Path, state: Vertex) -> bool:
-        return path.config.get(self.machine.regions[state.region].variable) == state.literal
 
     def _enter(self, path: Path, state: Vertex) -> list[Path]:
         variable = self.machine.regions[state.region].variable

@@ -119,10 +119,6 @@ class Reaction(Struct, frozen=True):
         """Return the reaction with a new value."""
         return replace(self, store={**self.store, name: value})
 
-    def with_choice(self, name: str, literal: str) -> "Reaction":
-        """Return the reaction with the choice that was made at a vertex."""
-        return replace(self, picked={**self.picked, name: literal})
-
 
 def take_transition(
     machine: Machine,
@@ -161,7 +157,7 @@ def _follow(
     ):
         return []
     if source.pick:
-        run = run.with_choice(source.pick, transition.literal)
+        run = replace(run, picked={**run.picked, source.pick: transition.literal})
     region = machine.find_main_region(transition)
     if region and not machine.has_concurrent_exits(source.id):
         run = _leave_region(machine, run, region)

@@ -81,7 +81,7 @@ class FormulaReduction:
             case Apply(Op.ALWAYS, (inner,)):
                 yield from self._reduce_obligation(f.TRUE, inner)
             case _:
-                yield from self._reduce_obligation(self._is_first_step(), formula)
+                yield from self._reduce_obligation(f.negate(self._previous(f.TRUE)), formula)
 
     def replace_past(self, formula: Formula) -> Formula:
         """Return the formula with history bits in place of operators of the past."""
@@ -293,9 +293,6 @@ class FormulaReduction:
     def _last_step(self, step: Formula) -> Formula:
         """Return a bit that is true in the next step if and only if *step* holds now."""
         return self._history.last_step(step, self._origin)
-
-    def _is_first_step(self) -> Formula:
-        return f.negate(self._previous(f.TRUE))
 
 
 # -- formulas ------------------------------------------------------------------------------------

@@ -262,7 +262,7 @@ def _read_temporal(graph: Graph, scope: Scope, statement: Statement, sink: Sink)
         sink.report(
             NOT_A_FORMULA,
             graph.subject(constraint),
-            constraint=_name_constraint(statement),
+            constraint=statement.constraint.name or "the constraint",
             requirement=statement.requirement.name,
             about=scope.context.name,
             names=scope.describe_names(),
@@ -343,10 +343,6 @@ def _explain(scope: Scope, error: Exception) -> str:
     return str(error)
 
 
-def _name_constraint(statement: Statement) -> str:
-    return statement.constraint.name or "the constraint"
-
-
 def _report_ranges(graph: Graph, scope: Scope, formula: Formula, sink: Sink) -> None:
     used = f.variable_names(formula)
     for feature in scope.context.features.values():
@@ -390,10 +386,6 @@ def _add_stated_conjuncts(behaviour: ComponentBehaviour, stated: Contract) -> Co
 
 
 # -- conjuncts -------------------------------------------------------------------------------------
-
-
-def _is_assumed(scope: Scope, statement: Statement, formula: Formula) -> bool:
-    return statement.is_assumed or (statement.is_open and scope.is_about_inputs(formula))
 
 
 def _name_viewpoints(graph: Graph, requirements: Iterable[Element]) -> dict[str, str]:
@@ -473,7 +465,9 @@ def make_contract(
     assumed: list[tuple[Statement, Reading]] = []
     demanded: list[tuple[Statement, Reading]] = []
     for statement, reading in formulas:
-        is_assumed = _is_assumed(scope, statement, reading.formula)
+        is_assumed = statement.is_assumed or (
+            statement.is_open and scope.is_about_inputs(reading.formula)
+        )
         (assumed if is_assumed else demanded).append((statement, reading))
     if not demanded:
         return None

@@ -128,7 +128,9 @@ class Scope(Struct, frozen=True):
         names = self.list_names(kind)
         last = re.split(r"::|\.", name)[-1]
         machine = f"{name}.state"
-        if similar := find_similar(name, [*names, *filter(_is_qualified, self.context.literals)]):
+        if similar := find_similar(
+            name, [*names, *(name for name in self.context.literals if "::" in name)]
+        ):
             candidates = [similar]
         elif self.names is not None and self.names.find(machine):
             candidates = [machine]
@@ -202,10 +204,6 @@ class Scope(Struct, frozen=True):
         """Whether the formula has variables, and the environment decides all of them."""
         owners = {self.variables[name].owner for name in variable_names(formula)}
         return owners == {Owner.ENVIRONMENT}
-
-
-def _is_qualified(name: str) -> bool:
-    return "::" in name
 
 
 def replace_meanings(formula: Formula, meanings: Mapping[str, Meaning]) -> Formula:
