@@ -16,7 +16,7 @@ from sysmlc.ir import parse_text
 from sysmlc.language.names import unresolved
 from sysmlc.logic.formal_texts import is_formal
 from sysmlc.logic.machines import conflicts as conflicts
-from sysmlc.passes.transition_names import read_transition_names
+from sysmlc.passes.behaviours import read_transition_names
 from sysmlc.sources import Source
 from sysmlc.support.units import find_unit, split_quantity
 

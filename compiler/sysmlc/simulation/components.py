@@ -26,10 +26,10 @@ from sysmlc.logic.activities.interpreter import BranchPlan
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.activities.token_step import State
 from sysmlc.logic.components.component import Component
-from sysmlc.logic.components.copies import Root
 from sysmlc.logic.components.derivation import ComponentBehaviour, describe_component
 from sysmlc.logic.components.machines import EVENT, PlacedMachine
 from sysmlc.logic.components.objects import ComponentError
+from sysmlc.logic.components.performances import Root
 from sysmlc.logic.components.signals import Wiring, derive_events
 from sysmlc.logic.contract import Owner, Variable
 from sysmlc.logic.domains import values

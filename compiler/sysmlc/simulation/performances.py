@@ -7,9 +7,9 @@ from sysmlc.ir import Edge
 from sysmlc.logic import domains, evaluate
 from sysmlc.logic.activities.token_step import State, TokenStep
 from sysmlc.logic.components.arguments import Arguments, Output
-from sysmlc.logic.components.copies import Root
 from sysmlc.logic.components.machines import PlacedMachine
 from sysmlc.logic.components.objects import Slot
+from sysmlc.logic.components.performances import Root
 from sysmlc.logic.components.signals import Wiring
 from sysmlc.logic.formula import Formula, Literal
 from sysmlc.logic.machines.interpreter import Valuation

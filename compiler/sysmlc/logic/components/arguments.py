@@ -16,9 +16,8 @@ from sysmlc.ir.expressions import ExpressionError, name_of
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
 from sysmlc.logic.activities.token_nodes import Store
-from sysmlc.logic.components.copies import Copy, element_of_copy
 from sysmlc.logic.components.objects import ComponentError, ComponentObject, ObjectTree, Slot
-from sysmlc.logic.components.performances import Performances
+from sysmlc.logic.components.performances import Copy, Performances, element_of_copy
 from sysmlc.logic.composition.structure import find_drawn_activity
 from sysmlc.logic.contract import (
     BooleanDomain,

@@ -13,11 +13,10 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.activities.action_names import make_path
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
 from sysmlc.logic.components.arguments import Arguments
-from sysmlc.logic.components.copies import Caller, Root
 from sysmlc.logic.components.machines import PlacedMachine, find_machines, place_machine
 from sysmlc.logic.components.names import finish_variable
 from sysmlc.logic.components.objects import ComponentError, ComponentObject, ObjectTree
-from sysmlc.logic.components.performances import Performances
+from sysmlc.logic.components.performances import Caller, Performances, Root
 from sysmlc.logic.components.signals import check_signal_names
 from sysmlc.logic.composition.structure import find_drawn_activity
 from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Owner, Source, Variable

@@ -194,17 +194,9 @@ class PlacedMachine(Struct, frozen=True):
     def entered_formula(self, state: Vertex) -> Formula:
         """A transition enters the state in this step."""
         region = self.machine.regions[state.region].variable
-        changes = (
-            change
-            for move in self.exploration.moves
-            for change in iter_change_conditions(
-                self.exploration,
-                move,
-                region,
-                lambda path, name: path.entered.get(name) == state.literal,
-            )
+        return self._change_formula(
+            region, lambda path, name: path.entered.get(name) == state.literal
         )
-        return self.rename(f.either(*changes))
 
     def exit_starts_formula(self, state: Vertex) -> Formula:
         """The exit behaviour of the state, which takes time, starts after this step."""
@@ -214,27 +206,22 @@ class PlacedMachine(Struct, frozen=True):
 
     def left_formula(self, state: Vertex) -> Formula:
         """A transition leaves the state in this step."""
-        changes = (
-            change
-            for move in self.exploration.moves
-            for change in iter_change_conditions(
-                self.exploration, move, state.id, lambda path, id: id in path.left_states
-            )
-        )
-        return self.rename(f.either(*changes))
+        return self._change_formula(state.id, lambda path, id: id in path.left_states)
 
     def passed_formula(self, transition: Transition) -> Formula:
         """A transition that leaves a pseudostate is taken in this step, or at the start."""
         if any(transition.id in path.passed for path in self.exploration.starts):
             return f.TRUE
-        passes = (
+        return self._change_formula(transition.id, lambda path, id: id in path.passed)
+
+    def _change_formula(self, name: str, has_changed: Callable[[Path, str], bool]) -> Formula:
+        """A path on which *name*, a variable or an id, changes is taken in this step."""
+        changes = (
             change
             for move in self.exploration.moves
-            for change in iter_change_conditions(
-                self.exploration, move, transition.id, lambda path, id: id in path.passed
-            )
+            for change in iter_change_conditions(self.exploration, move, name, has_changed)
         )
-        return self.rename(f.either(*passes))
+        return self.rename(f.either(*changes))
 
     def iter_elements(self, graph: Graph) -> Iterator[Element]:
         """Yield the machine, its submachines, and the states and transitions of both."""
