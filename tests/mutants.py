@@ -22,13 +22,21 @@ from operator import setitem
 from pathlib import Path
 from typing import NamedTuple
 
+import pytest
+
 ROOT = Path(__file__).parents[1]
 PACKAGE = Path("compiler", "sysmlc")
 SECONDS = 900
 """Time after which a mutant counts as noticed: it probably does not terminate."""
 WITH_COMMANDS = ("tests/cli", "tests/examples")
 """Folders of tests that run all packages."""
-FOLDERS = {"analyses": "passes", "diagnostics": "basics", "support": "basics"}
+FOLDERS = {
+    "analyses": "passes",
+    "api": "driver",
+    "controllers": "synthesis",
+    "diagnostics": "basics",
+    "support": "basics",
+}
 """Folders of tests of packages that have another name; modules beside packages have ``driver``."""
 PAIRS = (
     *((ast.Eq, ast.NotEq), (ast.Is, ast.IsNot), (ast.In, ast.NotIn)),
@@ -171,6 +179,8 @@ def _find_failure(project: Path, tests: list[str]) -> str:
         )
     except subprocess.TimeoutExpired:
         return f"not ended after {SECONDS} seconds"
+    if run.returncode == pytest.ExitCode.USAGE_ERROR:
+        raise RuntimeError(f"pytest cannot run {' '.join(tests)}: {run.stderr}")
     failed = re.search(r"^(?:FAILED|ERROR) (.*?)(?: - .*)?$", run.stdout, re.MULTILINE)
     return failed[1] if failed else f"exit code {run.returncode}" if run.returncode else ""
 

@@ -122,9 +122,9 @@ def test_every_binding_of_the_alf_library_names_its_template(corpus):
     path = corpus / "xmi" / "papyrus" / "Alf.library.uml"
     graph, sink = read_with_interactions(path)
     assert not sink.has_errors()
-    bound_elements = [graph.owner(item) for item in graph.of_kind(Kind.TEMPLATE_BINDING)]
     bindings = [
-        binding for element in bound_elements for binding in templates.bindings(graph, element)
+        templates.read_binding(graph, graph.owner(item), item)
+        for item in graph.of_kind(Kind.TEMPLATE_BINDING)
     ]
     elements = [e for tree in parse_file(path) for e in tree.iter("templateBinding")]
     assert len(bindings) == len(elements) > 70

@@ -28,12 +28,6 @@ def parameters(graph: Graph, template: Element) -> list[Element]:
     return [element for element in graph.owned(template) if element.kind is Kind.TEMPLATE_PARAMETER]
 
 
-def bindings(graph: Graph, bound: Element) -> list[Binding]:
-    """Return the bindings that derive *bound* from templates."""
-    owned = graph.owned(bound)
-    return [read_binding(graph, bound, e) for e in owned if e.kind is Kind.TEMPLATE_BINDING]
-
-
 def read_binding(graph: Graph, bound: Element, element: Element) -> Binding:
     """Return the binding of *bound* that the TemplateBinding *element* states."""
     substitutions = tuple(
