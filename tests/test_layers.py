@@ -9,7 +9,7 @@ import sysmlc
 ROOT = Path(sysmlc.__file__).parent
 LAYERS = [
     {"support"},
-    {"sources"},
+    {"documents", "sources"},
     {"diagnostics"},
     {"ir", "config"},
     {"logic", "overlay", "language"},

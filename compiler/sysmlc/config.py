@@ -1,35 +1,29 @@
 """Reads and checks the configuration of a project: ``sysmlc.toml`` or ``[tool.sysmlc]``."""
 
-import json
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from fnmatch import fnmatch
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any
 
 from msgspec import Struct, field
 
 from sysmlc.diagnostics import Severity
+from sysmlc.diagnostics.diagnostic import format_position
 from sysmlc.diagnostics.sink import Suppression
+from sysmlc.documents import DocumentError, Spot, Value, list_violations, parse_toml
 from sysmlc.sources import Roots, SourceError
 from sysmlc.sources.files import read_whole
 from sysmlc.sources.source import DOCUMENT_LIMITS
-from sysmlc.support import resources
-from sysmlc.support.suggestions import did_you_mean
-from sysmlc.support.toml_text import TomlError, parse_toml
-
-if TYPE_CHECKING:
-    from jsonschema import ValidationError
 
 FILE_NAME = "sysmlc.toml"
 _MAX_PARTS = 100
 """Parts of a path in the configuration."""
 _MAX_BYTES = 240
 """Bytes of the name of one folder: file systems allow 255, and outputs add suffixes."""
-_MAX_MESSAGE = 300
 _EXCERPT = 100
-"""Characters of a longer message that are shown from its start and from its end."""
+"""Characters of a longer path that are shown."""
 _WILDCARDS = "*?["
 
 
@@ -127,7 +121,7 @@ def find_config_file(start: Path) -> Path | None:
             break
         if project.is_file():
             _refuse_outside(project, root)
-            if _find_tool_table(_parse_file(project, _read_file(project))) is not None:
+            if _read_settings(project) is not None:
                 return project
     return None
 
@@ -150,49 +144,52 @@ def read_config(file: Path | None) -> Config:
     """Return the configuration in a file, or the defaults without a file. Raises ConfigError."""
     if file is None:
         return Config()
-    text = _read_file(file)
-    config = _make_config(file.absolute(), _read_settings(file, text))
-    _check_paths(file, text, config)
+    document = _read_settings(file) or Value(Spot(), entries={})
+    for violation in list_violations(document, "sysmlc-config.schema.json"):
+        raise ConfigError(f"{_format_spot(file, violation.spot)}: {violation}")
+    config = _make_config(file.absolute(), document.as_json())
+    _check_paths(file, document, config)
     return config
 
 
-def _check_paths(file: Path, text: str, config: Config) -> None:
+def _check_paths(file: Path, document: Value, config: Config) -> None:
     """Raise ConfigError for a path that is too long or leads out of the project root.
 
     A repository must not decide which files elsewhere on the machine are read or written.
     """
-    _check_lengths(file, text, config)
-    entries = [("templates", config.templates)]
-    outputs = [config.output, *(unit.output for unit in config.models)]
-    for unit in config.models:
-        if not _is_inside(unit.name):
-            message = f"the name '{unit.name}' leads out of the output folder"
-            raise ConfigError(
-                f"{file}:{_find_line_of_path(text, ['name'])}: {message}; use a plain name"
-            )
-        entries += [("files", pattern) for pattern in unit.files]
+    for path, value in _list_paths(config):
+        key = [step for step in path if isinstance(step, str)][-1]
+        problem = _find_problem(key, value, config)
+        if problem:
+            raise ConfigError(f"{_format_spot(file, document.find_key(path))}: {problem}")
+
+
+def _list_paths(config: Config) -> Iterator[tuple[list[str | int], str]]:
+    """Yield the paths in the configuration, each with the keys that lead to it."""
+    yield ["output"], config.output
+    yield ["templates"], config.templates
+    for index, unit in enumerate(config.models):
+        owner: list[str | int] = ["model", index]
+        yield [*owner, "name"], unit.name
+        yield [*owner, "output"], unit.output
+        yield from (([*owner, "files", number], file) for number, file in enumerate(unit.files))
+
+
+def _find_problem(key: str, value: str, config: Config) -> str:
+    """Return what is wrong with a path of the configuration, or an empty text."""
+    parts = Path(value).parts
+    if len(parts) > _MAX_PARTS or any(len(os.fsencode(part)) > _MAX_BYTES for part in parts):
+        return f"'{key}': '{value[:_EXCERPT]}...' is longer than file systems allow"
+    if key == "name":
+        advice = "leads out of the output folder; use a plain name"
+        return "" if _is_inside(value) else f"the name '{value}' {advice}"
     # Links in the path of an output folder are checked when a file is written to it.
-    entries += [("output", output) for output in outputs if not _is_inside(output)]
-    for key, value in entries:
-        if not _is_confined(value, config):
-            line = _find_line_of_path(text, [key])
-            raise ConfigError(
-                f"{file}:{line}: '{key}': '{value}' leads out of the project root '{config.root}'; "
-                "only paths on the command line may do that"
-            )
-
-
-def _check_lengths(file: Path, text: str, config: Config) -> None:
-    """Raise ConfigError for a path that is longer than file systems allow."""
-    entries = [("output", config.output), ("templates", config.templates)]
-    for unit in config.models:
-        entries += [("name", unit.name), ("output", unit.output)]
-        entries += [("files", pattern) for pattern in unit.files]
-    for key, value in entries:
-        parts = Path(value).parts
-        if len(parts) > _MAX_PARTS or any(len(os.fsencode(part)) > _MAX_BYTES for part in parts):
-            message = f"'{value[:_EXCERPT]}...' is longer than file systems allow"
-            raise ConfigError(f"{file}:{_find_line_of_path(text, [key])}: '{key}': {message}")
+    if (key == "output" and _is_inside(value)) or _is_confined(value, config):
+        return ""
+    return (
+        f"'{key}': '{value}' leads out of the project root '{config.root}'; "
+        "only paths on the command line may do that"
+    )
 
 
 def _is_inside(name: str) -> bool:
@@ -267,13 +264,27 @@ def _refuse_link_out(path: Path, config: Config) -> None:
 # -- reading -----------------------------------------------------------------------------------
 
 
-def _read_settings(file: Path, text: str) -> dict[str, Any]:
-    """Return the settings in a file. Raises ConfigError for those that the JSON Schema forbids."""
-    table = _parse_file(file, text)
-    if file.name == "pyproject.toml":
-        table = _find_tool_table(table) or {}
-    _validate(file, text, table)
-    return table
+def _read_settings(file: Path) -> Value | None:
+    """Return the settings in a file, None if a ``pyproject.toml`` has none. Raises ConfigError."""
+    try:
+        document = parse_toml(_read_file(file))
+    except DocumentError as error:
+        raise ConfigError(f"{_format_spot(file, error.spot)}: {error}") from error
+    if file.name != "pyproject.toml":
+        return document
+    tool = document.get("tool")
+    table = tool.get("sysmlc") if tool else None
+    return table if table and table.entries is not None else None
+
+
+def _format_spot(file: Path, spot: Spot) -> str:
+    return format_position(str(file), spot.line, spot.column)
+
+
+def locate_key(file: Path, path: Sequence[str | int]) -> str:
+    """Return ``file:line:column`` of a key of a configuration file, for a message."""
+    settings = _read_settings(file)
+    return _format_spot(file, settings.find_key(path) if settings else Spot())
 
 
 def _read_file(file: Path) -> str:
@@ -284,99 +295,6 @@ def _read_file(file: Path) -> str:
     except UnicodeDecodeError as problem:
         raise ConfigError(f"{file}: cannot be read: {problem}") from problem
     return text.replace("\r\n", "\n")
-
-
-def _parse_file(file: Path, text: str) -> dict[str, Any]:
-    try:
-        return parse_toml(text)
-    except TomlError as problem:
-        raise ConfigError(f"{file}:{problem.line}:{problem.column}: {problem}") from problem
-
-
-def _find_tool_table(project: Mapping[str, Any]) -> dict[str, Any] | None:
-    """Return the table ``[tool.sysmlc]`` of a ``pyproject.toml``, None if it has none."""
-    tool = project.get("tool")
-    table = tool.get("sysmlc") if isinstance(tool, dict) else None
-    return table if isinstance(table, dict) else None
-
-
-def _validate(file: Path, text: str, table: object) -> None:
-    from jsonschema import Draft202012Validator
-
-    schema = resources.read_text("metamodels", "sysmlc-config.schema.json")
-    validator = Draft202012Validator(json.loads(schema))
-    errors = sorted(validator.iter_errors(table), key=lambda error: list(error.path))
-    if errors:
-        raise ConfigError(_explain_error(file, text, errors[0]))
-
-
-def _explain_error(file: Path, text: str, error: "ValidationError") -> str:
-    path = list(error.absolute_path)
-    if error.validator == "additionalProperties":
-        schema = cast("dict[str, dict[str, object]]", error.schema)
-        properties = schema["properties"]
-        instance = cast("dict[str, object]", error.instance)
-        key = next(key for key in instance if key not in properties)
-        advice = did_you_mean(key, properties)
-        line = _find_line_of_path(text, [*path, key])
-        return f"{file}:{line}: unknown key '{_format_path([*path, key])}'; {advice}"
-    line = _find_line_of_path(text, path)
-    where = f"'{_format_path(path)}'" if path else "the file"
-    return f"{file}:{line}: {where}: {_describe_violation(error)}"
-
-
-def _describe_violation(error: "ValidationError") -> str:
-    value, limit = cast("object", error.instance), cast("object", error.validator_value)
-    if error.validator == "enum" and isinstance(value, str):
-        return f"unknown value '{value}'; {did_you_mean(value, map(str, cast('list[str]', limit)))}"
-    if error.validator == "required":
-        return f"lacks {error.message.partition(' ')[0]}"
-    message = error.message
-    # The message quotes the value, which can be long, and gives the reason at its end.
-    if len(message) > _MAX_MESSAGE:
-        message = f"{message[:_EXCERPT]} ... {message[-_EXCERPT:]}"
-    return message
-
-
-def _format_path(path: Sequence[str | int]) -> str:
-    """Return the path of a value in the words of TOML; entries of lists count from 1."""
-    text = ""
-    for part in path:
-        text += f"[{part + 1}]" if isinstance(part, int) else f".{part}"
-    return text.removeprefix(".")
-
-
-def _find_line_of_path(text: str, path: Sequence[str | int]) -> int:
-    """Return the number of the line that a path of keys and indices leads to, as far as possible.
-
-    The index of an array of tables selects the header ``[[suppress]]`` of that number.
-    """
-    line = 0
-    for key, following in zip(path, [*path[1:], None], strict=True):
-        if not isinstance(key, str):
-            continue
-        line = _find_line(text, key, line) or line
-        for _ in range(following if isinstance(following, int) else 0):
-            line = _find_line(text, key, line + 1) or line
-    return max(line, 1)
-
-
-def locate_key(file: Path, path: Sequence[str | int]) -> str:
-    """Return ``file:line`` of a key of a configuration file, for a message."""
-    return f"{file}:{_find_line_of_path(_read_file(file), path)}"
-
-
-def _find_line(text: str, key: str, start: int = 1) -> int:
-    """Return the number of the first line from *start* on that mentions *key*, 0 if none does.
-
-    It is searched in the text, because tomllib does not return the lines of keys.
-    """
-    for number, line in enumerate(text.splitlines(), 1):
-        head = line.partition("=")[0] if "=" in line else line
-        names = head.strip(" []").replace('"', "").split(".")
-        if number >= start and (key in names or head.strip(' "') == key):
-            return number
-    return 0
 
 
 # -- settings ----------------------------------------------------------------------------------
@@ -397,7 +315,7 @@ LEVELS = (
 """Levels of a recipe (docs/ir.md)."""
 
 
-def _make_config(file: Path, table: dict[str, Any]) -> Config:
+def _make_config(file: Path, table: Any) -> Config:  # noqa: ANN401
     return Config(
         folder=file.parent,
         root=find_project_root(file),

@@ -229,7 +229,7 @@ def test_a_wildcard_of_the_configuration_that_matches_nothing_is_reported(worksp
         '[[model]]\nname = "b"\nfiles = [\n  "plant.ir",\n  "lines/*.ir",\n]\n',
     )
     result = workspace.sysmlc("check")
-    assert "sysmlc.toml:7: 'lines/*.ir' in 'files' matches no file\n" in result.stderr
+    assert "sysmlc.toml:7:1: 'lines/*.ir' in 'files' matches no file\n" in result.stderr
     assert result.stderr.count("matches no file") == 1
     assert result.exit_code == 0
 
@@ -247,22 +247,28 @@ def test_a_suppression_that_matches_nothing_is_reported(workspace):
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        ('emitt = ["graph"]\n', "sysmlc.toml:1: unknown key 'emitt'; did you mean 'emit'?"),
-        ("strict = 1\n", "sysmlc.toml:1: 'strict': 1 is not of type 'boolean'"),
-        ('\n[[model]]\nname = "a"\nfile = "x"\n', "sysmlc.toml:4: unknown key 'model[1].file'"),
+        (
+            'emitt = ["graph"]\n',
+            "sysmlc.toml:1:1: at the top: unknown key 'emitt'; did you mean 'emit'?",
+        ),
+        ("strict = 1\n", "sysmlc.toml:1:10: at 'strict': 1 is not of type 'boolean'"),
+        (
+            '\n[[model]]\nname = "a"\nfile = "x"\n',
+            "sysmlc.toml:4:1: at 'model[1]': unknown key 'file'",
+        ),
         (
             '[rules]\nuntyped = "off"\n',
-            "sysmlc.toml:2: unknown rule 'untyped'; 'sysmlc explain' lists the rules",
+            "sysmlc.toml:2:1: unknown rule 'untyped'; 'sysmlc explain' lists the rules",
         ),
         (
             '[rules]\nmissing-file = "of"\n',
-            "sysmlc.toml:2: 'rules.missing-file': unknown value 'of'; did you mean 'off'?",
+            "sysmlc.toml:2:16: at 'rules.missing-file': unknown value 'of'; did you mean 'off'?",
         ),
         (
             '[[suppress]]\nrule = "SM410"\nelement = "A"\nreason = "r"\n[[suppress]]\nrule = "a"\n',
-            "sysmlc.toml:5: 'suppress[2]': lacks 'reason'",
+            "sysmlc.toml:5:3: at 'suppress[2]': lacks 'reason'",
         ),
-        ('emit = ["plantmul"]\n', "sysmlc.toml:1: unknown back end 'plantmul'; did you mean"),
+        ('emit = ["plantmul"]\n', "sysmlc.toml:1:1: unknown back end 'plantmul'; did you mean"),
         ("strict = \n", "sysmlc.toml:1:10: Invalid value"),
     ],
 )

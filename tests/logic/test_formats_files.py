@@ -90,9 +90,9 @@ def test_the_wrong_example_breaks_the_rule_and_the_right_one_does_not(rule):
         ("module M\nsys boolean a;\ngar G a &;\n", ("SM583", 3, 10)),
         ("module M\nsys boolean[0] a;\n", ("SM581", 2, 13)),
         ("module M\nsys boolean a;\ngar ONCE next(a);\n", ("SM583", 3, 5)),
-        ('{"inputs": {"x": "real"}, "outputs": {}}', ("SM585", 1, 19)),
+        ('{"inputs": {"x": "real"}, "outputs": {}}', ("SM585", 1, 18)),
         ('{"inputs": {}, "guarantees": ["x"]}', ("SM583", 1, 32)),
-        ('{"variables": {"x": {"owner": "env", "type": [3, 1]}}}', ("SM582", 1, 21)),
+        ('{"variables": {"x": {"owner": "env", "type": [3, 1]}}}', ("SM582", 1, 46)),
         ('{"variables": {"x": {"owner": "env", "type": "bool"}},', ("SM581", 1, 55)),
         (
             '{"variables": {"x": {"owner": "env", "type": "bool"}},\n'

@@ -6,8 +6,8 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from sysmlc.diagnostics import Sink
+from sysmlc.documents import parse_yaml
 from sysmlc.overlay import list_files, read_overlay
-from sysmlc.overlay.yaml_tree import parse_yaml
 from sysmlc.passes.overlay.finder import join_path, name_in_unit, split_path
 from sysmlc.sources import Source
 from sysmlc.support import resources
@@ -69,7 +69,7 @@ def test_bad_yaml_is_reported_with_its_location(data, line, column, problem):
 @pytest.mark.parametrize(
     ("text", "findings"),
     [
-        ("", [("SM321", 1, 1, "in the overlay at the top: 'overlay' is a required property")]),
+        ("", [("SM321", 1, 1, "in the overlay at the top: lacks 'overlay'")]),
         ("x\n", [("SM321", 1, 1, "in the overlay at the top: 'x' is not of type 'object'")]),
         ("overlay: 2\n", [("SM321", 1, 10, "in the overlay at 'overlay': 1 was expected")]),
         (
@@ -79,8 +79,7 @@ def test_bad_yaml_is_reported_with_its_location(data, line, column, problem):
                     "SM321",
                     3,
                     24,
-                    "in the overlay at 'items/MiniPallet/domain': 'digital' is not one of "
-                    "['physical', 'information']",
+                    "in the overlay at 'items.MiniPallet.domain': unknown value 'digital'",
                 )
             ],
         ),
@@ -99,7 +98,7 @@ def test_bad_yaml_is_reported_with_its_location(data, line, column, problem):
                     "SM323",
                     4,
                     24,
-                    "in the overlay at 'blocks/A/operations': the key 'go' occurs twice",
+                    "in the overlay at 'blocks.A.operations': the key 'go' occurs twice",
                 )
             ],
         ),
@@ -110,8 +109,8 @@ def test_bad_yaml_is_reported_with_its_location(data, line, column, problem):
                     "SM321",
                     2,
                     26,
-                    "in the overlay at 'connectors/l/flows/1': it needs a 'from', a 'to' or "
-                    "'both-ways: true'",
+                    "in the overlay at 'connectors.l.flows[1]': a flow has a 'from', a 'to' or "
+                    "both, or else only 'both-ways: true'",
                 )
             ],
         ),
@@ -122,8 +121,8 @@ def test_bad_yaml_is_reported_with_its_location(data, line, column, problem):
                     "SM321",
                     2,
                     26,
-                    "in the overlay at 'connectors/l/flows/1': what flows both ways has no 'from' "
-                    "and no 'to'",
+                    "in the overlay at 'connectors.l.flows[1]': a flow has a 'from', a 'to' or "
+                    "both, or else only 'both-ways: true'",
                 )
             ],
         ),
@@ -134,7 +133,7 @@ def test_bad_yaml_is_reported_with_its_location(data, line, column, problem):
                     "SM321",
                     2,
                     12,
-                    "in the overlay at 'blocks/A': it is empty, but should be of type object",
+                    "in the overlay at 'blocks.A': it is empty, but should be of type object",
                 ),
                 ("SM321", 3, 8, "in the overlay at 'items': [1] is not of type 'object'"),
             ],
@@ -154,7 +153,7 @@ def test_for_an_unknown_key_the_nearest_key_is_suggested():
 def test_locations_have_columns_in_characters_and_offsets_in_bytes():
     top = parse_yaml('\ufeffoverlay: 1\n"é": {x: ü, y: 1}\n'.encode())
     inner = top.entries["é"].entries["y"]
-    assert inner.spot == (2, 16, 3 + 11 + 5 + 1 + 1 + 10)
+    assert inner.spot == (2, 16, 3 + 11 + 5 + 1 + 1 + 10, 26)
     assert top.keys["é"][:2] == (2, 1)
 
 

@@ -20,19 +20,22 @@ UNIT = '[[model]]\nname = "plant"\nfiles = [{files}]\n'
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ('output = "../x"', "sysmlc.toml:1: 'output': '../x' leads out of the project root"),
+        ('output = "../x"', "sysmlc.toml:1:1: 'output': '../x' leads out of the project root"),
         ('output = "{outside}"', "'output': '{outside}' leads out of the project root"),
         ('output = "a\\u0000b"', "leads out of the project root"),
         ('templates = "../outside"', "'templates': '../outside' leads out of the project root"),
         (
             '[[model]]\nname = "../../x"\nfiles = ["plant.ir"]',
-            "sysmlc.toml:2: the name '../../x' leads out",
+            "sysmlc.toml:2:1: the name '../../x' leads out",
         ),
         (
             '[[model]]\nname = "/x"\nfiles = ["plant.ir"]',
             "the name '/x' leads out of the output folder",
         ),
-        (UNIT.format(files='"../outside/secret.ir"'), "sysmlc.toml:3: 'files': '../outside/secret"),
+        (
+            UNIT.format(files='"../outside/secret.ir"'),
+            "sysmlc.toml:3:9: 'files': '../outside/secret",
+        ),
         (UNIT.format(files='"{outside}/secret.ir"'), "'files': '{outside}/secret.ir' leads out"),
         (UNIT.format(files='"../outside/*.ir"'), "'files': '../outside/*.ir' leads out"),
         (UNIT.format(files='"{outside}/*.ir"'), "'files': '{outside}/*.ir' leads out"),

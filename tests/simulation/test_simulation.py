@@ -196,9 +196,14 @@ def test_one_of_the_runs_that_a_choice_allows_is_enough(last, passes):
     ("text", "code", "message", "line"),
     [
         ("component: [Gate\nsteps: []", "SM550", "the scenario is not YAML", 2),
-        ("- 1", "SM551", "the top of the scenario: it has no component and no steps", 1),
-        ("component: Gate.pass\n", "SM551", "'steps' is a required property", 1),
-        ("component: Gate.pass\nsteps:\n - input: {}\n", "SM551", "steps/0 of the scenario", 3),
+        ("- 1", "SM551", "in the scenario at the top: [1] is not of type 'object'", 1),
+        ("component: Gate.pass\n", "SM551", "at the top: lacks 'steps'", 1),
+        (
+            "component: Gate.pass\nsteps:\n - input: {}\n",
+            "SM551",
+            "at 'steps[1]': unknown key 'input'",
+            3,
+        ),
         ("component: Gat\nsteps: [{}]\n", "SM552", "known are: Gate.pass", 1),
         (
             "component: Gate.pass\nsteps:\n - expect: {run_raed: true}\n",
@@ -219,8 +224,8 @@ def test_one_of_the_runs_that_a_choice_allows_is_enough(last, passes):
             3,
         ),
         ("component: Gate.pass\nsteps: [{}]\ntrace: [{}, {}]\n", "SM556", "has 2 entries", 3),
-        ("&x {component: *x, steps: []}", "SM550", "contains itself", 0),
-        ("\x00", "SM550", "the scenario is not YAML", 0),
+        ("&x {component: *x, steps: []}", "SM550", "contains itself", 1),
+        ("\x00", "SM550", "the scenario is not YAML", 1),
     ],
 )
 def test_a_fault_of_a_scenario_is_reported_at_its_line(text, code, message, line):

@@ -5,7 +5,14 @@
 
 from collections.abc import Iterator
 
-from sysmlc.diagnostics import Sink, Subject
+from sysmlc.diagnostics import Severity, Sink, Subject, rule
+from sysmlc.documents import (
+    DocumentError,
+    Value,
+    ViolationKind,
+    list_violations,
+    parse_yaml,
+)
 from sysmlc.overlay.model import (
     Allocation,
     BlockEntry,
@@ -18,13 +25,10 @@ from sysmlc.overlay.model import (
     ParameterEntry,
     PortEntry,
     Refinement,
-    Spot,
     Term,
     ValueEntry,
     place_of,
 )
-from sysmlc.overlay.schema import SYNTAX, check_schema
-from sysmlc.overlay.yaml_tree import TreeError, Value, parse_yaml
 from sysmlc.sources import Source
 
 __all__ = ["SUFFIX", "Change", "Refinement", "list_files", "read_overlay"]
@@ -32,21 +36,59 @@ __all__ = ["SUFFIX", "Change", "Refinement", "list_files", "read_overlay"]
 SUFFIX = ".overlay.yaml"
 """Suffix of an overlay beside a model; it replaces the suffix of the model's name."""
 
-
-_EMPTY = Value(Spot(), entries={})
+SYNTAX = rule(
+    "SM320",
+    "overlay-syntax",
+    Severity.ERROR,
+    "the overlay cannot be read: {problem}",
+    help="an overlay is one YAML document in UTF-8 without tags",
+)
+SHAPE = rule(
+    "SM321",
+    "overlay-shape",
+    Severity.ERROR,
+    "in the overlay {where}: {problem}",
+    help="metamodels/sysmlc-overlay.schema.json has every entry; editors can check it too",
+)
+UNKNOWN_KEY = rule(
+    "SM322",
+    "overlay-unknown-key",
+    Severity.ERROR,
+    "in the overlay {where}: {problem}",
+    help="{advice}",
+)
+KEY_TWICE = rule(
+    "SM323",
+    "overlay-key-twice",
+    Severity.ERROR,
+    "in the overlay {where}: {problem}",
+    help="merge the two entries, or rename one of them",
+)
+_RULES = {
+    ViolationKind.SHAPE: SHAPE,
+    ViolationKind.UNKNOWN_KEY: UNKNOWN_KEY,
+    ViolationKind.KEY_TWICE: KEY_TWICE,
+}
 
 
 def read_overlay(source: Source, sink: Sink) -> Refinement | None:
     """Return the content of an overlay; report the faults of an unusable one, and return None."""
     try:
         top = parse_yaml(source.data)
-    except TreeError as error:
+    except DocumentError as error:
         subject = Subject(place=place_of(source.name, error.spot))
-        sink.report(SYNTAX, subject, problem=error.problem)
+        sink.report(SYNTAX, subject, problem=error)
         return None
-    if not check_schema(top, source.name, sink):
-        return None
-    return _build_refinement(top, source.name)
+    violations = list_violations(top, "sysmlc-overlay.schema.json")
+    for violation in violations:
+        sink.report(
+            _RULES[violation.kind],
+            Subject(place=place_of(source.name, violation.spot)),
+            where=violation.where,
+            problem=violation.problem,
+            advice=violation.advice,
+        )
+    return None if violations else _build_refinement(top, source.name)
 
 
 def list_files(refinement: Refinement) -> list[str]:
@@ -71,8 +113,8 @@ def _list_terms(refinement: Refinement) -> Iterator[Term]:
 def _build_refinement(top: Value, file: str) -> Refinement:
     return Refinement(
         file=file,
-        package=_read_text(top, "package") or "Items",
-        spot=(_find_value(top, "items") or top).spot,
+        package=top.read_text("package") or "Items",
+        spot=(top.get("items") or top).spot,
         items=tuple(_build_item(key, value) for key, value in _sort_by_key(top, "items")),
         ports=tuple(_build_port(key, value) for key, value in _sort_by_key(top, "ports")),
         connectors=tuple(
@@ -81,7 +123,7 @@ def _build_refinement(top: Value, file: str) -> Refinement:
         blocks=tuple(_build_block(key, value) for key, value in _sort_by_key(top, "blocks")),
         allocations=tuple(
             sorted(
-                (_build_allocation(entry) for entry in _list_values(top, "allocations")),
+                (_build_allocation(entry) for entry in top.list_items("allocations")),
                 key=_make_allocation_key,
             )
         ),
@@ -97,21 +139,21 @@ def _make_allocation_key(allocation: Allocation) -> tuple[str, str]:
 
 def _build_item(key: Key, value: Value) -> ItemEntry:
     general = _list_sorted_terms(value, "specializes")
-    return ItemEntry(key, _read_text(value, "domain"), _read_text(value, "description"), general)
+    return ItemEntry(key, value.read_text("domain"), value.read_text("description"), general)
 
 
 def _build_port(key: Key, value: Value) -> PortEntry:
-    return PortEntry(key, _read_text(value, "direction"), _read_term(value, "type"))
+    return PortEntry(key, value.read_text("direction"), _read_term(value, "type"))
 
 
 def _build_connector(key: Key, value: Value) -> ConnectorEntry:
-    flows = [_build_flow(entry) for entry in _list_values(value, "flows")]
+    flows = [_build_flow(entry) for entry in value.list_items("flows")]
     return ConnectorEntry(key, tuple(sorted(flows, key=_make_flow_key)))
 
 
 def _build_flow(value: Value) -> FlowEntry:
     item = _read_term(value, "item") or Term("", value.spot)
-    is_both = _find_value(value, "both-ways") is not None
+    is_both = value.get("both-ways") is not None
     return FlowEntry(item, _read_term(value, "from"), _read_term(value, "to"), is_both, item.spot)
 
 
@@ -135,23 +177,23 @@ def _build_block(key: Key, value: Value) -> BlockEntry:
 
 
 def _build_value(name: Term, value: Value) -> ValueEntry:
-    default = _find_value(value, "default")
+    default = value.get("default")
     return ValueEntry(name, _read_term(value, "type"), None if default is None else default.scalar)
 
 
 def _build_operation(name: Term, value: Value) -> OperationEntry:
-    parameter_list = _find_value(value, "parameters")
+    parameter_list = value.get("parameters")
     parameters = (
         None if parameter_list is None else tuple(map(_build_parameter, parameter_list.items or ()))
     )
     return OperationEntry(
-        name, parameters, _read_term(value, "method"), _read_text(value, "description")
+        name, parameters, _read_term(value, "method"), value.read_text("description")
     )
 
 
 def _build_parameter(value: Value) -> ParameterEntry:
     name = _read_term(value, "name") or Term("", value.spot)
-    return ParameterEntry(name, _read_term(value, "type"), _read_text(value, "direction") or "in")
+    return ParameterEntry(name, _read_term(value, "type"), value.read_text("direction") or "in")
 
 
 def _build_allocation(value: Value) -> Allocation:
@@ -162,39 +204,24 @@ def _build_allocation(value: Value) -> Allocation:
 # -- values ------------------------------------------------------------------------------------
 
 
-def _find_value(value: Value, key: str) -> Value | None:
-    return (value.entries or {}).get(key)
-
-
-def _list_values(value: Value, key: str) -> list[Value]:
-    return (_find_value(value, key) or _EMPTY).items or []
-
-
-def _read_text(value: Value, key: str) -> str:
-    return (_find_value(value, key) or _EMPTY).text
-
-
 def _read_term(value: Value, key: str) -> Term | None:
-    entry = _find_value(value, key)
+    entry = value.get(key)
     return None if entry is None else Term(entry.text, entry.spot)
 
 
 def _list_sorted_terms(value: Value, key: str) -> tuple[Term, ...]:
-    return tuple(sorted(Term(entry.text, entry.spot) for entry in _list_values(value, key)))
+    return tuple(sorted(Term(entry.text, entry.spot) for entry in value.list_items(key)))
 
 
 def _sort_by_name(value: Value, key: str) -> list[tuple[Term, Value]]:
     """Return the entries of the mapping that *value* has below *key*, sorted by name."""
-    mapping = _find_value(value, key) or _EMPTY
-    pairs = [
-        (Term(name, mapping.keys[name]), entry) for name, entry in (mapping.entries or {}).items()
-    ]
-    return sorted(pairs, key=lambda pair: pair[0].text)
+    keys = value.find([key]).keys
+    return [(Term(name, keys[name]), entry) for name, entry in sorted(value.iter_entries(key))]
 
 
 def _sort_by_key(value: Value, key: str) -> list[tuple[Key, Value]]:
     """Return the entries of the mapping below *key* whose names are ids or paths of elements."""
     return [
-        (Key(name.text, _read_text(entry, "path"), name.spot), entry)
+        (Key(name.text, entry.read_text("path"), name.spot), entry)
         for name, entry in _sort_by_name(value, key)
     ]

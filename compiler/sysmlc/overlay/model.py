@@ -5,15 +5,8 @@ from typing import NamedTuple
 from msgspec import Struct
 
 from sysmlc.diagnostics import Place, Subject
+from sysmlc.documents import Spot
 from sysmlc.ir import AttrValue
-
-
-class Spot(NamedTuple):
-    """A position in a file: line and column from 1, and the byte offset from 0."""
-
-    line: int = 1
-    column: int = 1
-    offset: int = 0
 
 
 class Term(NamedTuple):

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 
+from sysmlc.documents import Value, find_in_string
 from sysmlc.logic.contract import (
     BooleanDomain,
     Conjunct,
@@ -15,19 +16,10 @@ from sysmlc.logic.formats.chase import lower
 from sysmlc.logic.formats.contract_json import (
     ShapeError,
     check_name,
-    object_at,
     read_document,
     read_domain,
-    text_at,
 )
-from sysmlc.logic.formats.draft import (
-    SIDES,
-    ContractDraft,
-    LocatedList,
-    LocatedObject,
-    LocatedText,
-    SpecificationFile,
-)
+from sysmlc.logic.formats.draft import SIDES, ContractDraft, SpecificationFile
 from sysmlc.logic.formats.writing import (
     LTL_WORDS,
     Notation,
@@ -46,59 +38,39 @@ _NOTATION = Notation(LTL_WORDS, add_prime)
 
 def read(file: SpecificationFile) -> tuple[Contract, ...]:
     """Return the contract of the file, or nothing if a fault was reported."""
-    document = read_document(file, "chase JSON")
+    document = read_document(file, "chase JSON", "chase-contract")
     if document is None:
         return ()
     draft = ContractDraft(file, "chase JSON")
     try:
-        _read_document(draft, document)
-        return draft.build(text_at(document, "name"))
+        for title, owner in _OWNERS.items():
+            for name, type_ in document.iter_entries(title):
+                _declare(draft, name, type_, owner)
     except ShapeError as error:
         file.report(rules.WRONG_SHAPE, error.offset, what=str(error))
         return ()
-
-
-def _read_document(draft: ContractDraft, document: LocatedObject) -> None:
-    for title, owner in _OWNERS.items():
-        declarations = object_at(document, title)
-        for name in declarations.duplicates:
-            draft.report_fault(rules.DECLARED_TWICE, declarations.offset, name=name)
-        for name, type_ in declarations.items():
-            _declare(draft, name, type_, declarations.offset, owner)
     for owner, side in SIDES.items():
-        for text in _list_texts(document, side):
+        for text in document.list_items(side):
             _read_conjunct(draft, owner, text)
+    return draft.build(document.read_text("name"))
 
 
-def _declare(draft: ContractDraft, name: str, type_: object, offset: int, owner: Owner) -> None:
-    if type_ == "real":
-        type_offset = getattr(type_, "offset", offset)
-        draft.report_outside(type_offset, f"'{name}', which is a real number,")
+def _declare(draft: ContractDraft, name: str, type_: Value, owner: Owner) -> None:
+    offset = type_.spot.character
+    if type_.scalar == "real":
+        draft.report_outside(offset, f"'{name}', which is a real number,")
         return
-    check_name(name, offset)
-    draft.declare(name, offset, owner, read_domain(name, type_, offset))
+    check_name(name, type_)
+    draft.declare(name, offset, owner, read_domain(name, type_))
 
 
-def _list_texts(document: LocatedObject, side: str) -> list[LocatedText]:
-    texts = document.get(side, LocatedList())
-    if not isinstance(texts, LocatedList) or not all(
-        isinstance(text, LocatedText) for text in texts
-    ):
-        offset = getattr(texts, "offset", document.offset)
-        raise ShapeError(f"'{side}' is not a list of formulas", offset)
-    return texts
-
-
-def _read_conjunct(draft: ContractDraft, owner: Owner, text: LocatedText) -> None:
+def _read_conjunct(draft: ContractDraft, owner: Owner, text: Value) -> None:
+    start = text.spot.character + 1
     try:
-        draft.add_ltl(owner, parse_formula(text, draft.domains), text.offset)
+        draft.add_ltl(owner, parse_formula(str(text.scalar), draft.domains), start)
     except FormulaError as error:
-        draft.report_fault(
-            rules.WRONG_FORMULA,
-            text.offset_of(error.offset),
-            section=SIDES[owner],
-            reason=str(error),
-        )
+        offset = start + find_in_string(text, error.offset)
+        draft.report_fault(rules.WRONG_FORMULA, offset, section=SIDES[owner], reason=str(error))
 
 
 def write(contract: Contract, format_name: str) -> str:

@@ -6,6 +6,7 @@ conjunct is an object with formula, class, origin and text; in the neutral form 
 
 from collections.abc import Iterable, Iterator, Mapping
 
+from sysmlc.documents import DocumentError, Value, find_in_string, list_violations, parse_json
 from sysmlc.logic.classification import convert_to_class
 from sysmlc.logic.contract import (
     BooleanDomain,
@@ -20,23 +21,16 @@ from sysmlc.logic.contract import (
     Variable,
 )
 from sysmlc.logic.formats import rules
-from sysmlc.logic.formats.draft import (
-    SECTION_NAMES,
-    SIDES,
-    LocatedList,
-    LocatedObject,
-    LocatedText,
-    SpecificationFile,
-    parse_json,
-)
+from sysmlc.logic.formats.draft import SECTION_NAMES, SIDES, SpecificationFile
 from sysmlc.logic.formats.lowering import rename_ambiguous_literals
 from sysmlc.logic.infix import FormulaReader, parse_formula
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.syntax import FormulaError
 from sysmlc.support.output import encode_json
+from sysmlc.support.suggestions import find_similar
 
 FORMAT = "sysmlc-contract/1"
-_OWNERS = {str(owner): owner for owner in Owner}
+_NEUTRAL_KEYS = ("name", "origin", "variables", *SIDES.values())
 
 
 class _NeutralReader(FormulaReader):
@@ -46,11 +40,11 @@ class _NeutralReader(FormulaReader):
 
 
 class ShapeError(Exception):
-    """JSON that does not have the shape of a contract, with the offset of the fault."""
+    """A value that a contract cannot have, although the schema allows it."""
 
-    def __init__(self, reason: str, offset: int) -> None:
+    def __init__(self, reason: str, value: Value) -> None:
         super().__init__(reason)
-        self.offset = offset
+        self.offset = value.spot.character
 
 
 # -- reading ---------------------------------------------------------------------------------------
@@ -58,10 +52,10 @@ class ShapeError(Exception):
 
 def read(file: SpecificationFile) -> tuple[Contract, ...]:
     """Return the contract of the file, or nothing if a fault was reported."""
+    reported_before = len(file.sink)
     document = read_document(file, "JSON")
     if document is None:
         return ()
-    reported_before = len(file.sink)
     try:
         contract = _read_contract(file, document)
     except ShapeError as error:
@@ -70,181 +64,125 @@ def read(file: SpecificationFile) -> tuple[Contract, ...]:
     return () if len(file.sink) > reported_before else (contract,)
 
 
-def read_document(file: SpecificationFile, language: str) -> LocatedObject | None:
-    """Return the JSON object of the file; report and return None if it is not one."""
+def read_document(file: SpecificationFile, language: str, schema: str = "") -> Value | None:
+    """Return the JSON object of the file; report what *schema* forbids, and return None.
+
+    Without *schema*, the member ``format`` distinguishes the two forms of a contract.
+    """
     try:
         document = parse_json(file.text)
-    except RecursionError:
-        file.report(rules.NOT_UNDERSTOOD, 0, form=language, reason="it is nested too deeply")
+    except DocumentError as error:
+        reason = error.problem
+        file.report(rules.NOT_UNDERSTOOD, error.spot.character, form=language, reason=reason)
         return None
-    except ValueError as error:
-        # A lone ValueError is a number with more digits than Python converts.
-        offset, reason = getattr(error, "pos", 0), getattr(error, "msg", str(error))
-        file.report(rules.NOT_UNDERSTOOD, offset, form=language, reason=f"it is not JSON: {reason}")
-        return None
-    if isinstance(document, LocatedObject):
-        return document
-    file.report(rules.WRONG_SHAPE, 0, what="a contract is a JSON object")
-    return None
+    if not schema:
+        is_neutral = document.get("format") is None
+        schema = "neutral-contract" if is_neutral else "sysmlc-contract"
+        for key in document.keys if is_neutral else ():
+            # Other members are comments, unless they are conjuncts that would be lost.
+            similar = "" if key in _NEUTRAL_KEYS else find_similar(key, _NEUTRAL_KEYS)
+            if similar:
+                what = f"at the top: unknown key '{key}'; did you mean '{similar}'?"
+                file.report(rules.WRONG_SHAPE, document.keys[key].character, what=what)
+    violations = list_violations(document, f"{schema}.schema.json")
+    for violation in violations:
+        file.report(rules.WRONG_SHAPE, violation.spot.character, what=str(violation))
+    return None if violations else document
 
 
-def _read_contract(file: SpecificationFile, document: LocatedObject) -> Contract:
-    declarations = object_at(document, "variables")
-    for name in declarations.duplicates:
-        file.report(rules.DECLARED_TWICE, declarations.offset, name=name)
+def _read_contract(file: SpecificationFile, document: Value) -> Contract:
     variables = tuple(
-        _read_variable(name, declaration, declarations.offset)
-        for name, declaration in declarations.items()
+        _read_variable(name, declaration)
+        for name, declaration in document.iter_entries("variables")
     )
     domains = {variable.name: variable.domain for variable in variables}
     assumptions, guarantees = (
         tuple(_read_side(file, document, side, domains)) for side in SIDES.values()
     )
-    name, origin = text_at(document, "name"), text_at(document, "origin")
+    name, origin = document.read_text("name"), document.read_text("origin")
     return Contract(name, origin, variables, assumptions, guarantees)
 
 
-def object_at(owner: LocatedObject, name: str) -> LocatedObject:
-    """Return the member of that name, an empty object if there is none. Raises ShapeError."""
-    member = owner.get(name)
-    if member is None and name not in owner:
-        member = LocatedObject()
-        member.offset, member.duplicates = owner.offset, ()
-    if not isinstance(member, LocatedObject):
-        raise ShapeError(f"'{name}' is not an object", owner.offset)
-    return member
-
-
-def text_at(owner: LocatedObject, name: str) -> str:
-    """Return the string of that name, empty if there is none. Raises ShapeError."""
-    member = owner.get(name, "")
-    if not isinstance(member, str):
-        raise ShapeError(f"'{name}' is not a text", owner.offset)
-    return str(member)
-
-
-def _read_variable(name: str, declaration: object, offset: int) -> Variable:
-    if not isinstance(declaration, LocatedObject):
-        reason = f"the variable '{name}' is not an object with owner and type"
-        raise ShapeError(reason, offset)
-    check_name(name, declaration.offset)
-    owner = declaration.get("owner")
-    if not isinstance(owner, LocatedText) or owner not in _OWNERS:
-        owner_offset = owner.offset if isinstance(owner, LocatedText) else declaration.offset
-        raise ShapeError(f"the owner of '{name}' is neither 'env' nor 'sys'", owner_offset)
-    domain = read_domain(name, declaration.get("type"), declaration.offset)
+def _read_variable(name: str, declaration: Value) -> Variable:
+    check_name(name, declaration)
+    domain = read_domain(name, declaration.find(["type"]))
     return Variable(
         name,
-        _OWNERS[owner],
+        Owner(declaration.read_text("owner")),
         domain,
-        text_at(declaration, "origin"),
-        is_auxiliary=declaration.get("auxiliary") is True,
-        is_range_assumed=declaration.get("assumed") is True and isinstance(domain, IntegerDomain),
-        condition=text_at(declaration, "condition"),
-        wording=text_at(declaration, "wording"),
+        declaration.read_text("origin"),
+        is_auxiliary=declaration.get("auxiliary") is not None,
+        is_range_assumed="assumed" in declaration.keys and isinstance(domain, IntegerDomain),
+        condition=declaration.read_text("condition"),
+        wording=declaration.read_text("wording"),
     )
 
 
-def check_name(name: str, offset: int) -> None:
+def check_name(name: str, declaration: Value) -> None:
     """Raise ShapeError unless the name of a variable can stand in formulas."""
     if not name.isidentifier():
-        raise ShapeError(f"'{name}' is not a valid name in formulas", offset)
+        raise ShapeError(f"'{name}' is not a valid name in formulas", declaration)
 
 
-def read_domain(name: str, type_: object, offset: int) -> Domain:
+def read_domain(name: str, type_: Value) -> Domain:
     """Return the domain of a type: ``"bool"``, ``[0, 7]`` or ``["open", "closed"]``.
 
     Raises ShapeError.
     """
-    match type_:
-        case "bool" | "boolean":
-            return BooleanDomain()
-        case [int(low), int(high)] if isinstance(low, int) and not isinstance(low, bool):
-            if isinstance(high, bool) or low > high:
-                raise ShapeError(f"the range of '{name}' is empty: {low}..{high}", offset)
-            return IntegerDomain(low, high)
-        case [str(), *_] if all(isinstance(literal, str) for literal in type_):
-            return _read_enumeration(name, [str(literal) for literal in type_], offset)
+    match type_.as_json():
+        case [int() | float() as low, int() | float() as high]:
+            if low > high:
+                raise ShapeError(f"the range of '{name}' is empty: {low}..{high}", type_)
+            return IntegerDomain(int(low), int(high))
+        case [*literals]:
+            return _read_enumeration(name, list(map(str, literals)), type_)
         case _:
-            reason = 'is not "bool", not [least, greatest] and no list of names'
-            type_offset = getattr(type_, "offset", offset)
-            raise ShapeError(f"the type of '{name}' {reason}", type_offset)
+            return BooleanDomain()
 
 
-def _read_enumeration(name: str, literals: list[str], offset: int) -> Domain:
+def _read_enumeration(name: str, literals: list[str], type_: Value) -> Domain:
     for literal in literals:
         if not literal.isidentifier():
-            reason = f"'{literal}' of '{name}' is not a valid name in formulas"
-            raise ShapeError(reason, offset)
-        if literals.count(literal) > 1:
-            raise ShapeError(f"'{name}' has the value '{literal}' twice", offset)
+            raise ShapeError(f"'{literal}' of '{name}' is not a valid name in formulas", type_)
     return EnumerationDomain(tuple(literals))
 
 
 def _read_side(
-    file: SpecificationFile, document: LocatedObject, side: str, domains: Mapping[str, Domain]
+    file: SpecificationFile, document: Value, side: str, domains: Mapping[str, Domain]
 ) -> Iterator[Conjunct]:
-    classes = object_at(document, side)
-    faulty = [*classes.duplicates, *(name for name in classes if name not in list(Class))]
-    if faulty:
-        raise ShapeError(f"'{faulty[0]}' of the {side} is twice there or no class", classes.offset)
     for class_ in Class:
-        items = classes.get(class_, LocatedList())
-        if not isinstance(items, LocatedList):
-            raise ShapeError(f"'{class_}' of the {side} is not a list", classes.offset)
-        for item in items:
-            conjunct = _read_conjunct(file, item, side, class_, domains, items.offset)
+        for item in document.find([side]).list_items(class_):
+            conjunct = _read_conjunct(file, item, side, class_, domains)
             if conjunct is not None:
                 yield conjunct
 
 
 def _read_conjunct(
-    file: SpecificationFile,
-    item: object,
-    side: str,
-    class_: Class,
-    domains: Mapping[str, Domain],
-    list_offset: int,
+    file: SpecificationFile, item: Value, side: str, class_: Class, domains: Mapping[str, Domain]
 ) -> Conjunct | None:
     """Read a conjunct: a formula, or an object with formula, origin and text.
 
-    Report a faulty formula and return None. Raises ShapeError.
+    Report a faulty formula and return None.
     """
     section = SECTION_NAMES[side, class_]
-    formula_text = item.get("formula") if isinstance(item, LocatedObject) else item
-    if not isinstance(formula_text, LocatedText):
-        reason = f"one of the {section} is neither a formula nor an object with one"
-        raise ShapeError(reason, getattr(item, "offset", list_offset))
-    origin, text, source = file.origin_at(formula_text.offset), "", Source.AUTHOR
-    if isinstance(item, LocatedObject):
-        origin, text = text_at(item, "origin"), text_at(item, "text")
-        source = _read_source(item)
+    text = item.get("formula") or item
+    start = text.spot.character + 1
     try:
-        formula = parse_formula(formula_text, domains, _NeutralReader)
+        formula = parse_formula(str(text.scalar), domains, _NeutralReader)
     except FormulaError as error:
-        offset = formula_text.offset_of(error.offset)
+        offset = start + find_in_string(text, error.offset)
         file.report(rules.WRONG_FORMULA, offset, section=section, reason=str(error))
         return None
     step = convert_to_class(formula, class_)
     if step is None:
         reason = "it has primes" if class_ is Class.INIT else "it looks further than one step"
         file.report(
-            rules.WRONG_CLASS,
-            formula_text.offset,
-            formula=formula_text,
-            section=section,
-            reason=reason,
+            rules.WRONG_CLASS, start, formula=str(text.scalar), section=section, reason=reason
         )
         return None
-    return Conjunct(step, class_, origin, text, source=source)
-
-
-def _read_source(item: LocatedObject) -> Source:
-    """Return who states a conjunct: the author if the object does not say it. Raises ShapeError."""
-    text = text_at(item, "source") or Source.AUTHOR
-    if text not in list(Source):
-        raise ShapeError("the source of a conjunct is neither 'author' nor 'derived'", item.offset)
-    return Source(text)
+    origin = item.read_text("origin") if item is not text else file.origin_at(start)
+    source = Source(item.read_text("source") or Source.AUTHOR)
+    return Conjunct(step, class_, origin, item.read_text("text"), source=source)
 
 
 # -- writing ---------------------------------------------------------------------------------------

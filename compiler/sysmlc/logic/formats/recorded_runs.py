@@ -12,10 +12,10 @@ from collections.abc import Iterable, Iterator, Mapping
 from msgspec import Struct
 
 from sysmlc.diagnostics import Place, Sink, Subject
+from sysmlc.documents import DocumentError, parse_json
 from sysmlc.logic.contract import BooleanDomain, Contract, IntegerDomain, Variable
 from sysmlc.logic.domains import describe
 from sysmlc.logic.formats import rules
-from sysmlc.logic.formats.draft import LocatedList, LocatedObject, parse_json
 from sysmlc.logic.formula import Literal
 from sysmlc.sources import Source
 from sysmlc.support.counts import count
@@ -163,22 +163,16 @@ def _build_csv_rows(names: list[str], lines: Iterable[tuple[int, list[str]]]) ->
 def _read_json(text: str) -> list[_Row]:
     try:
         document = parse_json(text)
-    except ValueError as error:
-        offset, reason = getattr(error, "pos", 0), getattr(error, "msg", str(error))
-        raise _RunFileError(f"it is not JSON: {reason}", 1 + text.count("\n", 0, offset)) from None
-    if isinstance(document, LocatedObject):
-        document = document.get("steps")
-    if not isinstance(document, LocatedList):
+    except DocumentError as error:
+        raise _RunFileError(error.problem, error.spot.line) from None
+    steps = (document.get("steps") or document).items
+    if steps is None:
         raise _RunFileError("it is not a list of steps, nor an object with the member 'steps'", 1)
-    return list(_build_json_rows(text, document))
-
-
-def _build_json_rows(text: str, steps: Iterable[object]) -> Iterator[_Row]:
-    line, counted = 1, 0
+    rows = []
     for number, step in enumerate(steps, 1):
-        if not isinstance(step, LocatedObject):
-            raise _RunFileError(
-                f"step {number} is not an object with a value for each variable", line
-            )
-        line, counted = line + text.count("\n", counted, step.offset), step.offset
-        yield _Row(line, step)
+        if step.entries is None:
+            reason = f"step {number} is not an object with a value for each variable"
+            raise _RunFileError(reason, step.spot.line)
+        cells = {name: value.as_json() for name, value in step.entries.items()}
+        rows.append(_Row(step.spot.line, cells))
+    return rows

@@ -8,9 +8,10 @@ from typing import NamedTuple
 from unicodedata import normalize
 
 from sysmlc.diagnostics import Rule, Sink
+from sysmlc.documents import Spot
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, derived_id, list_items
 from sysmlc.ir.query import BEHAVIORS, CLASSIFIERS, generals, type_of
-from sysmlc.overlay.model import Change, Key, Refinement, Spot, Term, place_of
+from sysmlc.overlay.model import Change, Key, Refinement, Term, place_of
 from sysmlc.passes.overlay import rules
 from sysmlc.passes.resolve.libraries import PRIMITIVE_TYPES
 from sysmlc.support.suggestions import did_you_mean
