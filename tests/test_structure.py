@@ -47,7 +47,7 @@ WIDE_OBJECTS = {
     "sysmlc.logic.machines.machine.Vertex": 15,
     "sysmlc.logic.machines.paths.Path": 14,
     "sysmlc.analyses.activities.draft.Draft": 21,
-    "sysmlc.analyses.recipe.context.Context": 20,
+    "sysmlc.analyses.recipe.context.Context": 19,
     "sysmlc.recipe.model.Recipe": 14,
     "sysmlc.recipe.model.Service": 14,
     "sysmlc.recipe.model.Task": 15,

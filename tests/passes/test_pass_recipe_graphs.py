@@ -96,3 +96,34 @@ def test_an_unnamed_attribute_or_pin_is_named_by_its_kind():
     assert [variable.name for variable in graph.variables] == ["ok", "pin", "property"]
     look = next(node for node in graph.nodes if node.id == "Plant::Mount::look")
     assert look.assign == (("pin", "pin"),)
+
+
+# -- the reading of contracts --------------------------------------------------------------------
+
+
+def list_shown_pairs(graph):
+    return {(shorten_id(edge.source), shorten_id(edge.target)) for edge in graph.edges}
+
+
+def test_a_structured_node_that_only_groups_steps_is_no_step():
+    """No flow leads to the node itself, so that its nodes belong to the activity around it."""
+    place = '    Action a "place" subkind="call-behavior"\n      -> calls place\n'
+    for subkind in ("interruptible", "structured"):
+        group = f'    Structured x "group" subkind="{subkind}"\n' + place.replace("    ", "      ")
+        nodes, graph = derive_service_graph(nodes=samples.NODES.replace(place, group))
+        assert "group" not in nodes
+        assert nodes["place"].kind == "service"
+        assert {("good?", "place"), ("place", "after")} <= list_shown_pairs(graph)
+
+
+def test_else_is_written_in_any_letter_case():
+    _, graph = derive_service_graph("s g", "g l", "l d", "d a ok", "d b Else", "a m", "b m", "m e")
+    assert [(edge.text, edge.guard) for edge in graph.edges if edge.is_else] == [("Else", None)]
+
+
+def test_an_activity_without_a_token_game_has_a_graph():
+    """By its weight, a flow waits for two tokens: contracts reject it, and recipes show it."""
+    text = samples.task().replace("    ControlFlow m-e-7\n", "    ControlFlow m-e-7 weight=2\n")
+    assert "weight=2" in text
+    graph = derive_model(text).service_graphs[0]
+    assert ("after", "end") in list_shown_pairs(graph)

@@ -30,7 +30,7 @@ class _Entry(Struct, frozen=True):
     target: str
     """Module and class of the analysis."""
     needs: tuple[str, ...] = ()
-    """Names of the analyses whose results it reads."""
+    """Names of the analyses that run first: it reads their results or relies on their reports."""
     library: str = ""
     """Package without which the analysis has no result; empty if it needs no package."""
     plays_games: bool = False

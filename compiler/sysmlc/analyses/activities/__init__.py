@@ -95,6 +95,8 @@ class Activities(Struct, frozen=True):
         """Return the token graph of a drawn activity; *name* is that of what performs its steps."""
         self._check_depth(graph, activity, sink)
         drawing = activity_drawing.read_drawing(graph, activity, sink)
+        if not drawing.is_playable:
+            raise activity_drawing.CannotPlayError
         if not drawing.nodes:
             _report_empty(graph, activity, _describe_binding(graph, activity), sink)
             raise activity_drawing.CannotPlayError
@@ -125,6 +127,19 @@ class Activities(Struct, frozen=True):
                 subject, limit = graph.subject(element), self.max_depth
                 sink.report(rules.TOO_DEEP, subject, activity=activity.name, limit=limit)
                 raise activity_drawing.CannotPlayError
+
+
+def draw_tokens(graph: Graph, activity: Element) -> TokenGraph:
+    """Return the token graph of an activity as it is drawn, before all checks.
+
+    An activity whose tokens cannot be played has one, too. The analysis ``activities`` reports the
+    faults. Exceptions that called behaviours raise are left out.
+    """
+    sink = Sink()
+    drawing = activity_drawing.read_drawing(graph, activity, sink)
+    inputs = Inputs(graph, Scope(graph, activity, Activities().assumed_range, sink), sink)
+    raising = Raising(frozenset(), frozenset())
+    return activity_tokens.build(graph, drawing, inputs, raising, sink)
 
 
 def _check_order(graph: Graph, drawing: activity_drawing.Drawing, sink: Sink) -> None:

@@ -76,6 +76,8 @@ class Drawing:
     """The name of each node, or what it calls or assigns, or nothing."""
     labels: dict[str, str] = field(default_factory=dict)
     handlers: dict[str, list[Handler]] = field(default_factory=dict)
+    is_playable: bool = True
+    """False if the token game cannot express the drawing; the reason has been reported."""
 
     def list_steps(self) -> list[Element]:
         """List the actions, structured nodes and control nodes outside of structured nodes."""
@@ -110,8 +112,7 @@ class Drawing:
 def read_drawing(graph: Graph, activity: Element, sink: Sink) -> Drawing:
     """Return the drawing of an activity.
 
-    An activity whose text consists of assignments is its own only step. Raises CannotPlayError if
-    the activity can have no token graph; the reason has been reported.
+    An activity whose text consists of assignments is its own only step.
     """
     drawing = Drawing(activity, list(graph.subtree(activity)))
     if takes_one_step(activity):
@@ -132,8 +133,6 @@ def read_drawing(graph: Graph, activity: Element, sink: Sink) -> Drawing:
     reader = _Reader(graph, drawing, sink, expansion_nodes)
     reader.check_nodes()
     reader.read_flows()
-    if reader.has_failed:
-        raise CannotPlayError
     return drawing
 
 
@@ -198,7 +197,6 @@ class _Reader:
         self.drawing = drawing
         self.sink = sink
         self.expansion_nodes = expansion_nodes
-        self.has_failed = False
         self.node_ids = {node.id for node in drawing.nodes}
 
     def check_nodes(self) -> None:
@@ -272,7 +270,6 @@ class _Reader:
             self.sink.report(
                 rules.WEIGHT, self._fail(element), flow=self._label_flow(element), weight=weight
             )
-            return None
         return self._assign_region(Flow(element, source[0], target[0], source[1], target[1]))
 
     def _find_end(self, element: Element, edge: Edge) -> tuple[Element, Element | None] | None:
@@ -284,7 +281,7 @@ class _Reader:
         # The pass `resolve` has reported an end that leads to a missing element.
         unresolved = element.attrs.get("unresolved")
         if node is None and isinstance(unresolved, tuple) and edge.value in unresolved:
-            self.has_failed = True
+            self.drawing.is_playable = False
             return None
         if node is None:
             end = "source" if edge is Edge.FLOW_SOURCE else "target"
@@ -341,7 +338,7 @@ class _Reader:
 
     def _fail(self, element: Element) -> Subject:
         """Note that the activity has no token graph, and return the subject of the diagnostic."""
-        self.has_failed = True
+        self.drawing.is_playable = False
         return self.graph.subject(element)
 
 

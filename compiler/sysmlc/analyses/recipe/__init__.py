@@ -5,7 +5,8 @@ from typing import ClassVar
 
 from msgspec import Struct, field
 
-from sysmlc.analyses.recipe.context import NODES, Context, is_inlined
+from sysmlc.analyses.activities.regions import NODES
+from sysmlc.analyses.recipe.context import Context
 from sysmlc.analyses.recipe.derived_levels import (
     add_derived_levels,
     report_derived_levels,
@@ -77,13 +78,13 @@ def _find_recipes(context: Context) -> Iterator[Element]:
 
 def _is_only_general(context: Context, activity: Element) -> bool:
     is_general = bool(context.graph.sources(activity, Edge.SPECIALIZES))
-    return is_general and not context.nodes(activity)
+    return is_general and not context.has_nodes(activity)
 
 
 def _owning_activity(context: Context, node: Element) -> str | None:
     """Return the id of the activity to whose graph the node belongs."""
     owner = context.graph.owner(node)
-    while owner is not None and is_inlined(context.graph, owner):
+    while owner is not None and context.is_inlined(owner):
         owner = context.graph.owner(owner)
     return None if owner is None else owner.id
 

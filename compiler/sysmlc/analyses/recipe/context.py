@@ -1,14 +1,12 @@
-"""The context of the recipe analysis: graph, recipe levels, ids, and memoised results.
-
-For-each regions and blocks are inlined: their content belongs to the graph of the activity around
-them.
-"""
+"""The context of the recipe analysis: graph, recipe levels, ids, and memoised results."""
 
 from collections.abc import Iterator, Mapping
 
 from msgspec import Struct, field
 from msgspec.structs import replace
 
+from sysmlc.analyses.activities.regions import NODES
+from sysmlc.analyses.recipe.activity_graph import ActivityGraph
 from sysmlc.analyses.recipe.profile import (
     Tags,
     find_followers,
@@ -20,16 +18,6 @@ from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.recipe.model import FlowGraph, Parameter, ValueType
 
 SERVICES = ("machine service", "infrastructure service")
-NODES = frozenset(
-    [
-        Kind.ACTION,
-        Kind.CONTROL,
-        Kind.STRUCTURED,
-        Kind.OBJECT_NODE,
-        Kind.DATA_STORE,
-        Kind.ACTIVITY_PARAMETER,
-    ]
-)
 
 
 class Call(Struct, frozen=True):
@@ -76,8 +64,7 @@ class Context(Struct, frozen=True):
     _levels: dict[str, str] = field(default_factory=dict)
     _elements_by_level: dict[str, list[Element]] = field(default_factory=dict)
     _literals: list[dict[str, str]] = field(default_factory=list)
-    _contents: dict[str, list[Element]] = field(default_factory=dict)
-    _nodes: dict[str, list[Element]] = field(default_factory=dict)
+    _activities: dict[str, ActivityGraph] = field(default_factory=dict)
     types: dict[str, ValueType] = field(default_factory=dict)
     """Types of values by the id of the type element."""
     parameters: dict[str, Parameter] = field(default_factory=dict)
@@ -179,24 +166,33 @@ class Context(Struct, frozen=True):
 
     # -- contents ------------------------------------------------------------------------------
 
-    def contents(self, activity: Element) -> list[Element]:
-        """Return the elements that an activity owns, and the content of inlined nodes."""
-        elements = self._contents.get(activity.id)
-        if elements is None:
-            elements = self._contents[activity.id] = list(_list_contents(self.graph, activity))
-        return elements
+    def read_activity(self, activity: Element) -> ActivityGraph:
+        """Return the nodes and flows of an activity."""
+        if activity.id not in self._activities:
+            self._activities[activity.id] = ActivityGraph(self.graph, activity)
+        return self._activities[activity.id]
 
-    def nodes(self, activity: Element) -> list[Element]:
-        """Return the nodes of the activity, including those in for-each regions and blocks."""
-        nodes = self._nodes.get(activity.id)
-        if nodes is None:
-            elements = self.contents(activity)
-            nodes = self._nodes[activity.id] = [
-                element
-                for element in elements
-                if element.kind in NODES and query.is_performed(self.graph, element)
-            ]
-        return nodes
+    def contents(self, activity: Element) -> Iterator[Element]:
+        """Yield the elements that an activity owns; an inlined node precedes its content."""
+        worklist = [activity]
+        while worklist:
+            element = worklist.pop()
+            if element is not activity:
+                yield element
+            if element.id in self.read_activity(activity).inlined:
+                worklist += reversed(self.graph.owned(element))
+
+    def has_nodes(self, activity: Element) -> bool:
+        """Whether nodes describe the activity."""
+        return any(
+            element.kind in NODES and query.is_performed(self.graph, element)
+            for element in self.graph.owned(activity)
+        )
+
+    def is_inlined(self, node: Element) -> bool:
+        """Whether the content of a structured node belongs to the activity around it."""
+        activity = next((a for a in self.graph.ancestors(node) if a.kind is Kind.ACTIVITY), None)
+        return activity is not None and node.id in self.read_activity(activity).inlined
 
     # -- stereotypes and tagged values ---------------------------------------------------------
 
@@ -280,77 +276,3 @@ def _number_siblings(siblings: list[Element]) -> Iterator[tuple[str, str]]:
 def segment_word(element: Element) -> str:
     """Return the part of a qualified name for an element: its name, or else its subkind or kind."""
     return element.name or element.subkind or element.kind.lower()
-
-
-# -- structured nodes --------------------------------------------------------------------------
-
-_STEPS = frozenset([Kind.ACTION, Kind.CONTROL, Kind.STRUCTURED])
-_ENDS = ("final", "flow-final")
-
-
-def is_for_each(node: Element) -> bool:
-    """Whether a region takes the elements of a list one after the other (SysML v2 ``for``)."""
-    is_region = node.kind is Kind.STRUCTURED and node.subkind == "expansion"
-    return is_region and node.attrs.get("mode") == "iterative" and "collection" in node.attrs
-
-
-def is_block(graph: Graph, node: Element) -> bool:
-    """Whether a node only groups steps: a structured node with one entry and without forks."""
-    if node.kind is not Kind.STRUCTURED or node.subkind not in ("", "structured"):
-        return False
-    steps = list_steps(graph, node)
-    forks = any(step.subkind == "fork" for step in steps)
-    return bool(steps) and not forks and len(find_entries(graph, node)) == 1
-
-
-def is_inlined(graph: Graph, node: Element) -> bool:
-    """Whether the content of the node belongs to the graph of the activity around it."""
-    if node.kind is not Kind.STRUCTURED or not query.is_performed(graph, node):
-        return False
-    return is_for_each(node) or is_block(graph, node)
-
-
-def _list_contents(graph: Graph, activity: Element) -> Iterator[Element]:
-    """Yield the elements that an activity owns; each inlined node is followed by its content."""
-    for element in graph.owned(activity):
-        yield element
-        if is_inlined(graph, element):
-            yield from _list_contents(graph, element)
-
-
-def list_steps(graph: Graph, region: Element) -> list[Element]:
-    """Return the nodes that a structured node owns directly, without object nodes."""
-    return [
-        element
-        for element in graph.owned(region)
-        if element.kind in _STEPS and query.is_performed(graph, element)
-    ]
-
-
-def find_entries(graph: Graph, region: Element) -> list[Element]:
-    """Return the first nodes in a region: initial nodes, or else nodes without predecessor."""
-    steps = list_steps(graph, region)
-    targets = {target for _, target in _list_successions(graph, region)}
-    starts = [step for step in steps if step.subkind == "initial"]
-    return starts or [step for step in steps if step.id not in targets]
-
-
-def find_exits(graph: Graph, region: Element) -> list[Element]:
-    """Return the last nodes in a region: final nodes, and nodes without successor."""
-    sources = {source for source, _ in _list_successions(graph, region)}
-    steps = list_steps(graph, region)
-    return [step for step in steps if step.subkind in _ENDS or step.id not in sources]
-
-
-def _list_successions(graph: Graph, region: Element) -> Iterator[tuple[str, str]]:
-    """Yield the pairs of consecutive nodes in a region."""
-    for flow in graph.owned(region):
-        if flow.kind in (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW):
-            source, target = query.flow_source(graph, flow), query.flow_target(graph, flow)
-            if source is not None and target is not None:
-                yield _step_of_end(graph, source).id, _step_of_end(graph, target).id
-
-
-def _step_of_end(graph: Graph, end: Element) -> Element:
-    owner = graph.owner(end)
-    return owner if end.kind is Kind.PIN and owner is not None else end

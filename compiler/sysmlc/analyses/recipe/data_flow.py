@@ -7,7 +7,7 @@ from functools import cached_property
 
 from msgspec import Struct
 
-from sysmlc.analyses.recipe.context import Context, is_inlined
+from sysmlc.analyses.recipe.context import Context
 from sysmlc.analyses.recipe.expressions import (
     build_parameter,
     find_feature,
@@ -167,7 +167,7 @@ class DataFlow(Struct, frozen=True, dict=True):
     def _is_passed_on(self, pin: Element) -> bool:
         """Whether the pin belongs to an inlined node, and so only passes its value on."""
         owner = self.context.graph.owner(pin)
-        return owner is not None and is_inlined(self.context.graph, owner)
+        return owner is not None and self.context.is_inlined(owner)
 
     # -- declarations --------------------------------------------------------------------------
 

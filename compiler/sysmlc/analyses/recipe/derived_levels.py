@@ -155,7 +155,7 @@ def _is_pause(context: Context, activity: Element) -> bool:
     parameters = query.parameters(context.graph, activity)
     if len(parameters) != 1 or query.direction_of(parameters[0]) != "in":
         return False
-    is_alone = not context.nodes(activity) and not query.applications(context.graph, activity)
+    is_alone = not context.has_nodes(activity) and not query.applications(context.graph, activity)
     return is_alone and _is_duration(context, parameters[0])
 
 

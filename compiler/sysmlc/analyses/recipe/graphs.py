@@ -6,26 +6,12 @@ from itertools import pairwise
 
 from msgspec.structs import replace
 
-from sysmlc.analyses.recipe.context import (
-    Call,
-    Context,
-    Refinement,
-    find_entries,
-    find_exits,
-    is_for_each,
-    is_inlined,
-    list_steps,
-)
+from sysmlc.analyses.recipe.activity_graph import ActivityGraph, Flow, is_for_each
+from sysmlc.analyses.recipe.context import Call, Context, Refinement
 from sysmlc.analyses.recipe.data_flow import DataFlow
-from sysmlc.analyses.recipe.nodes import (
-    build_nodes,
-    find_flow_ends,
-    is_by_position,
-    list_flows,
-    step_kind,
-)
+from sysmlc.analyses.recipe.nodes import build_nodes, is_by_position, step_kind
 from sysmlc.analyses.recipe.profile import read_number
-from sysmlc.ir import Element, Kind, query
+from sysmlc.ir import Element, Kind, algorithms, query
 from sysmlc.ir.expressions import Binary, Expression, Literal, Unary
 from sysmlc.recipe.flow import add_loop_nodes, find_reachable, sort_nodes
 from sysmlc.recipe.model import FlowEdge, FlowGraph, Node
@@ -52,7 +38,7 @@ def refine(context: Context, activity: Element, activity_level: str) -> Refineme
 
 
 def _list_calls(context: Context, activity: Element, activity_level: str) -> Iterator[Call]:
-    for node in context.nodes(activity):
+    for node in context.read_activity(activity).nodes:
         kind = step_kind(context, node, activity_level)
         if kind in ("call", "service", "function"):
             definition = context.definition(node) or node
@@ -62,9 +48,10 @@ def _list_calls(context: Context, activity: Element, activity_level: str) -> Ite
 def _list_decisions(
     context: Context, activity: Element, activity_level: str
 ) -> Iterator[tuple[str, str]]:
-    for node in context.nodes(activity):
+    drawn = context.read_activity(activity)
+    for node in drawn.nodes:
         kind = step_kind(context, node, activity_level)
-        if node.kind is Kind.STRUCTURED and not is_inlined(context.graph, node):
+        if node.kind is Kind.STRUCTURED and node.id not in drawn.inlined:
             yield node.id, ""
         elif is_by_position(context, node, kind):
             yield (context.definition(node) or node).id, _CALLED_LEVELS[kind]
@@ -88,17 +75,17 @@ def _build_flow_graph(context: Context, activity: Element, activity_level: str) 
     """Return the graph of an activity; *activity_level* is its level, ``task`` or ``service``."""
     data = DataFlow.build(context, activity)
     draft = Draft()
-    nodes = context.nodes(activity)
-    for node in nodes:
+    drawn = context.read_activity(activity)
+    for node in drawn.nodes:
         _add_nodes(context, node, step_kind(context, node, activity_level), data, draft)
-    regions = [node for node in nodes if is_inlined(context.graph, node)]
+    regions = [node for node in drawn.nodes if node.id in drawn.inlined]
     for region in regions:
-        _remove_region_ends(context, region, draft)
-    draft.edges.extend(_list_control_edges(context, activity, data, draft))
+        _remove_region_ends(drawn, region, draft)
+    draft.edges.extend(_list_control_edges(context, drawn, data, draft))
     # After the control edges: only object flows that no control flow already orders count.
-    draft.edges.extend(_list_object_edges(context, activity, data, draft))
+    draft.edges.extend(_list_object_edges(context, drawn, data, draft))
     for region in regions:
-        _connect_region(context, region, draft)
+        _connect_region(context, drawn, region, draft)
     _add_ends(context, activity, draft)
     _add_results(context, activity, data, draft)
     graph = FlowGraph(
@@ -129,13 +116,13 @@ def _sort_graph(graph: FlowGraph) -> FlowGraph:
 # -- regions -----------------------------------------------------------------------------------
 
 
-def _remove_region_ends(context: Context, region: Element, draft: Draft) -> None:
+def _remove_region_ends(drawn: ActivityGraph, region: Element, draft: Draft) -> None:
     """Remove the initial and final nodes of a region.
 
     Edges from an initial node then leave the first recipe node of the region, and edges to a final
     node reach its last one.
     """
-    for node in list_steps(context.graph, region):
+    for node in drawn.list_steps(region):
         if node.kind is Kind.CONTROL and node.subkind in ("initial", *_ENDS):
             draft.nodes = [
                 recipe_node for recipe_node in draft.nodes if recipe_node.id != draft.first[node.id]
@@ -144,15 +131,15 @@ def _remove_region_ends(context: Context, region: Element, draft: Draft) -> None
             draft.first[node.id] = draft.last[region.id]
 
 
-def _connect_region(context: Context, region: Element, draft: Draft) -> None:
+def _connect_region(context: Context, drawn: ActivityGraph, region: Element, draft: Draft) -> None:
     """Connect the first and last node of a region with its content.
 
     Both are the same node if the region is a for-each loop.
     """
     begin, end = draft.first[region.id], draft.last[region.id]
-    starts = [node for node in find_entries(context.graph, region) if node.subkind != "initial"]
+    starts = [node for node in drawn.find_entries(region) if node.subkind != "initial"]
     draft.edges += (FlowEdge(begin, draft.first[node.id], element=region.id) for node in starts)
-    ends = [node for node in find_exits(context.graph, region) if node.subkind not in _ENDS]
+    ends = [node for node in drawn.find_exits(region) if node.subkind not in _ENDS]
     draft.edges += (FlowEdge(draft.last[node.id], end, element=region.id) for node in ends)
     if is_for_each(region):
         draft.edges = [_assign_role(context, region, edge, draft) for edge in draft.edges]
@@ -172,11 +159,11 @@ def _assign_role(context: Context, region: Element, edge: FlowEdge, draft: Draft
 def _add_ends(context: Context, activity: Element, draft: Draft) -> None:
     """Add an initial and a final node where the model draws none (UML 2.5.1 clause 15.2.3.2)."""
     id = context.name(activity)
-    top_nodes = [node for node in draft.nodes if context.graph[node.element].owner == activity.id]
-    top_edges = [edge for edge in draft.edges if context.graph[edge.element].owner == activity.id]
+    outermost = {node.id for node in context.read_activity(activity).list_nodes(activity)}
+    top_nodes = [node for node in draft.nodes if node.element in outermost]
     kinds = {node.kind for node in top_nodes}
-    targets = {edge.target for edge in top_edges}
-    sources = {edge.source for edge in top_edges}
+    targets = {edge.target for edge in draft.edges}
+    sources = {edge.source for edge in draft.edges}
     if "initial" not in kinds:
         draft.nodes.append(Node(f"{id}::initial", "initial"))
         first = [node.id for node in top_nodes if node.id not in targets]
@@ -242,7 +229,7 @@ def _add_nodes(context: Context, node: Element, kind: str, data: DataFlow, draft
     new_nodes = build_nodes(context, node, kind, data)
     draft.nodes.extend(new_nodes)
     draft.first[node.id], draft.last[node.id] = new_nodes[0].id, new_nodes[-1].id
-    if not is_inlined(context.graph, node):
+    if kind != "block":
         draft.edges.extend(_chain(new_nodes, node.id))
 
 
@@ -254,63 +241,47 @@ def _chain(nodes: Sequence[Node], element: str) -> list[FlowEdge]:
 
 
 def _list_control_edges(
-    context: Context, activity: Element, data: DataFlow, draft: Draft
+    context: Context, drawn: ActivityGraph, data: DataFlow, draft: Draft
 ) -> Iterator[FlowEdge]:
-    for flow in list_flows(context, activity):
-        source, target = find_flow_ends(context, flow)
-        if flow.kind is not Kind.CONTROL_FLOW or source is None or target is None:
-            continue
-        if source.id in draft.last and target.id in draft.first:
-            yield _build_edge(context, flow, source, target, data, draft)
+    for flow in drawn.flows:
+        is_control = flow.element.kind is Kind.CONTROL_FLOW
+        if is_control and flow.source.id in draft.last and flow.target.id in draft.first:
+            yield _build_edge(context, flow, flow.target.id, data, draft)
 
 
 def _list_object_edges(
-    context: Context, activity: Element, data: DataFlow, draft: Draft
+    context: Context, drawn: ActivityGraph, data: DataFlow, draft: Draft
 ) -> Iterator[FlowEdge]:
     """Yield the edges of object flows between nodes that no control flow orders."""
     ordered = [(edge.source, edge.target) for edge in draft.edges]
-    for flow in list_flows(context, activity):
-        source, _ = find_flow_ends(context, flow)
-        if flow.kind is not Kind.OBJECT_FLOW or source is None or source.id not in draft.last:
-            continue
-        for target in _find_targets(context, flow, draft):
-            edge = _build_edge(context, flow, source, target, data, draft)
-            if edge.target not in find_reachable([edge.source], ordered):
-                yield edge
-
-
-def _find_targets(context: Context, flow: Element, draft: Draft) -> list[Element]:
-    """Return the nodes that an object flow reaches, directly or through buffers of data."""
-    targets: dict[str, Element] = {}
-    seen: set[str] = set()
-    worklist = [flow]
-    while worklist:
-        current = worklist.pop(0)
-        _, target = find_flow_ends(context, current)
-        if target is None or current.id in seen:
-            continue
-        seen.add(current.id)
-        if target.id in draft.first:
-            targets[target.id] = target
-        elif target.kind is not Kind.ACTIVITY_PARAMETER:
-            worklist.extend(query.outgoing(context.graph, target))
-    return list(targets.values())
+    following: dict[str, list[str]] = {}
+    for flow in drawn.flows:
+        # Buffers of data are no nodes of a recipe: they pass on what they get.
+        if flow.source.id not in draft.last and flow.source.kind is not Kind.ACTIVITY_PARAMETER:
+            following.setdefault(flow.source.id, []).append(flow.target.id)
+    for flow in drawn.flows:
+        if flow.element.kind is Kind.OBJECT_FLOW and flow.source.id in draft.last:
+            reached = algorithms.find_reachable([flow.target.id], lambda id: following.get(id, ()))
+            for target in (id for id in draft.first if id in reached):
+                edge = _build_edge(context, flow, target, data, draft)
+                if edge.target not in find_reachable([edge.source], ordered):
+                    yield edge
 
 
 def _build_edge(
-    context: Context, flow: Element, source: Element, target: Element, data: DataFlow, draft: Draft
+    context: Context, flow: Flow, target: str, data: DataFlow, draft: Draft
 ) -> FlowEdge:
-    text = str(flow.attrs.get("guard", ""))
-    is_else = text.strip() == "else"
+    element, is_else = flow.element, flow.edge.is_else
+    text = str(element.attrs.get("guard", ""))
     return FlowEdge(
-        draft.last[source.id],
-        draft.first[target.id],
-        guard=None if is_else else _read_guard(context, flow, source, text, data),
+        draft.last[flow.source.id],
+        draft.first[target],
+        guard=None if is_else else _read_guard(context, element, flow.source, text, data),
         text=text,
         is_else=is_else,
-        item=_find_item(context, flow) if flow.kind is Kind.OBJECT_FLOW else "",
-        element=flow.id,
-        probability=_read_probability(flow),
+        item=_find_item(context, element) if element.kind is Kind.OBJECT_FLOW else "",
+        element=element.id,
+        probability=_read_probability(element),
     )
 
 

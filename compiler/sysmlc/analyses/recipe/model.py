@@ -10,6 +10,7 @@ from typing import Protocol, TypeVar
 
 from msgspec.structs import replace
 
+from sysmlc.analyses.activities.regions import FLOWS, NODES
 from sysmlc.analyses.recipe.context import Context, segment_word
 from sysmlc.analyses.recipe.data_flow import DataFlow
 from sysmlc.analyses.recipe.expressions import (
@@ -25,7 +26,7 @@ from sysmlc.analyses.recipe.machines import (
     find_opcua_node,
     list_allocations,
 )
-from sysmlc.analyses.recipe.nodes import find_refinement, list_flows
+from sysmlc.analyses.recipe.nodes import find_refinement
 from sysmlc.analyses.recipe.services import (
     build_function,
     build_service,
@@ -123,8 +124,7 @@ def _iter_sources(
             yield relation.element.id
     for client in clients:
         yield from (dependency.id for dependency in list_allocations(context, client))
-    for element in (*context.nodes(activity), *list_flows(context, activity)):
-        yield element.id
+    yield from (e.id for e in context.contents(activity) if e.kind in (*NODES, *FLOWS))
 
 
 def _build_recipe(
@@ -172,8 +172,8 @@ def _add_refinement(
 
 
 def _name_materials(context: Context, recipe: Recipe, activity: Element) -> set[str]:
-    flows = list_flows(context, activity)
-    carried = (find_material(context, flow) for flow in flows)
+    flows = context.read_activity(activity).flows
+    carried = (find_material(context, flow.element) for flow in flows)
     named = {context.name(element) for element in carried if element is not None}
     return named | ({recipe.product} if recipe.product else set())
 

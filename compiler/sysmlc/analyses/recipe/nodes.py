@@ -4,7 +4,8 @@ from collections.abc import Callable, Iterator
 
 from msgspec.structs import replace
 
-from sysmlc.analyses.recipe.context import SERVICES, Context, is_block, is_for_each
+from sysmlc.analyses.recipe.activity_graph import is_for_each
+from sysmlc.analyses.recipe.context import SERVICES, Context
 from sysmlc.analyses.recipe.data_flow import DataFlow
 from sysmlc.analyses.recipe.expressions import read_assignments, read_delay, read_optional
 from sysmlc.ir import Edge, Element, Kind, query
@@ -94,7 +95,11 @@ def _search_refinement(context: Context, definition: Element) -> Element | None:
     ]
     candidates += graph.sources(definition, Edge.REFINES)
     for candidate in candidates:
-        if candidate is not None and candidate.kind is Kind.ACTIVITY and context.nodes(candidate):
+        if (
+            candidate is not None
+            and candidate.kind is Kind.ACTIVITY
+            and context.has_nodes(candidate)
+        ):
             return candidate
     return None
 
@@ -102,7 +107,7 @@ def _search_refinement(context: Context, definition: Element) -> Element | None:
 def _region_kind(context: Context, node: Element) -> str:
     if is_for_each(node):
         return "forEach"
-    return "block" if is_block(context.graph, node) else "action"
+    return "block" if context.is_inlined(node) else "action"
 
 
 def is_by_position(context: Context, node: Element, kind: str) -> bool:
@@ -224,23 +229,3 @@ _MAKERS: dict[str, _Maker] = {
     "block": _build_block,
     "forEach": _build_for_each,
 }
-
-
-def list_flows(context: Context, activity: Element) -> list[Element]:
-    """Return the control and object flows of the activity, including those of inlined regions."""
-    kinds = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
-    return [element for element in context.contents(activity) if element.kind in kinds]
-
-
-def _node_of_end(context: Context, end: Element | None) -> Element | None:
-    """Return the node at an end of a flow: the action if the end is a pin."""
-    if end is None or end.kind is not Kind.PIN:
-        return end
-    return context.graph.owner(end)
-
-
-def find_flow_ends(context: Context, flow: Element) -> tuple[Element | None, Element | None]:
-    """Return the source and target nodes of a flow."""
-    graph = context.graph
-    ends = query.flow_source(graph, flow), query.flow_target(graph, flow)
-    return _node_of_end(context, ends[0]), _node_of_end(context, ends[1])

@@ -270,7 +270,7 @@ def _report_tasks(context: Context, recipe: Element, sink: Sink) -> None:
                 names = context.name(step.node), context.name(namesake)
                 subject = context.graph.subject(step.node)
                 sink.report(SAME_NAME, subject, element=names[0], other=names[1])
-    for node in context.nodes(recipe):
+    for node in context.read_activity(recipe).nodes:
         if node.kind is Kind.CONTROL and node.subkind == "decision":
             names = context.name(node), context.name(recipe)
             subject = context.graph.subject(node)

@@ -8,6 +8,7 @@ from math import ceil, floor
 from msgspec import Struct
 from msgspec.structs import replace
 
+from sysmlc.analyses.recipe.activity_graph import Flow
 from sysmlc.analyses.recipe.context import Context
 from sysmlc.analyses.recipe.data_flow import DataFlow
 from sysmlc.analyses.recipe.expressions import read_optional
@@ -20,9 +21,10 @@ from sysmlc.analyses.recipe.machines import (
     relations_by_partition,
     relations_by_pins,
 )
-from sysmlc.analyses.recipe.nodes import find_flow_ends, find_refinement, list_flows
+from sysmlc.analyses.recipe.nodes import find_refinement
 from sysmlc.analyses.recipe.profile import read_number
 from sysmlc.ir import Edge, Element, Kind, query
+from sysmlc.ir.algorithms import find_reachable
 from sysmlc.recipe.model import MaterialUse, Task, TimeLimit
 from sysmlc.support.units import read_duration
 
@@ -38,7 +40,7 @@ class Step(Struct, frozen=True):
 def list_steps(context: Context, recipe: Element) -> list[Step]:
     """Return the task nodes of a recipe, in order. Called elements without a level are tasks."""
     steps = []
-    for node in context.nodes(recipe):
+    for node in context.read_activity(recipe).nodes:
         calls = node.kind is Kind.ACTION and node.subkind in ("call-behavior", "call-operation")
         level = context.level(node)
         if level == "task" or (calls and not level):
@@ -93,27 +95,13 @@ def find_task_relations(context: Context, recipe: Element, step: Step) -> Iterat
 
 
 def _relations_by_flow(context: Context, recipe: Element, node: Element) -> Iterator[Relation]:
-    for flow, neighbour in _list_adjacent(context, recipe, node):
-        machine = find_machine(context, neighbour)
-        if machine is not None:
-            yield Relation(flow, (machine,))
-
-
-def _list_adjacent(
-    context: Context, recipe: Element, node: Element
-) -> Iterator[tuple[Element, Element]]:
-    """Yield the flows at a node, each with the node at its other end."""
-    for flow in list_flows(context, recipe):
-        source, target = find_flow_ends(context, flow)
-        if target is node and source is not None:
-            yield flow, source
-        elif source is node and target is not None:
-            yield flow, target
-
-
-def _is_machine_flow(context: Context, flow: Element) -> bool:
-    """Whether a flow only states which machine a task needs."""
-    return any(find_machine(context, end) is not None for end in find_flow_ends(context, flow))
+    """Yield the flows between the node and object nodes that stand for machines."""
+    for flow in context.read_activity(recipe).flows:
+        if node in (flow.source, flow.target):
+            neighbour = flow.source if flow.target is node else flow.target
+            machine = find_machine(context, neighbour)
+            if machine is not None:
+                yield Relation(flow.element, (machine,))
 
 
 # -- materials ---------------------------------------------------------------------------------
@@ -126,7 +114,7 @@ def build_material_uses(context: Context, recipe: Element, step: Step) -> tuple[
     carried.
     """
     amounts: dict[tuple[str, str], float] = {}
-    for flow in list_flows(context, recipe):
+    for flow in context.read_activity(recipe).flows:
         for material, use, quantity in _read_use(context, flow, step):
             key = (context.name(material), use)
             amounts[key] = amounts.get(key, 0) + quantity
@@ -141,25 +129,24 @@ def build_material_uses(context: Context, recipe: Element, step: Step) -> tuple[
     )
 
 
-def _read_use(context: Context, flow: Element, step: Step) -> Iterator[tuple[Element, str, float]]:
-    source, target = find_flow_ends(context, flow)
-    if flow.kind is not Kind.OBJECT_FLOW or step.node not in (source, target):
+def _read_use(context: Context, flow: Flow, step: Step) -> Iterator[tuple[Element, str, float]]:
+    if flow.element.kind is not Kind.OBJECT_FLOW or step.node not in (flow.source, flow.target):
         return
-    material = find_material(context, flow)
+    material = find_material(context, flow.element)
     if material is None:
         return
-    neighbour = source if target is step.node else target
+    neighbour = flow.source if flow.target is step.node else flow.target
     holders = [
         holder
-        for holder in (flow, neighbour)
-        if holder and context.find_application(holder, "Material")
+        for holder in (flow.element, neighbour)
+        if context.find_application(holder, "Material")
     ]
     unit = find_material_unit(context, material)
     tags = [replace(context.tags(holder, "Material"), material_unit=unit) for holder in holders]
     quantity = next((amount for holder in tags if (amount := holder.amount("quantity"))), None)
     use = next((use for holder in tags if (use := holder.material_use("use"))), "")
-    default = "consumed" if target is step.node else "produced"
-    weight = read_number(str(flow.attrs.get("weight", "")))
+    default = "consumed" if flow.target is step.node else "produced"
+    weight = read_number(str(flow.element.attrs.get("weight", "")))
     yield material, use or default, quantity if quantity is not None else weight or 1
 
 
@@ -184,34 +171,23 @@ def find_precedence(
     context: Context, recipe: Element, steps: list[Step]
 ) -> tuple[tuple[str, str], ...]:
     """Return the pairs of tasks that a path of control and material flows connects directly."""
-    following: dict[str, list[Element]] = {}
-    for flow in list_flows(context, recipe):
-        source, target = find_flow_ends(context, flow)
-        if source is not None and target is not None and not _is_machine_flow(context, flow):
-            following.setdefault(source.id, []).append(target)
-    ids = {step.node.id for step in steps}
-    pairs = {
-        (context.name(step.node), context.name(next_task))
-        for step in steps
-        for next_task in _find_next_tasks(step.node, following, ids)
-    }
-    return tuple(sorted(pairs))
-
-
-def _find_next_tasks(
-    node: Element, following: dict[str, list[Element]], tasks: set[str]
-) -> Iterator[Element]:
-    seen: set[str] = set()
-    stack = list(following.get(node.id, ()))
-    while stack:
-        successor = stack.pop()
-        if successor.id in seen:
-            continue
-        seen.add(successor.id)
-        if successor.id in tasks:
-            yield successor
-        else:
-            stack.extend(following.get(successor.id, ()))
+    following: dict[str, list[str]] = {}
+    for flow in context.read_activity(recipe).flows:
+        # A flow to or from a machine only states which machine a task needs.
+        if not any(find_machine(context, end) for end in (flow.source, flow.target)):
+            following.setdefault(flow.source.id, []).append(flow.target.id)
+    names = {step.node.id: context.name(step.node) for step in steps}
+    return tuple(
+        sorted(
+            (names[task], names[next_task])
+            for task in names
+            for next_task in names.keys()
+            & find_reachable(
+                following.get(task, ()),
+                lambda id: () if id in names else following.get(id, ()),
+            )
+        )
+    )
 
 
 # -- times that requirements state -------------------------------------------------------------
