@@ -45,7 +45,7 @@ SUBLAYERS = {
         {"rules", "bdd"},
         {"games"},
         {"unrealizable", "algebra"},
-        {"decision", "controllers", "lints"},
+        {"decision", "strategies", "lints"},
         {"certain_runs", "witnesses"},
         {"controller_synthesis", "counterstrategy"},
         {"composition_check", "requirement_verdicts"},

@@ -13,12 +13,12 @@ from sysmlc.logic.evaluate import compile_evaluation, find_violation
 from sysmlc.logic.formula import Const, negate
 from sysmlc.synthesis import Manager, make_game
 from sysmlc.synthesis.controller_synthesis import Form, build_controller_form
-from sysmlc.synthesis.controllers.strategy import extract_strategy
-from sysmlc.synthesis.controllers.verification import find_faults
 from sysmlc.synthesis.games.arena import build_plain_arena
 from sysmlc.synthesis.games.command_elimination import eliminate_commands
 from sysmlc.synthesis.games.solver import solve_arena
 from sysmlc.synthesis.games.variable_elimination import eliminate_determined_variables
+from sysmlc.synthesis.strategies.strategy import extract_strategy
+from sysmlc.synthesis.strategies.verification import find_faults
 
 
 def plan_strategy(contract, engine="", is_encoded=True):

@@ -65,6 +65,14 @@ def test_the_environment_prevents_a_goal_for_ever():
     ]
 
 
+def test_a_counterstrategy_answers_step_by_step():
+    machine = build_counter_machine(LAMP)
+    assert machine.inputs_in(0) == {"go": False}
+    assert machine.step(0, {"at": 0}) == ({"go": True}, 1)
+    with pytest.raises(LookupError):
+        machine.step(0, {"at": 1})
+
+
 def test_a_component_without_an_answer_ends_the_run():
     machine = build_counter_machine(STUCK)
     assert list(describe_run(example_run(machine)))[-1] == "then there is no answer"

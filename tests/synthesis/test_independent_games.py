@@ -8,7 +8,7 @@ from sysmlc.logic.printing import print_formula
 from sysmlc.support.disjoint_sets import group_related
 from sysmlc.synthesis import Manager, make_game
 from sysmlc.synthesis.controller_synthesis import combine_independent_strategies, split_game
-from sysmlc.synthesis.controllers.tables import build_table
+from sysmlc.synthesis.strategies.tables import build_table
 
 LAMP = """
 env ask: bool

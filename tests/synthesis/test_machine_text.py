@@ -23,8 +23,8 @@ from sysmlc.synthesis.controller_files import (
     write_controllers,
 )
 from sysmlc.synthesis.controller_synthesis import Form, synthesise_controller
-from sysmlc.synthesis.controllers.verification import Fault
 from sysmlc.synthesis.decision import Options
+from sysmlc.synthesis.strategies.verification import Fault
 
 LAMP = parse_contract(
     """

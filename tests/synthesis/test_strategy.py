@@ -16,13 +16,13 @@ from sysmlc.synthesis import LimitError, Manager, make_game, solve
 from sysmlc.synthesis import controller_synthesis as synthesise
 from sysmlc.synthesis.bdd.limits import TooLargeError
 from sysmlc.synthesis.controller_synthesis import Form
-from sysmlc.synthesis.controllers.conditions import build_machine
-from sysmlc.synthesis.controllers.explicit_states import enumerate_states
-from sysmlc.synthesis.controllers.minimisation import minimise
-from sysmlc.synthesis.controllers.strategy import extract_strategy
-from sysmlc.synthesis.controllers.strategy_memory import choose_registers, explore_strategy
-from sysmlc.synthesis.controllers.tables import rebuild_in_variable_order
 from sysmlc.synthesis.games.arena import nodes_of
+from sysmlc.synthesis.strategies.conditions import build_machine
+from sysmlc.synthesis.strategies.explicit_states import enumerate_states
+from sysmlc.synthesis.strategies.minimisation import minimise
+from sysmlc.synthesis.strategies.strategy import extract_strategy
+from sysmlc.synthesis.strategies.strategy_memory import choose_registers, explore_strategy
+from sysmlc.synthesis.strategies.tables import rebuild_in_variable_order
 
 SUITE = 200
 KINDS = [small_games.random_contract, small_games.random_plant]

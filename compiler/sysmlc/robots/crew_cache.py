@@ -23,8 +23,8 @@ from sysmlc.robots.robot_controller import Times, controller_contract
 from sysmlc.robots.study import Study
 from sysmlc.support.cache import Cache
 from sysmlc.synthesis.controller_synthesis import Synthesis
-from sysmlc.synthesis.controllers.closed_loop import Controller
 from sysmlc.synthesis.decision import Verdict
+from sysmlc.synthesis.strategies.closed_loop import Controller
 
 EncodedController = Mapping[str, Any]
 

@@ -26,8 +26,8 @@ from sysmlc.support.plantuml_text import escape_line
 from sysmlc.synthesis import rules
 from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.controller_synthesis import Synthesis
-from sysmlc.synthesis.controllers.closed_loop import Controller
 from sysmlc.synthesis.decision import Place
+from sysmlc.synthesis.strategies.closed_loop import Controller
 
 OWN, TABLE, GR1C = FORMS = ("own", "table", "gr1c")
 """Forms of controller files: a machine or a table, always a table, gr1c's JSON."""

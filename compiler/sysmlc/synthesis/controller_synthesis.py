@@ -26,20 +26,20 @@ from sysmlc.synthesis import rules
 from sysmlc.synthesis.bdd.limits import LimitError, Limits, TooLargeError
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.bdd.symbols import Symbols
-from sysmlc.synthesis.controllers.closed_loop import Controller
-from sysmlc.synthesis.controllers.conditions import build_machine
-from sysmlc.synthesis.controllers.explicit_states import enumerate_states
-from sysmlc.synthesis.controllers.minimisation import minimise
-from sysmlc.synthesis.controllers.strategy import Functions, Mode, Strategy, extract_strategy
-from sysmlc.synthesis.controllers.strategy_memory import choose_registers, explore_strategy
-from sysmlc.synthesis.controllers.tables import build_table, rebuild_in_variable_order
-from sysmlc.synthesis.controllers.verification import Fault, find_faults
 from sysmlc.synthesis.decision import Options, Place, Verdict, decide_game
 from sysmlc.synthesis.games.arena import Arena, nodes_of
 from sysmlc.synthesis.games.command_elimination import eliminate_commands
 from sysmlc.synthesis.games.game import Constraint, Game
 from sysmlc.synthesis.games.solver import solve_arena
 from sysmlc.synthesis.lints.checks import describe_vacuity
+from sysmlc.synthesis.strategies.closed_loop import Controller
+from sysmlc.synthesis.strategies.conditions import build_machine
+from sysmlc.synthesis.strategies.explicit_states import enumerate_states
+from sysmlc.synthesis.strategies.minimisation import minimise
+from sysmlc.synthesis.strategies.strategy import Functions, Mode, Strategy, extract_strategy
+from sysmlc.synthesis.strategies.strategy_memory import choose_registers, explore_strategy
+from sysmlc.synthesis.strategies.tables import build_table, rebuild_in_variable_order
+from sysmlc.synthesis.strategies.verification import Fault, find_faults
 
 MAX_MACHINE_NODES = 500_000
 """Live nodes that the search for a machine may use; a machine that needs more is unreadable."""

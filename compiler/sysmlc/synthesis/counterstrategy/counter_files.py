@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
+from sysmlc.controllers.counter_strategy import CounterStrategy, Row, State
 from sysmlc.language.text.spelling import format_comment, quote_name
 from sysmlc.logic.contract import (
     BooleanDomain,
@@ -15,12 +16,7 @@ from sysmlc.logic.formula import Literal
 from sysmlc.logic.printing import print_literal
 from sysmlc.support.output import assign_file_names
 from sysmlc.support.plantuml_text import format_label
-from sysmlc.synthesis.counterstrategy.counter_machine import (
-    CounterStrategy,
-    Row,
-    State,
-    example_run,
-)
+from sysmlc.synthesis.counterstrategy.counter_machine import example_run
 from sysmlc.synthesis.witnesses import Party, print_temporal, run_diagram
 
 MAX_DIAGRAM_STATES = 12
@@ -157,9 +153,7 @@ def _write_sysml(
     for variable in (*machine.inputs, *machine.outputs):
         lines += _declare_enumeration(variable)
     lines.append("    part def Environment {")
-    first_inputs = dict(
-        zip((variable.name for variable in machine.inputs), machine.states[0].inputs, strict=True)
-    )
+    first_inputs = machine.inputs_in(0)
     for variable in contract.variables:
         lines += _declare_attribute(variable, first_inputs.get(variable.name), qualified_name)
     lines += [*_print_state_machine(machine), "    }", "}", ""]

@@ -1,12 +1,12 @@
-"""Counter-strategies as machines: a state gives inputs, the answer selects the next state."""
+"""Machines of counter-strategies (``controllers.counter_strategy``), and example runs of them."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
-from msgspec import Struct
 from msgspec.structs import replace
 
+from sysmlc.controllers.counter_strategy import CounterStrategy, Row, State
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.logic.contract import Conjunct, Contract, Owner, Variable
+from sysmlc.logic.contract import Contract, Owner
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.reduction.contract_reduction import reduce_contract
 from sysmlc.synthesis.algebra.fair_systems import Trace
@@ -21,30 +21,10 @@ from sysmlc.synthesis.decision import Options, Place
 from sysmlc.synthesis.games.game import Game, make_game
 from sysmlc.synthesis.unrealizable import find_minimal_conflict, find_original_conjuncts, is_won
 
-Row = tuple[Literal, ...]
-"""Values of variables, in their order."""
 MAX_MOVES = 50_000
 """Answers of the system that are explored."""
 _Key = tuple[tuple[bool, ...] | None, tuple[bool, ...], int]
 """Values of the previous step (None in the first step), inputs, index of a fairness assumption."""
-
-
-class State(Struct, frozen=True):
-    """The environment gives ``inputs``; if there are no moves, the system has no answer."""
-
-    inputs: Row
-    moves: Mapping[Row, int]
-    """The next state for each answer that the system may give."""
-
-
-class CounterStrategy(Struct, frozen=True):
-    """An environment that makes every system fail, as a machine with the initial state 0."""
-
-    inputs: tuple[Variable, ...]
-    outputs: tuple[Variable, ...]
-    states: tuple[State, ...]
-    unmet_guarantees: tuple[Conjunct, ...] = ()
-    """Liveness guarantees of which at least one does not recur if the system always answers."""
 
 
 def build_counterstrategy(
@@ -155,16 +135,17 @@ def example_run(machine: CounterStrategy) -> Trace:
     """
     steps: list[dict[str, Literal]] = []
     first_steps: dict[int, int] = {}
-    steps_left, state_index = _steps_until_stuck(machine), 0
-    while state_index not in first_steps:
-        first_steps[state_index] = len(steps)
-        state = machine.states[state_index]
-        steps.append(_by_name(machine.inputs, state.inputs))
-        if not state.moves:
+    steps_left, state = _steps_until_stuck(machine), 0
+    while state not in first_steps:
+        first_steps[state] = len(steps)
+        steps.append(machine.inputs_in(state))
+        moves = machine.states[state].moves
+        if not moves:
             return Trace(tuple(steps), len(steps))
-        answer, state_index = max(state.moves.items(), key=lambda move: steps_left[move[1]])
-        steps[-1] |= _by_name(machine.outputs, answer)
-    return Trace(tuple(steps), first_steps[state_index])
+        answer, state = max(moves.items(), key=lambda move: steps_left[move[1]])
+        names = (variable.name for variable in machine.outputs)
+        steps[-1] |= zip(names, answer, strict=True)
+    return Trace(tuple(steps), first_steps[state])
 
 
 def _steps_until_stuck(machine: CounterStrategy) -> list[int]:
@@ -181,10 +162,6 @@ def _steps_until_stuck(machine: CounterStrategy) -> list[int]:
                     unlimited, 1 + max(steps_left[successor] for successor in state.moves.values())
                 )
     return steps_left
-
-
-def _by_name(variables: Sequence[Variable], row: Row) -> dict[str, Literal]:
-    return {variable.name: value for variable, value in zip(variables, row, strict=True)}
 
 
 NO_COUNTER = rule(

@@ -15,8 +15,8 @@ from sysmlc.logic.contract import Contract, IntegerDomain, Owner, Variable
 from sysmlc.logic.formula import Var, eq
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.bdd.symbols import Symbols, next_bit
-from sysmlc.synthesis.controllers.tables import table_diagrams
 from sysmlc.synthesis.games.arena import domain_constraint
+from sysmlc.synthesis.strategies.tables import table_diagrams
 
 Controller = Machine | Table
 

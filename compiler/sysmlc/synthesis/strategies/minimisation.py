@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from msgspec.structs import replace
 
 from sysmlc.synthesis.bdd.manager import Manager, Node
-from sysmlc.synthesis.controllers.explicit_states import Answer, DraftMachine
+from sysmlc.synthesis.strategies.explicit_states import Answer, DraftMachine
 
 MAX_COMPARISONS = 400_000
 """Comparisons of moves after which no further compatible states are searched; their number grows

@@ -35,7 +35,7 @@ from sysmlc.synthesis.bdd.limits import TooLargeError
 from sysmlc.synthesis.bdd.manager import Node
 from sysmlc.synthesis.bdd.skolem_functions import find_least_assignment
 from sysmlc.synthesis.bdd.symbols import Symbols
-from sysmlc.synthesis.controllers.explicit_states import Answer, DraftMachine
+from sysmlc.synthesis.strategies.explicit_states import Answer, DraftMachine
 
 MAX_CASES = 5_000
 """Cases in all conditions of a machine together; a machine with more of them is unreadable."""

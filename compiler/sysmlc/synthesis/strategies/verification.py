@@ -26,15 +26,15 @@ from sysmlc.synthesis.algebra.fair_systems import (
     shortest_path,
 )
 from sysmlc.synthesis.bdd.manager import Manager, Node
-from sysmlc.synthesis.controllers.closed_loop import (
+from sysmlc.synthesis.games.dead_ends import find_viable_inputs
+from sysmlc.synthesis.games.relational_product import Product
+from sysmlc.synthesis.strategies.closed_loop import (
     ClosedLoop,
     Controller,
     state_variable,
     translate_controller,
 )
-from sysmlc.synthesis.controllers.quick_check import QuickCheck
-from sysmlc.synthesis.games.dead_ends import find_viable_inputs
-from sysmlc.synthesis.games.relational_product import Product
+from sysmlc.synthesis.strategies.quick_check import QuickCheck
 
 
 class Fault(Struct, frozen=True):

@@ -8,7 +8,7 @@ from sysmlc.controllers.table import Bit, Entry, Table
 from sysmlc.synthesis.bdd.limits import LimitError, TooLargeError
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.bdd.symbols import Symbols
-from sysmlc.synthesis.controllers.strategy import Mode, Strategy
+from sysmlc.synthesis.strategies.strategy import Mode, Strategy
 
 MAX_NODES = 1_000_000
 """Nodes above which no table is written."""

@@ -15,8 +15,8 @@ from sysmlc.logic import domains
 from sysmlc.logic.formula import Const, Formula
 from sysmlc.synthesis.bdd.limits import TooLargeError
 from sysmlc.synthesis.bdd.manager import Node
-from sysmlc.synthesis.controllers.strategy import Mode, Strategy
-from sysmlc.synthesis.controllers.strategy_memory import (
+from sysmlc.synthesis.strategies.strategy import Mode, Strategy
+from sysmlc.synthesis.strategies.strategy_memory import (
     ReachableStrategy,
     counter_changes,
     states_with_value,

@@ -13,8 +13,8 @@ from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var, eq
 from sysmlc.synthesis.bdd.manager import Node
 from sysmlc.synthesis.bdd.skolem_functions import substitute
 from sysmlc.synthesis.bdd.symbols import next_bit
-from sysmlc.synthesis.controllers.strategy import Mode, Strategy
 from sysmlc.synthesis.games.relational_product import Product
+from sysmlc.synthesis.strategies.strategy import Mode, Strategy
 
 MAX_SET_VALUES = 2
 """Number of constants to which a counter may be set, besides counting."""

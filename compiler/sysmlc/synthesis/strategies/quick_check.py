@@ -11,8 +11,8 @@ from collections.abc import Iterable, Iterator
 
 from sysmlc.synthesis.bdd.limits import TooLargeError
 from sysmlc.synthesis.bdd.manager import Node
-from sysmlc.synthesis.controllers.closed_loop import ClosedLoop
 from sysmlc.synthesis.games.relational_product import Product, join_conjuncts
+from sysmlc.synthesis.strategies.closed_loop import ClosedLoop
 
 LARGE_FRONTIER = 4_000
 """Nodes of a frontier above which the search tries an inductive invariant instead."""

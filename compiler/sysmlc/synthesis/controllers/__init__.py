@@ -1,1 +1,0 @@
-"""Controllers: strategies of won games, as machines or tables, and their verification."""
