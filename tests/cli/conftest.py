@@ -108,7 +108,7 @@ class Workspace:
 def workspace(tmp_path, monkeypatch):
     """A folder with ``plant.ir``, a model without errors. Commands run only the pass above."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(registry, "load_passes", lambda options: [CheckPorts()])
+    monkeypatch.setattr(registry, "load_passes", lambda options, note: [CheckPorts()])
     monkeypatch.setattr(analysis, "has_result", lambda name, graph: False)
     monkeypatch.delenv("NO_COLOR", raising=False)
     (tmp_path / ".git").mkdir()

@@ -137,6 +137,7 @@ def test_emit_with_plus_adds_to_the_default_and_without_replaces_it(workspace, m
         "_BACKENDS",
         {"graph": "sysmlc.backends.graph:JSON", "ir": "sysmlc.backends.graph:TEXT"},
     )
+    monkeypatch.setattr(registry, "_DEFAULT", frozenset({"graph"}))
     workspace.sysmlc("plant.ir", "-o", "none")
     workspace.sysmlc("plant.ir", "-o", "added", "--emit", "+ir")
     workspace.sysmlc("plant.ir", "-o", "both", "--emit", "graph,+ir")

@@ -205,24 +205,42 @@ def test_a_damaged_file_is_reported_with_the_line(tmp_path):
     assert compilation.diagnostics[0].subject.place.line == 2
 
 
-def test_an_exception_in_a_pass_is_a_diagnostic_and_stops_the_outputs(plant):
+@pytest.mark.parametrize(
+    ("module", "message"),
+    [
+        ("sysmlc.passes.ports", "internal error of sysmlc in pass ports: TypeError: boom"),
+        (
+            "acme.ports",
+            "pass ports failed, so that nothing is written: TypeError: boom (acme.ports)",
+        ),
+    ],
+)
+def test_an_exception_in_a_pass_is_a_diagnostic_and_stops_the_outputs(plant, module, message):
     @dataclass(frozen=True)
     class RaisesError(CheckPorts):
         def run(self, graph, sink):
-            raise TypeError("no such thing")
+            raise TypeError("boom")
 
-    compilation = compile_files(plant, passes=(RaisesError(),))
-    assert (list_codes(compilation), compilation.exit_code(), compilation.artefacts) == (
-        ["SM900"],
-        2,
-        (),
-    )
-    assert compilation.diagnostics[0].message == (
-        "internal error of sysmlc in pass ports: TypeError: no such thing"
-    )
+    RaisesError.__module__ = module
+    compilation = compile_files(plant, passes=(RaisesError(),), backends=(OutlineBackend(),))
+    assert (compilation.exit_code(), compilation.artefacts) == (2, ())
+    (diagnostic,) = compilation.diagnostics
+    assert diagnostic.rule.code == ("SM900" if module.startswith("sysmlc") else "SM916")
+    assert diagnostic.message == message
 
 
-def test_an_exception_in_a_back_end_omits_only_its_outputs(plant):
+@pytest.mark.parametrize(
+    ("module", "exit_code", "message"),
+    [
+        (
+            "sysmlc.backends.broken",
+            2,
+            "internal error of sysmlc in back end broken: RecursionError: ",
+        ),
+        ("acme", 1, "back end broken failed: RecursionError:  (acme)"),
+    ],
+)
+def test_an_exception_in_a_back_end_omits_only_its_outputs(plant, module, exit_code, message):
     @dataclass(frozen=True)
     class RaisesError(OutlineBackend):
         name: str = "broken"
@@ -231,9 +249,11 @@ def test_an_exception_in_a_back_end_omits_only_its_outputs(plant):
             output.add("half.txt", "half")
             raise RecursionError
 
+    RaisesError.__module__ = module
     compilation = compile_files(plant, passes=(), backends=(RaisesError(), OutlineBackend()))
     assert list_published(compilation) == ["outlines/Gate.txt", "outlines/Robot.txt"]
-    assert (list_codes(compilation), compilation.exit_code()) == (["SM900"], 2)
+    assert [diagnostic.message for diagnostic in compilation.diagnostics] == [message]
+    assert (compilation.exit_code(), compilation.is_complete) == (exit_code, False)
 
 
 def test_verify_each_names_the_pass_that_broke_the_graph(plant):
@@ -329,6 +349,7 @@ def test_an_output_outside_of_the_folder_is_an_internal_error(plant):
         def emit(self, graph, output, sink, options):
             output.add("../passwd", "")
 
+    WritesOutsideFolder.__module__ = "sysmlc.backends.outside"
     compilation = compile_files(plant, passes=(), backends=(WritesOutsideFolder(),))
     assert (list_codes(compilation), compilation.artefacts) == (["SM900"], ())
     assert Output().artefacts() == []

@@ -1,5 +1,6 @@
 """Which passes and back ends run, the options of passes, and plug-ins of other distributions."""
 
+import json
 import sys
 import tomllib
 from dataclasses import dataclass
@@ -7,10 +8,12 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 from msgspec import Struct
 
 import sysmlc
 from sysmlc import Request, config
+from sysmlc.cli.group import sysmlc as sysmlc_command
 from sysmlc.config import ConfigError, read_config
 from sysmlc.driver import (
     BackendError,
@@ -251,6 +254,7 @@ def test_a_pass_that_cannot_be_used_is_ignored_with_a_warning(folder, entry, mes
 
 
 SPACE = "from types import SimpleNamespace as S\nTHING = S(after=(), summary='', is_default=True"
+METHODS = "detect=print, links=print, read=print, run=print, emit=print"
 PLUG_IN_FAULTS = {
     "import lost": "cannot be loaded: ModuleNotFoundError: No module named 'lost' (SOURCE, 1)",
     "LIMIT = 3\nraise ValueError('boom')": "cannot be loaded: ValueError: boom (SOURCE, 2)",
@@ -258,20 +262,25 @@ PLUG_IN_FAULTS = {
     "THING = 3": "has no member 'name' of type str (SOURCE)",
     "class THING: name = 'thing'": "is a class: name an instance of it (SOURCE)",
     f"{SPACE}, name='thing')": "has no method 'METHOD' (SOURCE)",
-    f"{SPACE}, name='x', run=print, emit=print)": "is called 'x': "
+    f"{SPACE}, name='x', {METHODS})": "is called 'x': "
     "the names of the KIND and of its entry point must be equal (SOURCE)",
 }
 """What the module of a plug-in contains, and the warning; a number is a line of the module."""
 
 
 @pytest.mark.parametrize("content", PLUG_IN_FAULTS)
-@pytest.mark.parametrize(("kind", "method"), [("pass", "run"), ("back end", "emit")])
+@pytest.mark.parametrize(
+    ("kind", "method"), [("front end", "detect"), ("pass", "run"), ("back end", "emit")]
+)
 def test_a_plug_in_that_cannot_be_used_is_a_warning_with_its_place(folder, content, kind, method):
     sys.modules.pop("acme_plug", None)
     (folder / "acme_plug.py").write_text(content + "\n")
-    group = {"pass": "sysmlc.passes", "back end": "sysmlc.backends"}[kind]
+    group, load = {
+        "front end": ("sysmlc.frontends", registry.load_frontends),
+        "pass": ("sysmlc.passes", lambda: registry.load_passes({})),
+        "back end": ("sysmlc.backends", lambda: select_backends([])),
+    }[kind]
     install_distribution(folder, "acme", group, "thing = acme_plug:THING")
-    load = {"pass": lambda: registry.load_passes({}), "back end": lambda: select_backends([])}[kind]
     with pytest.warns(PlugInWarning) as warnings:
         plug_ins = load()
     assert "thing" not in {plug_in.name for plug_in in plug_ins}
@@ -280,6 +289,81 @@ def test_a_plug_in_that_cannot_be_used_is_a_warning_with_its_place(folder, conte
     fault = fault.replace("SOURCE", "acme_plug:THING of acme")
     messages = [str(warning.message) for warning in warnings]
     assert messages == [f"{kind} 'thing' {fault}; the plug-in is ignored"]
+
+
+TABLE_MODULE = """\
+from sysmlc import Element, Kind
+
+
+class TableFrontend:
+    name = "table"
+    suffixes = (".table",)
+
+    def detect(self, source):
+        return float(source.name.endswith(".table"))
+
+    def links(self, source):
+        return ()
+
+    def read(self, sources, graph, sink, coverage):
+        for source in sources:
+            for name in source.data.decode().split():
+                graph.add(Element(name, Kind.CLASS, name, source=source.name))
+
+
+class Broken:
+    name, summary, is_default, needs = "broken", "", True, ()
+
+    def emit(self, graph, output, sink, options):
+        raise ValueError("boom")
+
+
+FRONTEND, BACKEND = TableFrontend(), Broken()
+"""
+
+
+def test_a_front_end_of_another_distribution_reads_its_files_in_folders(folder):
+    sys.modules.pop("acme_table", None)
+    (folder / "acme_table.py").write_text(TABLE_MODULE)
+    install_distribution(folder, "acme", "sysmlc.frontends", "table = acme_table:FRONTEND")
+    (folder / "models").mkdir()
+    (folder / "models/plant.table").write_text("Gate Lamp\n")
+    compilation = sysmlc.compile_model(folder / "models")
+    assert [diagnostic.message for diagnostic in compilation.diagnostics] == []
+    assert [element.name for element in compilation.graph] == ["Gate", "Lamp"]
+    assert [file.language for file in compilation.inputs] == ["table"]
+
+
+def test_faults_of_plug_ins_are_findings_and_the_other_outputs_are_written(folder):
+    sys.modules.pop("acme_table", None)
+    (folder / "acme_table.py").write_text(TABLE_MODULE)
+    install_distribution(folder, "acme", "sysmlc.backends", "broken = acme_table:BACKEND")
+    install_distribution(folder, "lost", "sysmlc.frontends", "lost = lost:FRONTEND")
+    (folder / "plant.ir").write_text('Class gate "Gate"\n')
+    result = CliRunner().invoke(
+        sysmlc_command, [str(folder / "plant.ir"), "-o", str(folder / "out"), "--format", "json"]
+    )
+    findings = [
+        (item["code"], item["severity"], item["message"])
+        for item in json.loads(result.stdout)["diagnostics"]
+    ]
+    module = folder / "acme_table.py"
+    line = TABLE_MODULE[: TABLE_MODULE.index("raise")].count("\n") + 1
+    assert findings == [
+        (
+            "SM914",
+            "warning",
+            "front end 'lost' cannot be loaded: ModuleNotFoundError: No module named 'lost' "
+            "(lost:FRONTEND of lost); the plug-in is ignored",
+        ),
+        (
+            "SM915",
+            "error",
+            f"back end broken failed: ValueError: boom (acme_table of acme, {module}:{line})",
+        ),
+    ]
+    assert result.exit_code == 1
+    assert (folder / "out/diagrams/model.bdd.puml").exists()
 
 
 def test_passes_of_plug_ins_that_wait_for_one_another_are_ignored(folder):

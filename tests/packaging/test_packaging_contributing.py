@@ -69,10 +69,11 @@ def test_a_plug_in_that_cannot_be_loaded_is_a_warning(plugin, tmp_path):
         check = run_sysmlc(plugin, tmp_path, "build", "plant.ir")
     finally:
         broken.write_text(source)
+    warning = "back end 'outline' cannot be loaded: ModuleNotFoundError"
+    assert listing.stderr.startswith(f"sysmlc: warning: {warning}")
+    assert check.stderr.startswith(f"warning[SM914 plug-in-ignored]: {warning}")
     for result in (listing, check):
         assert result.returncode == 0
-        warning = "sysmlc: warning: back end 'outline' cannot be loaded: ModuleNotFoundError"
-        assert result.stderr.startswith(warning)
         assert "Traceback" not in result.stderr
 
 

@@ -2,6 +2,7 @@
 
 import sys
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
@@ -15,7 +16,7 @@ from sysmlc.cli.limits import LIMITS
 if TYPE_CHECKING:
     from sysmlc.cli.units import Unit
     from sysmlc.config import Config
-    from sysmlc.diagnostics import Rule
+    from sysmlc.diagnostics import Rule, Sink
     from sysmlc.driver import Compilation, OpenedUnit, Outcome, Request, Target
     from sysmlc.sources.user_schemas import Schemas
     from sysmlc.support.cache import Cache
@@ -165,7 +166,7 @@ def compile_unit(
     from sysmlc.driver.project_findings import select_project_findings, without_project_findings
 
     unit = open_single_unit(files, config, settings)
-    request = _set_backends(unit.request, emit, settings)
+    request = _set_backends(unit.request, emit, settings, unit.opened.sink)
     compilation = _compile(request, settings, unit.opened)
     project_findings = select_project_findings(config, [unit.opened], [compilation.diagnostics])
     return replace(
@@ -178,8 +179,9 @@ def read_as_written(unit: "Unit", settings: Settings) -> "Compilation":
     """Read a unit and resolve its references without refining the graph."""
     from sysmlc.passes import pipeline
 
-    passes = tuple(step for step in unit.request.load_passes() if step.name in pipeline.READING)
-    return _compile(replace(unit.request, passes=passes), settings, unit.opened, analyses=())
+    passes = unit.request.load_passes(unit.opened.sink)
+    reading = tuple(step for step in passes if step.name in pipeline.READING)
+    return _compile(replace(unit.request, passes=reading), settings, unit.opened, analyses=())
 
 
 def compile_units(
@@ -236,7 +238,7 @@ def compute_outcome(unit: "Unit", settings: Settings, has_files: bool = True) ->
     """
     from sysmlc.driver import summarize
 
-    request = _set_backends(unit.request, unit.emit, settings)
+    request = _set_backends(unit.request, unit.emit, settings, unit.opened.sink)
     analyses = () if has_files else None
     return summarize(_compile(request, settings, unit.opened, analyses), has_files)
 
@@ -271,16 +273,18 @@ def _load_schemas(settings: Settings) -> "Schemas | None":
 
 
 def _set_backends(
-    request: "Request", emit: tuple[str, ...] | None, settings: Settings
+    request: "Request", emit: tuple[str, ...] | None, settings: Settings, sink: "Sink"
 ) -> "Request":
     """Return the request with the back ends of *emit*; exit with code 2 if one is unknown."""
     from sysmlc.config import locate_key
     from sysmlc.driver import BackendError, select_backends
+    from sysmlc.driver.faults import report_ignored_plug_in
 
     if emit is None:
         return request
     try:
-        return replace(request, backends=tuple(select_backends(emit)))
+        report = partial(report_ignored_plug_in, sink)
+        return replace(request, backends=tuple(select_backends(emit, report)))
     except BackendError as problem:
         file = None if settings.emit else request.config.file
         fail(f"{locate_key(file, ['emit'])}: {problem}" if file else str(problem))
@@ -289,7 +293,7 @@ def _set_backends(
 def _compile(
     request: "Request",
     settings: Settings,
-    opened: "OpenedUnit | None" = None,
+    opened: "OpenedUnit",
     analyses: Iterable[str] | None = None,
 ) -> "Compilation":
     """Compile a unit with these analyses, by default with those that report findings."""
@@ -300,7 +304,8 @@ def _compile(
 
     progress = Progress(settings.verbose, settings.print_after)
     try:
-        names = [*(step.name for step in request.load_passes()), *analysis.CHECKED]
+        request = replace(request, passes=request.load_passes(opened.sink))
+        names = [*(step.name for step in request.passes or ()), *analysis.CHECKED]
         _check_pass_names(names, settings.print_after)
         wanted = analysis.CHECKED if analyses is None else analyses
         printed = [name for name in settings.print_after if name in analysis.CHECKED]

@@ -12,7 +12,7 @@ from msgspec.structs import replace
 from sysmlc.analyses import analysis
 from sysmlc.backends.base import DERIVED, Backend, EmitOptions, InputFile
 from sysmlc.config import Config
-from sysmlc.diagnostics import Coverage, Diagnostic, Place, Sink, Subject
+from sysmlc.diagnostics import Coverage, Diagnostic, Place, Rule, Sink, Subject
 from sysmlc.diagnostics.locations import complete_places
 from sysmlc.diagnostics.sink import suppress
 from sysmlc.driver import faults, registry
@@ -75,11 +75,15 @@ class Request(Struct, frozen=True):
     finds_siblings: bool = False
     """Whether files that a named file needs are looked for in its project (SysML v2)."""
 
-    def load_passes(self) -> tuple[Pass, ...]:
-        """Return the passes in order. Raises ConfigError for options that no pass has."""
+    def load_passes(self, sink: Sink) -> tuple[Pass, ...]:
+        """Return the passes in order; report the plug-ins that cannot be used.
+
+        Raises ConfigError for options that no pass has.
+        """
         if self.passes is not None:
             return self.passes
-        return tuple(registry.load_passes(self.config.passes))
+        report = partial(faults.report_ignored_plug_in, sink)
+        return tuple(registry.load_passes(self.config.passes, report))
 
 
 class Compilation(Struct, frozen=True):
@@ -142,7 +146,7 @@ def open_unit(request: Request) -> OpenedUnit:
     ``units.open_units`` partitions the files of a folder into several units.
     """
     sink = Sink(request.config.rules)
-    frontends = request.frontends or tuple(registry.load_frontends(request.library))
+    frontends = _load_frontends(request, sink)
     root = find_unit_root((*request.inputs, *request.overlays), request.config.folder)
     models = [path for path in request.inputs if not path.name.endswith(SUFFIX)]
     named_overlays = [path for path in request.inputs if path.name.endswith(SUFFIX)]
@@ -165,7 +169,7 @@ def open_texts(texts: Mapping[str, str | bytes], request: Request) -> OpenedUnit
     References to other files lead to external stubs, because nothing is read from disk.
     """
     sink = Sink(request.config.rules)
-    frontends = request.frontends or tuple(registry.load_frontends(request.library))
+    frontends = _load_frontends(request, sink)
     sources = [
         Source(name, text.encode(errors="surrogatepass") if isinstance(text, str) else text)
         for name, text in sorted(texts.items())
@@ -173,6 +177,11 @@ def open_texts(texts: Mapping[str, str | bytes], request: Request) -> OpenedUnit
     recognised = tuple(recognise(sources, frontends, faults.UNRECOGNISED, sink))
     reading = Reading(recognised, len(recognised) == len(sources), Roots(()))
     return OpenedUnit(Path.cwd(), reading, sink, frontends)
+
+
+def _load_frontends(request: Request, sink: Sink) -> tuple[Frontend, ...]:
+    report = partial(faults.report_ignored_plug_in, sink)
+    return request.frontends or tuple(registry.load_frontends(request.library, report))
 
 
 def load_drawings(request: Request, reading: Reading, root: Path, sink: Sink) -> tuple[Source, ...]:
@@ -212,7 +221,7 @@ class _CompilationRun:
         self._graph = Graph()
         self._output = Output()
         self._frontends = opened.frontends
-        self._passes = request.load_passes()
+        self._passes = request.load_passes(opened.sink)
         self._analyses = analyses
         self._root = opened.root
         self._reading = opened.reading
@@ -247,7 +256,7 @@ class _CompilationRun:
             sources=self._list_sources(reading),
             is_complete=reading.is_complete
             and not is_broken
-            and not any(map(_is_about_unread_part, diagnostics)),
+            and not any(map(_is_about_missing_part, diagnostics)),
         )
 
     def _read(self, reading: Reading) -> bool:
@@ -262,6 +271,7 @@ class _CompilationRun:
                     lambda f=frontend, s=sources: f.read(  # type: ignore[misc]
                         s, self._graph, self._sink, self._coverage
                     ),
+                    frontend,
                 )
                 succeeded &= self._request.diagrams == DERIVED or self._read_diagrams(
                     frontend, sources
@@ -282,7 +292,7 @@ class _CompilationRun:
     def _refine(self, step: Pass) -> bool:
         self._begin_step(f"pass {step.name}")
         succeeded = self._run_guarded(
-            f"pass {step.name}", lambda: step.run(self._graph, self._sink)
+            f"pass {step.name}", lambda: step.run(self._graph, self._sink), step
         )
         return self._check_graph(step.name) and succeeded
 
@@ -332,15 +342,24 @@ class _CompilationRun:
                 lambda b=backend, o=options: b.emit(  # type: ignore[misc]
                     self._graph, self._output, self._sink, o
                 ),
+                backend,
+                faults.PLUG_IN_FAULT,
             ):
                 before = {artefact.path for artefact in written}
                 failed |= {a.path for a in self._output.artefacts()} - before
         return [a for a in self._output.artefacts() if a.path not in failed]
 
-    def _run_guarded(self, where: str, run: Callable[[], object]) -> bool:
-        """Run a step of sysmlc or of a plug-in; return whether it had no internal fault.
+    def _run_guarded(
+        self,
+        where: str,
+        run: Callable[[], object],
+        step: object = None,
+        plug_in_rule: Rule = faults.PLUG_IN_STOP,
+    ) -> bool:
+        """Run a step; return whether it had no internal fault.
 
-        An exception in it becomes a diagnostic, because no model may cause a traceback.
+        An exception in it becomes a diagnostic, because no model may cause a traceback. It is
+        reported by *plug_in_rule* if *step* belongs to a plug-in.
         """
         try:
             run()
@@ -354,7 +373,9 @@ class _CompilationRun:
         except Exception as problem:
             self._observer.fault(where, format_exc())
             text = f"{type(problem).__name__}: {problem}"
-            self._sink.report(faults.INTERNAL_FAULT, Subject(), where=where, problem=text)
+            source = registry.describe_source(step, problem)
+            rule = plug_in_rule if source else faults.INTERNAL_FAULT
+            self._sink.report(rule, Subject(), where=where, problem=text, source=source)
             return False
         return True
 
@@ -433,8 +454,10 @@ def _select_reported(
     return tuple(d for d in diagnostics if file_of(d) not in siblings)
 
 
-def _is_about_unread_part(diagnostic: Diagnostic) -> bool:
-    """Whether a diagnostic means that part of the unit was not read."""
+def _is_about_missing_part(diagnostic: Diagnostic) -> bool:
+    """Whether a diagnostic means that part of the unit was not read, or an output is missing."""
+    if diagnostic.rule in (faults.INTERNAL_FAULT, faults.PLUG_IN_FAULT):
+        return True
     is_about_file = not diagnostic.subject.id and diagnostic.subject.place is not None
     return diagnostic.is_error and is_about_file and diagnostic.rule.code.startswith("SM1")
 

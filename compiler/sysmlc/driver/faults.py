@@ -133,6 +133,27 @@ INTERNAL_FAULT = rule(
     "internal error of sysmlc in {where}: {problem}",
     help="please report it with the command and the model; -v shows where it happened",
 )
+PLUG_IN_IGNORED = rule(
+    "SM914",
+    "plug-in-ignored",
+    Severity.WARNING,
+    "{reason}",
+    help="repair the plug-in or uninstall it",
+)
+PLUG_IN_FAULT = rule(
+    "SM915",
+    "plug-in-fault",
+    Severity.ERROR,
+    "{where} failed: {problem} ({source})",
+    help="report it to the authors of the plug-in; the files of other back ends are written",
+)
+PLUG_IN_STOP = rule(
+    "SM916",
+    "plug-in-stop",
+    Severity.ERROR,
+    "{where} failed, so that nothing is written: {problem} ({source})",
+    help="report it to the authors of the plug-in, or uninstall the plug-in",
+)
 INVALID_GRAPH = rule(
     "SM901",
     "invalid-graph",
@@ -165,9 +186,19 @@ _BY_FAULT = {
 
 STOPPING = frozenset(
     rule.code
-    for rule in (MISSING_FILE, UNOPENED, TOO_LARGE, CHANGING, INTERNAL_FAULT, INVALID_GRAPH)
+    for rule in (
+        MISSING_FILE,
+        UNOPENED,
+        TOO_LARGE,
+        CHANGING,
+        INTERNAL_FAULT,
+        PLUG_IN_STOP,
+        INVALID_GRAPH,
+    )
 )
 """Rules whose diagnostics lead to exit code 2."""
+PLUG_IN_FAULTS = frozenset({PLUG_IN_IGNORED.code, PLUG_IN_FAULT.code})
+"""Rules whose diagnostics may disappear although no file of the plug-in changes."""
 
 
 FAILED = 2
@@ -186,6 +217,11 @@ def compute_exit_code(diagnostics: Iterable[Diagnostic], strict: bool = False) -
 def about_file(name: str) -> Subject:
     """Return a file as the subject of a diagnostic."""
     return Subject(place=Place(name))
+
+
+def report_ignored_plug_in(sink: Sink, reason: str) -> None:
+    """Report why a plug-in is ignored; with a sink this is a ``registry.Note``."""
+    sink.report(PLUG_IN_IGNORED, Subject(), reason=reason)
 
 
 def report_unreadable(problem: SourceError, sink: Sink) -> None:

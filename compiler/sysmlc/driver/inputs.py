@@ -65,18 +65,23 @@ def _depth(folder: Path) -> int:
 
 
 def collect_files(
-    paths: Iterable[Path], root: Path, sink: Sink, excluded: Iterable[Path] = ()
+    paths: Iterable[Path],
+    root: Path,
+    sink: Sink,
+    excluded: Iterable[Path] = (),
+    suffixes: Iterable[str] = (),
 ) -> dict[Path, bool]:
     """Return the files to read, sorted by name, and whether the user named each file itself.
 
     The search of folders skips the files and folders in *excluded*, which are real paths.
+    *suffixes* are those of plug-ins.
     """
     is_named: dict[Path, bool] = {}
-    excluded = frozenset(excluded)
+    excluded, suffixes = frozenset(excluded), SUFFIXES.union(suffixes)
     for path in paths:
         absolute = _make_absolute(path)
         if absolute.is_dir():
-            files = _search_folder(absolute, root, sink, excluded)
+            files = _search_folder(absolute, root, sink, excluded, suffixes)
             is_named = dict.fromkeys(files, False) | is_named
         elif absolute.exists():
             is_named[absolute] = True
@@ -122,11 +127,13 @@ def _make_absolute(path: Path) -> Path:
     return path.resolve() if path.is_dir() else path.parent.resolve() / path.name
 
 
-def _search_folder(folder: Path, root: Path, sink: Sink, excluded: frozenset[Path]) -> list[Path]:
+def _search_folder(
+    folder: Path, root: Path, sink: Sink, excluded: frozenset[Path], suffixes: frozenset[str]
+) -> list[Path]:
     """Return the model files below *folder*; report what is skipped, and if there is no model."""
     inside = Roots((folder,))
     files = []
-    for path in sorted(find_model_files(folder, excluded, SUFFIXES | {_ARCHIVE})):
+    for path in sorted(find_model_files(folder, excluded, suffixes | {_ARCHIVE})):
         name = name_of(path, root)
         if path.is_symlink() and not inside.allows(path):
             sink.report(faults.LEADS_OUT, faults.about_file(name), path=name)

@@ -22,7 +22,7 @@ from sysmlc.diagnostics.renderers import Finding
 from sysmlc.diagnostics.rule import PAGES
 from sysmlc.driver import registry
 from sysmlc.driver.compilation import OpenedUnit, Request
-from sysmlc.driver.faults import FAILED
+from sysmlc.driver.faults import FAILED, PLUG_IN_FAULTS
 from sysmlc.driver.outcome import Outcome, OutputFile, Withheld
 from sysmlc.language.library import find_library_path
 from sysmlc.sources import DEFAULT_LIMITS, SourceError
@@ -109,7 +109,7 @@ def _digest_own_files() -> Iterator[str]:
 
 
 def _digest_plug_ins() -> Iterator[str]:
-    for group in (registry.BACKEND_GROUP, registry.PASS_GROUP):
+    for group in (registry.FRONTEND_GROUP, registry.PASS_GROUP, registry.BACKEND_GROUP):
         for entry_point in registry.find_plug_ins(group).values():
             yield from _digest_package(entry_point)
 
@@ -170,8 +170,9 @@ class _Entry(msgspec.Struct):
 
 
 def store_outcome(cache: Cache, key: str, outcome: Outcome) -> None:
-    """Store an outcome, unless an internal fault or a fault of the machine is part of it."""
-    if outcome.exit_code() == FAILED:
+    """Store an outcome, unless it has a fault of sysmlc, of a plug-in or of the machine."""
+    is_of_plug_in = any(d.rule.code in PLUG_IN_FAULTS for d in outcome.diagnostics)
+    if outcome.exit_code() == FAILED or is_of_plug_in:
         return
     # A file name that is not UTF-8 has lone surrogates, which JSON cannot hold.
     with suppress(UnicodeEncodeError):

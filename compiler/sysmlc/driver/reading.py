@@ -132,7 +132,8 @@ def read_unit(
     """
     roots = find_allowed_roots((*inputs, *overlays), root)
     reader = _Reader(root, roots, frontends, sink)
-    for path, is_named in collect_files(inputs, root, sink, excluded).items():
+    suffixes = (suffix for frontend in frontends for suffix in getattr(frontend, "suffixes", ()))
+    for path, is_named in collect_files(inputs, root, sink, excluded, suffixes).items():
         rule = faults.UNRECOGNISED if is_named else faults.SKIPPED
         reader.read(path, rule, is_named=is_named)
     for path in overlays:

@@ -1,12 +1,16 @@
 """The registry of front ends, passes, analyses, back ends and rules, imported when they are used.
 
-Other distributions add passes and back ends by entry points. A pass of a plug-in runs after those
-of sysmlc. The rules of a plug-in are those that its modules define when they are imported.
+Other distributions add front ends, passes and back ends by entry points. A pass of a plug-in runs
+after those of sysmlc. The rules of a plug-in are those that its modules define when they are
+imported.
+
+A plug-in that cannot be used, and that no option names, is ignored. Functions that load plug-ins
+call their parameter *note* with the reason; by default it issues a PlugInWarning.
 """
 
 import dataclasses
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
@@ -26,16 +30,21 @@ from sysmlc.passes import pipeline
 from sysmlc.passes.pipeline import Pass
 from sysmlc.support.suggestions import did_you_mean
 
+FRONTEND_GROUP = "sysmlc.frontends"
+"""Entry point group of front ends; an entry names an object with the protocol ``Frontend``."""
 BACKEND_GROUP = "sysmlc.backends"
 """Entry point group of back ends; an entry names an object with the protocol ``Backend``."""
 PASS_GROUP = "sysmlc.passes"
 """Entry point group of passes; an entry names an object with the protocol ``Pass``."""
 
-_INTERFACES: Mapping[str, tuple[str, Mapping[str, type]]] = {
-    "pass": ("run", {"name": str, "after": tuple}),
-    "back end": ("emit", {"name": str, "summary": str, "is_default": bool}),
+_KINDS = {FRONTEND_GROUP: "front end", PASS_GROUP: "pass", BACKEND_GROUP: "back end"}
+"""What the plug-ins of each group are, as messages say."""
+_INTERFACES: Mapping[str, tuple[Sequence[str], Mapping[str, type]]] = {
+    "front end": (("detect", "links", "read"), {"name": str}),
+    "pass": (("run",), {"name": str, "after": tuple}),
+    "back end": (("emit",), {"name": str, "summary": str, "is_default": bool}),
 }
-"""The method and the other members of plug-ins."""
+"""The methods and the other members of plug-ins."""
 
 _FRONTENDS = tuple(f"sysmlc.frontends.{name}" for name in ("xmi", "huds", "caex", "sysml", "ir"))
 _BACKENDS = {
@@ -87,32 +96,43 @@ class BackendError(Exception):
 
 
 class PlugInError(Exception):
-    """A plug-in cannot be loaded, or is no pass or back end."""
+    """A plug-in cannot be loaded, or is no front end, pass or back end."""
 
 
 class PlugInWarning(UserWarning):
     """A plug-in that no option names is ignored, because it cannot be used."""
 
 
-def load_frontends(library: str = "") -> list[Frontend]:
-    """Return the front ends in the order of detection.
+Note = Callable[[str], None]
+_IGNORED = "the plug-in is ignored"
+
+
+def warn(reason: str) -> None:
+    """Issue a PlugInWarning; the default of the functions that take a note."""
+    warnings.warn(reason, PlugInWarning, stacklevel=4)
+
+
+def load_frontends(library: str = "", note: Note = warn) -> list[Frontend]:
+    """Return the front ends in the order of detection: that of a plug-in wins a tie with ours.
 
     *library* is the path of the SysML v2 standard library; empty for the installed one.
     """
     frontends = [cast("Frontend", import_module(name).FRONTEND) for name in _FRONTENDS]
-    if not library:
-        return frontends
-    return [f.with_library(library) if isinstance(f, LibraryFrontend) else f for f in frontends]
+    if library:
+        frontends = [
+            f.with_library(library) if isinstance(f, LibraryFrontend) else f for f in frontends
+        ]
+    foreign = _find_foreign(FRONTEND_GROUP, [frontend.name for frontend in frontends], note)
+    return [*_load_usable(foreign, "front end", note), *frontends]
 
 
-def load_passes(options: Mapping[str, Mapping[str, object]]) -> list[Pass]:
+def load_passes(options: Mapping[str, Mapping[str, object]], note: Note = warn) -> list[Pass]:
     """Return the passes in order; *options* maps the name of a pass or analysis to its options.
 
-    A plug-in that cannot be used is ignored with a PlugInWarning. Raises ConfigError for a pass, an
-    analysis or an option that does not exist.
+    Raises ConfigError for a pass, an analysis or an option that does not exist.
     """
-    plug_ins = find_plug_ins(PASS_GROUP)
-    names = [*pipeline.NAMES, *analysis.CHECKED, *plug_ins]
+    foreign = _find_foreign(PASS_GROUP, [*pipeline.NAMES, *analysis.NAMES], note)
+    names = [*pipeline.NAMES, *analysis.CHECKED, *foreign]
     for name in options:
         if name not in names:
             advice = did_you_mean(name, names)
@@ -121,12 +141,12 @@ def load_passes(options: Mapping[str, Mapping[str, object]]) -> list[Pass]:
         if name in options:
             load_analysis(name, options)
     loaded = [pipeline.load(name) for name in pipeline.NAMES]
-    loaded += [step for entry in plug_ins.values() if (step := _load_pass(entry)) is not None]
+    loaded += _load_usable(foreign, "pass", note)
     configured = [_set_options(step, options.get(step.name, {})) for step in loaded]
     try:
         return pipeline.sort_passes(configured)
     except ValueError as problem:
-        _ignore_plug_in(str(problem))
+        note(f"{problem}; {_IGNORED}")
         return pipeline.sort_passes(step for step in configured if step.name in pipeline.NAMES)
 
 
@@ -142,20 +162,32 @@ def load_analysis(name: str, options: Mapping[str, Mapping[str, object]]) -> Ana
     return loaded
 
 
-def _load_pass(entry: EntryPoint) -> Pass | None:
-    """Return the pass of a plug-in, or None with a PlugInWarning if it cannot be used."""
-    if entry.name in (*pipeline.NAMES, *analysis.NAMES):
-        _ignore_plug_in(f"the plug-in {entry.value} takes the name of pass '{entry.name}'")
-        return None
-    try:
-        return cast("Pass", _load_plug_in(entry, "pass"))
-    except PlugInError as problem:
-        _ignore_plug_in(str(problem))
-        return None
+def find_plug_ins(group: str) -> dict[str, EntryPoint]:
+    """Return the entry points of other distributions by name, sorted by name; load none."""
+    entries = [e for e in entry_points(group=group) if not e.value.startswith("sysmlc.")]
+    return {entry.name: entry for entry in sorted(entries, key=lambda entry: entry.name)}
+
+
+def _find_foreign(group: str, names: Collection[str], note: Note) -> dict[str, EntryPoint]:
+    """Return the plug-ins of a group by name, without those that take one of our *names*."""
+    plug_ins = find_plug_ins(group)
+    for name in [name for name in plug_ins if name in names]:
+        entry, kind = plug_ins.pop(name), _KINDS[group]
+        note(f"the plug-in {entry.value} takes the name of {kind} '{name}'; {_IGNORED}")
+    return plug_ins
+
+
+def _load_usable(entries: Mapping[str, EntryPoint], kind: str, note: Note) -> Iterator[Any]:
+    """Yield the plug-ins that can be loaded."""
+    for entry in entries.values():
+        try:
+            yield _load_plug_in(entry, kind)
+        except PlugInError as problem:
+            note(f"{problem}; {_IGNORED}")
 
 
 def _load_plug_in(entry: EntryPoint, kind: str) -> object:
-    """Return the pass or back end that an entry point names. Raises PlugInError."""
+    """Return the object of a *kind* that an entry point names. Raises PlugInError."""
     distribution = f" of {entry.dist.name}" if entry.dist else ""
     source = f"{entry.value}{distribution}"
     try:
@@ -165,20 +197,36 @@ def _load_plug_in(entry: EntryPoint, kind: str) -> object:
         place = _find_fault(problem, entry.module)
         text = f"{kind} '{entry.name}' cannot be loaded: {type(problem).__name__}: {problem}"
         raise PlugInError(f"{text} ({source}{place})") from problem
-    method, members = _INTERFACES[kind]
+    methods, members = _INTERFACES[kind]
     if isinstance(plug_in, type):
         raise PlugInError(f"{kind} '{entry.name}' is a class: name an instance of it ({source})")
     for member, type_ in members.items():
         if not isinstance(getattr(plug_in, member, None), type_):
             needed = f"'{member}' of type {type_.__name__}"
             raise PlugInError(f"{kind} '{entry.name}' has no member {needed} ({source})")
-    if not callable(getattr(plug_in, method, None)):
-        raise PlugInError(f"{kind} '{entry.name}' has no method '{method}' ({source})")
+    for method in methods:
+        if not callable(getattr(plug_in, method, None)):
+            raise PlugInError(f"{kind} '{entry.name}' has no method '{method}' ({source})")
     name = cast("Any", plug_in).name
     if name != entry.name:
         advice = f"the names of the {kind} and of its entry point must be equal"
         raise PlugInError(f"{kind} '{entry.name}' is called '{name}': {advice} ({source})")
     return cast("object", plug_in)
+
+
+def describe_source(step: object, problem: Exception) -> str:
+    """Return the module and distribution of a step of a plug-in, and where a *problem* arose.
+
+    The result is empty for a step of sysmlc.
+    """
+    module = type(step).__module__
+    package = module.partition(".")[0]
+    if package in ("sysmlc", "builtins"):
+        return ""
+    entries = (entry for group in _KINDS for entry in find_plug_ins(group).values())
+    owners = (e.dist.name for e in entries if e.dist and e.module.partition(".")[0] == package)
+    distribution = next((f" of {name}" for name in owners), "")
+    return f"{module}{distribution}{_find_fault(problem, module)}"
 
 
 def _find_fault(problem: BaseException, module: str) -> str:
@@ -190,10 +238,6 @@ def _find_fault(problem: BaseException, module: str) -> str:
         if package in Path(frame.filename).with_suffix("").parts
     ]
     return places[-1] if places else ""
-
-
-def _ignore_plug_in(reason: str) -> None:
-    warnings.warn(f"{reason}; the plug-in is ignored", PlugInWarning, stacklevel=3)
 
 
 def _set_options(step: _Step, options: Mapping[str, object]) -> _Step:
@@ -236,65 +280,38 @@ def _has_type_of(value: object, default: object) -> bool:
 
 def list_backend_names() -> list[str]:
     """Return the names of all back ends, including plug-ins, without loading them."""
-    return sorted({*_BACKENDS, *_find_foreign_backends()})
+    return sorted({*_BACKENDS, *_find_foreign(BACKEND_GROUP, _BACKENDS, warn)})
 
 
 def load_backends(names: Iterable[str]) -> list[Backend]:
     """Load the back ends with these names, each once. Raises BackendError."""
-    return _load_each(names, _find_foreign_backends())
-
-
-def load_all_backends() -> list[Backend]:
-    """Load all back ends; plug-ins that cannot be used are ignored with a PlugInWarning."""
-    foreign = _find_foreign_backends()
-    return _load_usable(sorted({*_BACKENDS, *foreign}), foreign)
-
-
-def _load_each(names: Iterable[str], foreign: dict[str, EntryPoint]) -> list[Backend]:
+    foreign = _find_foreign(BACKEND_GROUP, _BACKENDS, warn)
     return [_load(name, foreign) for name in dict.fromkeys(names)]
 
 
-def _load_usable(names: Iterable[str], foreign: dict[str, EntryPoint]) -> list[Backend]:
-    """Load back ends that no option names; one that cannot be loaded is ignored."""
-    backends = []
-    for name in names:
-        try:
-            backends.append(_load(name, foreign))
-        except BackendError as problem:
-            _ignore_plug_in(str(problem))
-    return backends
+def load_all_backends() -> list[Backend]:
+    """Load all back ends, sorted by name, without plug-ins that cannot be used."""
+    foreign = _find_foreign(BACKEND_GROUP, _BACKENDS, warn)
+    backends = [_load(name, {}) for name in _BACKENDS]
+    backends += _load_usable(foreign, "back end", warn)
+    return sorted(backends, key=lambda backend: backend.name)
 
 
-def _find_foreign_backends() -> dict[str, EntryPoint]:
-    """Return the back ends of other distributions by name, without those that take our names."""
-    plug_ins = find_plug_ins(BACKEND_GROUP)
-    for name in sorted(plug_ins.keys() & _BACKENDS.keys()):
-        entry = plug_ins.pop(name)
-        _ignore_plug_in(f"the plug-in {entry.value} takes the name of back end '{name}'")
-    return plug_ins
-
-
-def find_plug_ins(group: str) -> dict[str, EntryPoint]:
-    """Return the entry points of other distributions by name, sorted by name; load none."""
-    entries = [entry for entry in entry_points(group=group) if not _is_ours(entry)]
-    return {entry.name: entry for entry in sorted(entries, key=lambda entry: entry.name)}
-
-
-def select_backends(wanted: Sequence[str]) -> list[Backend]:
+def select_backends(wanted: Sequence[str], note: Note = warn) -> list[Backend]:
     """Load the back ends for ``--emit``: names replace the default set, ``+name`` adds to it.
 
     Raises BackendError, whose message suggests names.
     """
     plain = [name for name in wanted if not name.startswith("+")]
     added = [name[1:] for name in wanted if name.startswith("+")]
-    foreign = _find_foreign_backends()
+    foreign = _find_foreign(BACKEND_GROUP, _BACKENDS, note)
     if plain:
-        return _load_each([*plain, *added], foreign)
-    selected = _check_names(added, foreign)
-    skipped = _BACKENDS.keys() - _DEFAULT - selected
-    by_default = sorted({*_BACKENDS, *foreign} - skipped - selected)
-    defaults = [b for b in _load_usable(by_default, foreign) if b.is_default]
-    backends = [*defaults, *_load_each(selected, foreign)]
+        return [_load(name, foreign) for name in dict.fromkeys([*plain, *added])]
+    # Only the object says whether a plug-in runs by default.
+    unnamed = {name: entry for name, entry in foreign.items() if name not in added}
+    plug_ins = _load_usable(unnamed, "back end", note)
+    backends = [_load(name, foreign) for name in sorted({*_DEFAULT, *added})]
+    backends += [backend for backend in plug_ins if backend.is_default]
     return sorted(backends, key=lambda backend: backend.name)
 
 
@@ -325,28 +342,17 @@ def load_full_catalogue(note: Callable[[str], None] = lambda _: None) -> dict[st
                 import_module(module)
             except Exception as problem:
                 note(f"the rules of {module} are missing: {problem!r}")
-    foreign = _find_foreign_backends()
-    _load_usable(foreign, foreign)
-    for entry in find_plug_ins(PASS_GROUP).values():
-        _load_pass(entry)
+    for group, kind in _KINDS.items():
+        taken = _BACKENDS if group == BACKEND_GROUP else (*pipeline.NAMES, *analysis.NAMES)
+        list(_load_usable(_find_foreign(group, taken, warn), kind, warn))
     return catalogue()
 
 
-def _check_names(names: Iterable[str], foreign: dict[str, EntryPoint]) -> frozenset[str]:
-    """Return the names as a set. Raises BackendError for an unknown one."""
-    all_names = sorted({*_BACKENDS, *foreign})
-    for name in names:
-        if name not in all_names:
-            raise BackendError(f"unknown back end '{name}'; {did_you_mean(name, all_names)}")
-    return frozenset(names)
-
-
-def _is_ours(entry: EntryPoint) -> bool:
-    return entry.value.startswith("sysmlc.")
-
-
-def _load(name: str, foreign: dict[str, EntryPoint]) -> Backend:
-    _check_names([name], foreign)
+def _load(name: str, foreign: Mapping[str, EntryPoint]) -> Backend:
+    """Return the back end with this name. Raises BackendError."""
+    names = {*_BACKENDS, *foreign}
+    if name not in names:
+        raise BackendError(f"unknown back end '{name}'; {did_you_mean(name, names)}")
     try:
         if name in _BACKENDS:
             module, _, variable = _BACKENDS[name].partition(":")

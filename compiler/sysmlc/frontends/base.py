@@ -17,7 +17,8 @@ class Frontend(Protocol):
     """Reads one family of source languages.
 
     One call reads all files of a compile unit, because ids are retained only if they are unique in
-    the unit. Local references may stay in ``graph.pending`` for the pass ``resolve``.
+    the unit. Local references may stay in ``graph.pending`` for the pass ``resolve``. A search of
+    folders also considers the files with one of the ``suffixes`` of a plug-in, if it has any.
     """
 
     name: str
