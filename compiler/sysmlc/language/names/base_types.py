@@ -4,100 +4,64 @@ from typing import NamedTuple
 
 from sysmlc.language.metaclasses import kinds_of
 
-BASES: dict[str, str] = {
-    "Type": "Base::Anything",
-    "Classifier": "Base::Anything",
-    "DataType": "Base::DataValue",
-    "Class": "Occurrences::Occurrence",
-    "Structure": "Objects::Object",
-    "Association": "Links::Link",
-    "AssociationStructure": "Objects::LinkObject",
-    "Behavior": "Performances::Performance",
-    "Function": "Performances::Evaluation",
-    "Predicate": "Performances::BooleanEvaluation",
-    "Interaction": "Transfers::Transfer",
-    "Metaclass": "Metaobjects::Metaobject",
-    "Feature": "Base::things",
-    "Step": "Performances::performances",
-    "Expression": "Performances::evaluations",
-    "BooleanExpression": "Performances::booleanEvaluations",
-    "Invariant": "Performances::trueEvaluations",
-    "LiteralExpression": "Performances::literalEvaluations",
-    "LiteralBoolean": "Performances::literalBooleanEvaluations",
-    "LiteralInteger": "Performances::literalIntegerEvaluations",
-    "LiteralInfinity": "Performances::literalIntegerEvaluations",
-    "LiteralRational": "Performances::literalRationalEvaluations",
-    "LiteralString": "Performances::literalStringEvaluations",
-    "MetadataAccessExpression": "Performances::metadataAccessEvaluations",
-    "NullExpression": "Performances::nullEvaluations",
-    "Connector": "Links::links",
-    "BindingConnector": "Links::selfLinks",
-    "Succession": "Occurrences::happensBeforeLinks",
-    "Flow": "Transfers::transfers",
-    "SuccessionFlow": "Transfers::flowTransfersBefore",
-    "Multiplicity": "Base::naturals",
-    "MetadataFeature": "Metaobjects::metaobjects",
-    "AttributeDefinition": "Base::DataValue",
-    "OccurrenceDefinition": "Occurrences::Occurrence",
-    "ItemDefinition": "Items::Item",
-    "PartDefinition": "Parts::Part",
-    "PortDefinition": "Ports::Port",
-    "ConnectionDefinition": "Connections::Connection",
-    "InterfaceDefinition": "Interfaces::Interface",
-    "AllocationDefinition": "Allocations::Allocation",
-    "FlowDefinition": "Flows::MessageAction",
-    "ActionDefinition": "Actions::Action",
-    "StateDefinition": "States::StateAction",
-    "CalculationDefinition": "Calculations::Calculation",
-    "ConstraintDefinition": "Constraints::ConstraintCheck",
-    "RequirementDefinition": "Requirements::RequirementCheck",
-    "ConcernDefinition": "Requirements::ConcernCheck",
-    "CaseDefinition": "Cases::Case",
-    "AnalysisCaseDefinition": "AnalysisCases::AnalysisCase",
-    "VerificationCaseDefinition": "VerificationCases::VerificationCase",
-    "UseCaseDefinition": "UseCases::UseCase",
-    "ViewDefinition": "Views::View",
-    "ViewpointDefinition": "Views::ViewpointCheck",
-    "RenderingDefinition": "Views::Rendering",
-    "MetadataDefinition": "Metadata::MetadataItem",
-    "AttributeUsage": "Base::dataValues",
-    "OccurrenceUsage": "Occurrences::occurrences",
-    "ItemUsage": "Items::items",
-    "PartUsage": "Parts::parts",
-    "PortUsage": "Ports::ports",
-    "ConnectionUsage": "Connections::connections",
-    "InterfaceUsage": "Interfaces::interfaces",
-    "AllocationUsage": "Allocations::allocations",
-    "FlowUsage": "Flows::messages",
-    "SuccessionFlowUsage": "Flows::successionFlows",
-    "BindingConnectorAsUsage": "Links::selfLinks",
-    "SuccessionAsUsage": "Occurrences::happensBeforeLinks",
-    "ActionUsage": "Actions::actions",
-    "AcceptActionUsage": "Actions::acceptActions",
-    "SendActionUsage": "Actions::sendActions",
-    "TerminateActionUsage": "Actions::terminateActions",
-    "AssignmentActionUsage": "Actions::assignmentActions",
-    "IfActionUsage": "Actions::ifThenActions",
-    "LoopActionUsage": "Actions::loopActions",
-    "WhileLoopActionUsage": "Actions::whileLoopActions",
-    "ForLoopActionUsage": "Actions::forLoopActions",
-    "TransitionUsage": "Actions::transitionActions",
-    "StateUsage": "States::stateActions",
-    "CalculationUsage": "Calculations::calculations",
-    "ConstraintUsage": "Constraints::constraintChecks",
-    "AssertConstraintUsage": "Constraints::assertedConstraintChecks",
-    "RequirementUsage": "Requirements::requirementChecks",
-    "SatisfyRequirementUsage": "Requirements::satisfiedRequirementChecks",
-    "ConcernUsage": "Requirements::concernChecks",
-    "CaseUsage": "Cases::cases",
-    "AnalysisCaseUsage": "AnalysisCases::analysisCases",
-    "VerificationCaseUsage": "VerificationCases::verificationCases",
-    "UseCaseUsage": "UseCases::useCases",
-    "ViewUsage": "Views::views",
-    "ViewpointUsage": "Views::viewpointChecks",
-    "RenderingUsage": "Views::renderings",
-    "MetadataUsage": "Metadata::metadataItems",
-}
+_BASES = """\
+Base: Type=Anything Classifier=Anything DataType=DataValue Feature=things Multiplicity=naturals
+    AttributeDefinition=DataValue AttributeUsage=dataValues
+Occurrences: Class=Occurrence Succession=happensBeforeLinks OccurrenceDefinition=Occurrence
+    OccurrenceUsage=occurrences SuccessionAsUsage=happensBeforeLinks
+Objects: Structure=Object AssociationStructure=LinkObject
+Links: Association=Link Connector=links BindingConnector=selfLinks
+    BindingConnectorAsUsage=selfLinks
+Performances: Behavior=Performance Function=Evaluation Predicate=BooleanEvaluation
+    Step=performances Expression=evaluations BooleanExpression=booleanEvaluations
+    Invariant=trueEvaluations LiteralExpression=literalEvaluations
+    LiteralBoolean=literalBooleanEvaluations LiteralInteger=literalIntegerEvaluations
+    LiteralInfinity=literalIntegerEvaluations LiteralRational=literalRationalEvaluations
+    LiteralString=literalStringEvaluations MetadataAccessExpression=metadataAccessEvaluations
+    NullExpression=nullEvaluations
+Transfers: Interaction=Transfer Flow=transfers SuccessionFlow=flowTransfersBefore
+Metaobjects: Metaclass=Metaobject MetadataFeature=metaobjects
+Items: ItemDefinition=Item ItemUsage=items
+Parts: PartDefinition=Part PartUsage=parts
+Ports: PortDefinition=Port PortUsage=ports
+Connections: ConnectionDefinition=Connection ConnectionUsage=connections
+Interfaces: InterfaceDefinition=Interface InterfaceUsage=interfaces
+Allocations: AllocationDefinition=Allocation AllocationUsage=allocations
+Flows: FlowDefinition=MessageAction FlowUsage=messages SuccessionFlowUsage=successionFlows
+Actions: ActionDefinition=Action ActionUsage=actions AcceptActionUsage=acceptActions
+    SendActionUsage=sendActions TerminateActionUsage=terminateActions
+    AssignmentActionUsage=assignmentActions IfActionUsage=ifThenActions
+    LoopActionUsage=loopActions WhileLoopActionUsage=whileLoopActions
+    ForLoopActionUsage=forLoopActions TransitionUsage=transitionActions
+States: StateDefinition=StateAction StateUsage=stateActions
+Calculations: CalculationDefinition=Calculation CalculationUsage=calculations
+Constraints: ConstraintDefinition=ConstraintCheck ConstraintUsage=constraintChecks
+    AssertConstraintUsage=assertedConstraintChecks
+Requirements: RequirementDefinition=RequirementCheck ConcernDefinition=ConcernCheck
+    RequirementUsage=requirementChecks SatisfyRequirementUsage=satisfiedRequirementChecks
+    ConcernUsage=concernChecks
+Cases: CaseDefinition=Case CaseUsage=cases
+AnalysisCases: AnalysisCaseDefinition=AnalysisCase AnalysisCaseUsage=analysisCases
+VerificationCases: VerificationCaseDefinition=VerificationCase
+    VerificationCaseUsage=verificationCases
+UseCases: UseCaseDefinition=UseCase UseCaseUsage=useCases
+Views: ViewDefinition=View ViewpointDefinition=ViewpointCheck RenderingDefinition=Rendering
+    ViewUsage=views ViewpointUsage=viewpointChecks RenderingUsage=renderings
+Metadata: MetadataDefinition=MetadataItem MetadataUsage=metadataItems
+"""
+"""For each package of the library: the metaclasses with a base in it, and the base."""
+
+
+def _parse_bases(table: str) -> dict[str, str]:
+    bases = {}
+    for line in table.replace("\n    ", " ").splitlines():
+        package, *entries = line.split()
+        for kind, _, base in (entry.partition("=") for entry in entries):
+            bases[kind] = f"{package}:{base}"
+    return bases
+
+
+BASES = _parse_bases(_BASES)
 """The base of a metaclass. A metaclass that is absent has the base of its nearest general."""
 
 BINARY_BASES: dict[str, str] = {
@@ -160,115 +124,77 @@ class OwnerBase(NamedTuple):
     composite: bool = True
 
 
-def _both_kinds(name: str) -> frozenset[str]:
-    return kinds_of(f"{name}Definition") | kinds_of(f"{name}Usage")
+def _select_kinds(words: str) -> frozenset[str]:
+    """Return the metaclasses that specialise one of the words, and none that has a minus."""
+    names = words.split()
+    included = frozenset().union(*(kinds_of(name) for name in names if name[0] != "-"))
+    return included.difference(*(kinds_of(name[1:]) for name in names if name[0] == "-"))
 
 
-_ACTION, _PART, _ITEM, _CASE = (
-    _both_kinds("Action"),
-    _both_kinds("Part"),
-    _both_kinds("Item"),
-    _both_kinds("Case"),
+_ACTION = "ActionDefinition ActionUsage"
+_STATE = "StateDefinition StateUsage"
+_PART = "PartDefinition PartUsage"
+_ITEM = "ItemDefinition ItemUsage"
+_REQUIREMENT = "RequirementDefinition RequirementUsage"
+_OCCURRENCE = "OccurrenceDefinition OccurrenceUsage Class"
+_OWNED_USAGES: tuple[tuple[str, str, str, bool], ...] = (
+    ("ActionUsage -PerformActionUsage", _ACTION, "subactions", True),
+    ("ActionUsage -PerformActionUsage", _PART, "ownedActions", True),
+    ("SendActionUsage", _ACTION, "sendSubactions", True),
+    ("AcceptActionUsage", _ACTION, "acceptSubactions", True),
+    ("TerminateActionUsage", _ACTION, "terminateSubactions", True),
+    ("AssignmentActionUsage", _ACTION, "assignments", True),
+    ("IfActionUsage", _ACTION, "ifSubactions", True),
+    ("WhileLoopActionUsage", _ACTION, "whileLoops", True),
+    ("ForLoopActionUsage", _ACTION, "forLoops", True),
+    ("MergeNode", _ACTION, "merges", False),
+    ("DecisionNode", _ACTION, "decisions", False),
+    ("JoinNode", _ACTION, "joins", False),
+    ("ForkNode", _ACTION, "forks", False),
+    ("TransitionUsage", f"{_ACTION} -StateDefinition -StateUsage", "transitions", True),
+    ("TransitionUsage", _STATE, "stateTransitions", True),
+    ("StateUsage -ExhibitStateUsage", _STATE, "substates", True),
+    ("StateUsage -ExhibitStateUsage", _PART, "ownedStates", True),
+    ("PerformActionUsage", _PART, "performedActions", False),
+    ("PerformActionUsage", _ACTION, "Performances::Performance::enclosedPerformances", False),
+    ("ExhibitStateUsage", _PART, "exhibitedStates", False),
+    ("CalculationUsage", "CalculationDefinition CalculationUsage", "subcalculations", True),
+    ("CaseUsage", "CaseDefinition CaseUsage", "subcases", True),
+    ("AnalysisCaseUsage", "AnalysisCaseDefinition AnalysisCaseUsage", "subAnalysisCases", True),
+    (
+        "VerificationCaseUsage",
+        "VerificationCaseDefinition VerificationCaseUsage",
+        "subVerificationCases",
+        True,
+    ),
+    ("UseCaseUsage", "UseCaseDefinition UseCaseUsage", "subUseCases", True),
+    ("IncludeUseCaseUsage", "UseCaseDefinition UseCaseUsage", "includedUseCases", False),
+    ("ConstraintUsage", _ITEM, "checkedConstraints", True),
+    ("RequirementUsage", _REQUIREMENT, "subrequirements", True),
+    ("ConcernUsage", _REQUIREMENT, "concerns", True),
+    ("ViewpointUsage", "ViewDefinition ViewUsage", "viewpointSatisfactions", True),
+    ("ViewUsage", "ViewDefinition ViewUsage", "subviews", False),
+    ("RenderingUsage", "RenderingDefinition RenderingUsage", "subrenderings", False),
+    ("ItemUsage", _ITEM, "subitems", True),
+    ("PartUsage", _ITEM, "subparts", True),
+    ("PortUsage", _PART, "ownedPorts", False),
+    ("PortUsage", "PortDefinition PortUsage", "subports", True),
+    ("OccurrenceUsage", _OCCURRENCE, "suboccurrences", True),
+    ("EventOccurrenceUsage", _OCCURRENCE, "timeEnclosedOccurrences", False),
+    ("Step", "Behavior Step", "subperformances", True),
+    ("Step", "Behavior Step", "enclosedPerformances", False),
+    ("Step", "Structure", "ownedPerformances", True),
 )
-_CONTROL = kinds_of("ControlNode")
-_TRANSITION = frozenset({"TransitionUsage"})
-_STATE_USAGE = kinds_of("StateUsage") - {"ExhibitStateUsage"}
-_PERFORM = kinds_of("PerformActionUsage")
-_OCCURRENCE = kinds_of("OccurrenceDefinition") | kinds_of("OccurrenceUsage") | kinds_of("Class")
+"""The kinds of usages and of their owners, the feature of the base of the first kind of owners that
+the usages specialise, and whether these must be composite."""
 
-OWNER_BASES: tuple[OwnerBase, ...] = (
-    OwnerBase(kinds_of("ActionUsage") - _PERFORM, _ACTION, "Actions::Action::subactions"),
-    OwnerBase(kinds_of("ActionUsage") - _PERFORM, _PART, "Parts::Part::ownedActions"),
-    OwnerBase(kinds_of("SendActionUsage"), _ACTION, "Actions::Action::sendSubactions"),
-    OwnerBase(kinds_of("AcceptActionUsage"), _ACTION, "Actions::Action::acceptSubactions"),
-    OwnerBase(kinds_of("TerminateActionUsage"), _ACTION, "Actions::Action::terminateSubactions"),
-    OwnerBase(kinds_of("AssignmentActionUsage"), _ACTION, "Actions::Action::assignments"),
-    OwnerBase(kinds_of("IfActionUsage"), _ACTION, "Actions::Action::ifSubactions"),
-    OwnerBase(kinds_of("WhileLoopActionUsage"), _ACTION, "Actions::Action::whileLoops"),
-    OwnerBase(kinds_of("ForLoopActionUsage"), _ACTION, "Actions::Action::forLoops"),
-    OwnerBase(frozenset({"MergeNode"}), _ACTION, "Actions::Action::merges", False),
-    OwnerBase(frozenset({"DecisionNode"}), _ACTION, "Actions::Action::decisions", False),
-    OwnerBase(frozenset({"JoinNode"}), _ACTION, "Actions::Action::joins", False),
-    OwnerBase(frozenset({"ForkNode"}), _ACTION, "Actions::Action::forks", False),
-    OwnerBase(_TRANSITION, _ACTION - _both_kinds("State"), "Actions::Action::transitions"),
-    OwnerBase(_TRANSITION, _both_kinds("State"), "States::StateAction::stateTransitions"),
-    OwnerBase(_STATE_USAGE, _both_kinds("State"), "States::StateAction::substates"),
-    OwnerBase(_STATE_USAGE, _PART, "Parts::Part::ownedStates"),
-    OwnerBase(_PERFORM, _PART, "Parts::Part::performedActions", False),
-    OwnerBase(_PERFORM, _ACTION, "Performances::Performance::enclosedPerformances", False),
-    OwnerBase(frozenset({"ExhibitStateUsage"}), _PART, "Parts::Part::exhibitedStates", False),
+OWNER_BASES = tuple(
     OwnerBase(
-        kinds_of("CalculationUsage"),
-        _both_kinds("Calculation"),
-        "Calculations::Calculation::subcalculations",
-    ),
-    OwnerBase(kinds_of("CaseUsage"), _CASE, "Cases::Case::subcases"),
-    OwnerBase(
-        kinds_of("AnalysisCaseUsage"),
-        _both_kinds("AnalysisCase"),
-        "AnalysisCases::AnalysisCase::subAnalysisCases",
-    ),
-    OwnerBase(
-        kinds_of("VerificationCaseUsage"),
-        _both_kinds("VerificationCase"),
-        "VerificationCases::VerificationCase::subVerificationCases",
-    ),
-    OwnerBase(
-        kinds_of("UseCaseUsage"),
-        _both_kinds("UseCase"),
-        "UseCases::UseCase::subUseCases",
-    ),
-    OwnerBase(
-        frozenset({"IncludeUseCaseUsage"}),
-        _both_kinds("UseCase"),
-        "UseCases::UseCase::includedUseCases",
-        False,
-    ),
-    OwnerBase(kinds_of("ConstraintUsage"), _ITEM, "Items::Item::checkedConstraints"),
-    OwnerBase(
-        kinds_of("RequirementUsage"),
-        _both_kinds("Requirement"),
-        "Requirements::RequirementCheck::subrequirements",
-    ),
-    OwnerBase(
-        kinds_of("ConcernUsage"),
-        _both_kinds("Requirement"),
-        "Requirements::RequirementCheck::concerns",
-    ),
-    OwnerBase(
-        kinds_of("ViewpointUsage"),
-        _both_kinds("View"),
-        "Views::View::viewpointSatisfactions",
-    ),
-    OwnerBase(kinds_of("ViewUsage"), _both_kinds("View"), "Views::View::subviews", False),
-    OwnerBase(
-        kinds_of("RenderingUsage"),
-        _both_kinds("Rendering"),
-        "Views::Rendering::subrenderings",
-        False,
-    ),
-    OwnerBase(kinds_of("ItemUsage"), _ITEM, "Items::Item::subitems"),
-    OwnerBase(kinds_of("PartUsage"), _ITEM, "Items::Item::subparts"),
-    OwnerBase(kinds_of("PortUsage"), _PART, "Parts::Part::ownedPorts", False),
-    OwnerBase(kinds_of("PortUsage"), _both_kinds("Port"), "Ports::Port::subports"),
-    OwnerBase(kinds_of("OccurrenceUsage"), _OCCURRENCE, "Occurrences::Occurrence::suboccurrences"),
-    OwnerBase(
-        kinds_of("EventOccurrenceUsage"),
-        _OCCURRENCE,
-        "Occurrences::Occurrence::timeEnclosedOccurrences",
-        False,
-    ),
-    OwnerBase(
-        kinds_of("Step"),
-        kinds_of("Behavior") | kinds_of("Step"),
-        "Performances::Performance::subperformances",
-    ),
-    OwnerBase(
-        kinds_of("Step"),
-        kinds_of("Behavior") | kinds_of("Step"),
-        "Performances::Performance::enclosedPerformances",
-        False,
-    ),
-    OwnerBase(kinds_of("Step"), kinds_of("Structure"), "Objects::Object::ownedPerformances"),
+        _select_kinds(kinds),
+        _select_kinds(owners),
+        feature if "::" in feature else f"{BASES[owners.split()[0]]}::{feature}",
+        composite,
+    )
+    for kinds, owners, feature, composite in _OWNED_USAGES
 )
 """The bases of usages by their owner."""

@@ -11,9 +11,7 @@ _TRANSPARENT = INSTANTIATIONS | {"FeatureReferenceExpression", "MetadataAccessEx
 """Expressions that only contain other expressions and are no scopes."""
 _FLOWS = kinds_of("FlowUsage")
 _EVENTS = kinds_of("EventOccurrenceUsage")
-_FEATURE = kinds_of("Feature")
-_TYPE = kinds_of("Type")
-_CLASSIFIER = kinds_of("Classifier")
+_CLASSIFIERS = kinds_of("Classifier")
 
 _METADATA = frozenset({"MetadataUsage", "MetadataFeature"})
 _IMPORTS = kinds_of("Import")
@@ -22,42 +20,22 @@ _MEMBER = frozenset({"importedMembership"})
 IMPORTED = _MEMBER | {"importedNamespace"}
 """Relations of imports."""
 
+_OF_TYPES = """
+    Specialization FeatureTyping Conjugation Disjoining Unioning Intersecting Differencing
+    TypeFeaturing specific general type conjugatedType originalType typeDisjoined disjoiningType
+    featuringType
+"""
+_OF_FEATURES = """
+    Subsetting Redefinition ReferenceSubsetting CrossSubsetting FeatureChaining FeatureInverting
+    typedFeature subsettingFeature subsettedFeature redefiningFeature redefinedFeature
+    featureInverted invertingFeature featureOfType
+"""
 TARGET_KINDS: dict[str, frozenset[str]] = {
-    "Specialization": _TYPE,
-    "Subclassification": _CLASSIFIER,
-    "FeatureTyping": _TYPE,
+    **dict.fromkeys(_OF_TYPES.split(), kinds_of("Type")),
+    **dict.fromkeys(_OF_FEATURES.split(), kinds_of("Feature")),
+    **dict.fromkeys(("Subclassification", "subclassifier", "superclassifier"), _CLASSIFIERS),
     "ConjugatedPortTyping": kinds_of("PortDefinition"),
-    "Subsetting": _FEATURE,
-    "Redefinition": _FEATURE,
-    "ReferenceSubsetting": _FEATURE,
-    "CrossSubsetting": _FEATURE,
-    "Conjugation": _TYPE,
-    "Disjoining": _TYPE,
-    "Unioning": _TYPE,
-    "Intersecting": _TYPE,
-    "Differencing": _TYPE,
-    "FeatureChaining": _FEATURE,
-    "FeatureInverting": _FEATURE,
-    "TypeFeaturing": _TYPE,
     "importedNamespace": NAMESPACES,
-    "specific": _TYPE,
-    "general": _TYPE,
-    "subclassifier": _CLASSIFIER,
-    "superclassifier": _CLASSIFIER,
-    "typedFeature": _FEATURE,
-    "type": _TYPE,
-    "subsettingFeature": _FEATURE,
-    "subsettedFeature": _FEATURE,
-    "redefiningFeature": _FEATURE,
-    "redefinedFeature": _FEATURE,
-    "conjugatedType": _TYPE,
-    "originalType": _TYPE,
-    "typeDisjoined": _TYPE,
-    "disjoiningType": _TYPE,
-    "featureInverted": _FEATURE,
-    "invertingFeature": _FEATURE,
-    "featureOfType": _FEATURE,
-    "featuringType": _TYPE,
 }
 """Metaclasses that the target of a relation may have. Other relations accept any element."""
 
