@@ -7,7 +7,7 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.language.checks.findings import DECLARED_TYPES, Finding, iter_stated, name_of
 from sysmlc.language.checks.memberships import VARIATION_OF_VARIATION
 from sysmlc.language.checks.references import refers_to_other_kind
-from sysmlc.language.metaclasses import ALL_GENERALS, FEATURES, describe_kind, kinds_of
+from sysmlc.language.metaclasses import ALL_GENERALS, FEATURES, USAGES, describe_kind, kinds_of
 from sysmlc.language.names import Model
 from sysmlc.language.tree import Document, Node, Relation, make_subject
 
@@ -208,74 +208,47 @@ class Requirement(NamedTuple):
     single: bool = False
 
 
-_REQUIREMENTS: tuple[tuple[str, Requirement], ...] = (
-    (
-        "EnumerationUsage",
-        Requirement(kinds_of("EnumerationDefinition"), "an enumeration definition", True),
-    ),
-    ("AttributeUsage", Requirement(kinds_of("DataType"), "attribute definitions")),
-    ("AllocationUsage", Requirement(kinds_of("AllocationDefinition"), "allocation definitions")),
-    ("InterfaceUsage", Requirement(kinds_of("InterfaceDefinition"), "interface definitions")),
-    ("FlowUsage", Requirement(kinds_of("Interaction"), "flow definitions")),
-    ("ConnectionUsage", Requirement(kinds_of("Association"), "connection definitions")),
-    ("MetadataUsage", Requirement(kinds_of("Metaclass"), "a metadata definition", True)),
-    ("ViewUsage", Requirement(kinds_of("ViewDefinition"), "a view definition", True)),
-    (
-        "RenderingUsage",
-        Requirement(kinds_of("RenderingDefinition"), "a rendering definition", True),
-    ),
-    ("PortUsage", Requirement(kinds_of("PortDefinition"), "port definitions")),
-    (
-        "ViewpointUsage",
-        Requirement(kinds_of("ViewpointDefinition"), "a viewpoint definition", True),
-    ),
-    ("ConcernUsage", Requirement(kinds_of("ConcernDefinition"), "a concern definition", True)),
-    (
-        "RequirementUsage",
-        Requirement(kinds_of("RequirementDefinition"), "a requirement definition", True),
-    ),
-    ("ConstraintUsage", Requirement(kinds_of("Predicate"), "a constraint definition", True)),
-    (
-        "AnalysisCaseUsage",
-        Requirement(kinds_of("AnalysisCaseDefinition"), "an analysis definition", True),
-    ),
-    (
-        "VerificationCaseUsage",
-        Requirement(kinds_of("VerificationCaseDefinition"), "a verification definition", True),
-    ),
-    ("UseCaseUsage", Requirement(kinds_of("UseCaseDefinition"), "a use case definition", True)),
-    ("CaseUsage", Requirement(kinds_of("CaseDefinition"), "a case definition", True)),
-    ("CalculationUsage", Requirement(kinds_of("Function"), "a calculation definition", True)),
-    ("StateUsage", Requirement(kinds_of("Behavior"), "state definitions")),
-    ("ActionUsage", Requirement(kinds_of("Behavior"), "action definitions")),
-    ("OccurrenceUsage", Requirement(kinds_of("Class"), "occurrence, item or part definitions")),
-    ("ReferenceUsage", Requirement(kinds_of("Classifier"), "definitions")),
-)
-
-
-def _find_requirements() -> dict[str, Requirement]:
-    """Return the requirement of each metaclass of usages.
-
-    It is the first row of the table that lists the metaclass or a general of it.
-    """
-    requirements: dict[str, Requirement] = {}
-    for kind in kinds_of("Usage") - kinds_of("Connector"):
-        for general, requirement in _REQUIREMENTS:
-            if general in ALL_GENERALS[kind]:
-                requirements[kind] = requirement
-                break
-    # Bindings and successions are connectors too, and their types are not restricted.
-    connectors = kinds_of("ConnectionUsage") | kinds_of("FlowUsage")
-    for kind in connectors:
-        requirements[kind] = next(w for g, w in _REQUIREMENTS if g in ALL_GENERALS[kind])
-    return requirements
-
-
-_REQUIREMENT_BY_KIND = _find_requirements()
+_REQUIREMENTS = {
+    general: Requirement(kinds_of(kind), words, words.startswith(("a ", "an ")))
+    for general, kind, words in (
+        ("EnumerationUsage", "EnumerationDefinition", "an enumeration definition"),
+        ("AttributeUsage", "DataType", "attribute definitions"),
+        ("AllocationUsage", "AllocationDefinition", "allocation definitions"),
+        ("InterfaceUsage", "InterfaceDefinition", "interface definitions"),
+        ("FlowUsage", "Interaction", "flow definitions"),
+        ("ConnectionUsage", "Association", "connection definitions"),
+        ("MetadataUsage", "Metaclass", "a metadata definition"),
+        ("ViewUsage", "ViewDefinition", "a view definition"),
+        ("RenderingUsage", "RenderingDefinition", "a rendering definition"),
+        ("PortUsage", "PortDefinition", "port definitions"),
+        ("ViewpointUsage", "ViewpointDefinition", "a viewpoint definition"),
+        ("ConcernUsage", "ConcernDefinition", "a concern definition"),
+        ("RequirementUsage", "RequirementDefinition", "a requirement definition"),
+        ("ConstraintUsage", "Predicate", "a constraint definition"),
+        ("AnalysisCaseUsage", "AnalysisCaseDefinition", "an analysis definition"),
+        ("VerificationCaseUsage", "VerificationCaseDefinition", "a verification definition"),
+        ("UseCaseUsage", "UseCaseDefinition", "a use case definition"),
+        ("CaseUsage", "CaseDefinition", "a case definition"),
+        ("CalculationUsage", "Function", "a calculation definition"),
+        ("StateUsage", "Behavior", "state definitions"),
+        ("ActionUsage", "Behavior", "action definitions"),
+        ("OccurrenceUsage", "Class", "occurrence, item or part definitions"),
+        ("ReferenceUsage", "Classifier", "definitions"),
+    )
+}
+"""The requirement of usages of a kind; the first kind that a usage specialises counts."""
+# Bindings and successions are connectors too, and their types are not restricted.
+_TYPED = (USAGES - kinds_of("Connector")) | kinds_of("ConnectionUsage") | kinds_of("FlowUsage")
+_REQUIREMENT_BY_KIND = {
+    kind: next(
+        requirement
+        for general, requirement in _REQUIREMENTS.items()
+        if general in ALL_GENERALS[kind]
+    )
+    for kind in _TYPED - {"Usage"}
+}
 TYPING_RELATIONS = frozenset({"FeatureTyping", "Subsetting", "ReferenceSubsetting", "Redefinition"})
 """Relations that determine types."""
-
-
 TYPED_KINDS = frozenset(_REQUIREMENT_BY_KIND)
 """Metaclasses of usages that are checked."""
 
