@@ -2,9 +2,10 @@
 
 import re
 from functools import cache
+from typing import NamedTuple
 
 from sysmlc.diagnostics import Severity, Sink, rule
-from sysmlc.language.metaclasses import describe_kind, kinds_of
+from sysmlc.language.metaclasses import FEATURES, describe_kind, kinds_of
 from sysmlc.language.names import contexts
 from sysmlc.language.names.expression_results import find_result
 from sysmlc.language.names.generals import GENERALIZATION_KINDS
@@ -43,9 +44,6 @@ def _list_shipped_units() -> frozenset[str]:
     return frozenset(str(unit.short_name or unit.name) for unit in units.members)
 
 
-# -- diagnostics -----------------------------------------------------------------------------------
-
-
 UNRESOLVED = rule(
     "SM205", "unresolved-name", Severity.ERROR, "unknown name '{name}'{inside}", help="{advice}"
 )
@@ -70,7 +68,6 @@ _EXPECTED_WORDS = {
     "FeatureChaining": "a usage or feature",
     "importedNamespace": "a namespace",
 }
-_IMPORT_RELATIONS = frozenset({"importedNamespace", "importedMembership"})
 _MAX_ADVICE_FROM_IMPORTS = 50
 """Diagnostics of a unit after which names of imported packages are no longer suggested."""
 _MAX_SIMILAR_NAMES = 50
@@ -89,69 +86,70 @@ _NOTE_SIGNS = ("# ", "#\t")
 _MAX_LISTED = 7
 """Names of the members of an element that are listed in place of a similar name."""
 _TYPES_OF_LIBRARY = ("ScalarValues", "ISQ")
-_UNITS_OF_LIBRARY = ("SI",)
 _CLASSIFIERS = kinds_of("Classifier")
-_FEATURES = kinds_of("Feature")
 _OPERATORS = frozenset({"OperatorExpression"})
 _PACKAGES = kinds_of("Package")
 _MEMBERSHIP_IMPORTS = kinds_of("MembershipImport")
 
 
-def _make_advice(
-    model: Model,
-    use: tuple[Node, Relation],
-    names: tuple[str, ...],
-    context: contexts.LookupContext,
-    container: Node | None,
-    reported: int,
-) -> str:
-    """Return the help for a name that is not found; ``container`` is the element before a dot.
+class _UnknownName(NamedTuple):
+    """A name that was not found, by its parts, and where it was looked up.
 
-    ``reported`` is the number of diagnostics before this one: the search of the first is longest.
+    ``container`` is the element before a dot. ``reported`` is the number of diagnostics before this
+    one: the search of the first is longest.
     """
-    relation, lookup = use[1], model.lookup
-    # Libraries have thousands of names to compare with.
-    searches_imports = reported < _MAX_ADVICE_FROM_IMPORTS
-    obstacle = _explain_obstacle(lookup, relation, names, context, container, searches_imports)
+
+    model: Model
+    node: Node
+    relation: Relation
+    names: tuple[str, ...]
+    context: contexts.LookupContext
+    container: Node | None
+    reported: int
+
+    @property
+    def searches_imports(self) -> bool:
+        """Whether the names of imported packages are compared: libraries have thousands."""
+        return self.reported < _MAX_ADVICE_FROM_IMPORTS
+
+
+def _make_advice(use: _UnknownName) -> str:
+    """Return the help for a name that is not found."""
+    model, names = use.model, use.names
+    obstacle = _explain_obstacle(use)
     if obstacle:
         return obstacle
-    if container is None:
-        package = _find_unimported_package(model, use, names, context)
+    if use.container is None:
+        package = _find_unimported_package(use)
         if package is not None:
-            return _advise_import(names[0], package, lookup, context)
-    unknown, container = _find_unknown_part(lookup, names, context, container)
-    if relation.kind in _IMPORT_RELATIONS and container is None:
-        scope_names = {scope.name for scope in contexts.list_scopes(context)}
+            return _advise_import(names[0], package, model.lookup, use.context)
+    unknown, container = _find_unknown_part(use)
+    if use.relation.kind in contexts.IMPORTED and container is None:
+        scope_names = {scope.name for scope in contexts.list_scopes(use.context)}
         packages = [name for name in model.packages() if name not in scope_names]
-        similar = find_similar(unknown, packages) if reported < _MAX_SIMILAR_NAMES else ""
+        similar = find_similar(unknown, packages) if use.reported < _MAX_SIMILAR_NAMES else ""
         return f"did you mean '{similar}'?" if similar else _NOT_GIVEN
     known_names: list[str] = []
-    if reported < _MAX_SIMILAR_NAMES:
+    if use.reported < _MAX_SIMILAR_NAMES:
+        known_names = _list_known_names(use, unknown, container)
         is_qualifier = container is None and unknown != names[-1]
-        known_names = _list_known_names(model, use, unknown, context, container, searches_imports)
         known_names += model.packages() if is_qualifier else []
-    similar = _name_in_library(model, use, names, context) or find_similar(unknown, known_names)
+    similar = _name_in_library(use) or find_similar(unknown, known_names)
     if similar:
         quoted = similar if "'" in similar else f"'{similar}'"
         return f"did you mean {quoted}?"
     if container is not None and container.name:
         return _advise_declaration(model, container, known_names)
-    return _NOT_INHERITED if context.inherited else _UNKNOWN
+    return _NOT_INHERITED if use.context.inherited else _UNKNOWN
 
 
-def _explain_obstacle(
-    lookup: Lookup,
-    relation: Relation,
-    names: tuple[str, ...],
-    context: contexts.LookupContext,
-    container: Node | None,
-    searches_imports: bool,
-) -> str:
+def _explain_obstacle(use: _UnknownName) -> str:
     """Return why an element that has the name cannot be used here, or nothing if none has it."""
-    of_other_kind = _search_regardless(lookup, names, context, container, everything=False)
+    last, relation = use.names[-1], use.relation
+    of_other_kind = _search_regardless(use, everything=False)
     if of_other_kind is not None and relation.kind in _EXPECTED_WORDS:
         kind, expected = describe_kind(of_other_kind), _EXPECTED_WORDS[relation.kind]
-        advice = f"'{names[-1]}' is {kind}, {expected} is needed here"
+        advice = f"'{last}' is {kind}, {expected} is needed here"
         chain = relation.reference.chain
         if len(chain) > 1 and of_other_kind.kind in _PACKAGES:
             joined = "::".join(name for link in chain for name in link)
@@ -159,31 +157,26 @@ def _explain_obstacle(
         keyword, definition, _ = kind.partition(" ")[2].partition(" definition")
         # 'satisfy R' refers to a usage; 'satisfy requirement : R' declares one.
         declares = definition and relation.kind == "ReferenceSubsetting"
-        return f"{advice}; write '{keyword} : {names[-1]}'" if declares else advice
-    private = _explain_privacy(lookup, names, context, container, searches_imports)
+        return f"{advice}; write '{keyword} : {last}'" if declares else advice
+    private = _explain_privacy(use)
     if private and of_other_kind is None:
         return private
-    hidden = _search_regardless(lookup, names, context, container, everything=True)
+    hidden = _search_regardless(use, everything=True)
     if hidden is not None and hidden.visibility in ("private", "protected"):
         owner = f" in '{hidden.owner.name}'" if hidden.owner and hidden.owner.name else ""
-        return f"'{names[-1]}' is {hidden.visibility}{owner}"
+        return f"'{last}' is {hidden.visibility}{owner}"
     if hidden is not None and of_other_kind is None:
-        return f"'{names[-1]}' is there by a private import only"
+        return f"'{last}' is there by a private import only"
     return ""
 
 
-def _explain_privacy(
-    lookup: Lookup,
-    names: tuple[str, ...],
-    context: contexts.LookupContext,
-    container: Node | None,
-    searches_imports: bool,
-) -> str:
+def _explain_privacy(use: _UnknownName) -> str:
     """Return that the first unknown part is private where it would be found, or nothing."""
-    unknown, container = _find_unknown_part(lookup, names, context, container)
+    lookup = use.model.lookup
+    unknown, container = _find_unknown_part(use)
     scopes = [] if container is None else [container, *lookup.known_ancestors(container)]
-    if container is None and searches_imports:
-        scopes = lookup.list_imported_namespaces(contexts.list_scopes(context))
+    if container is None and use.searches_imports:
+        scopes = lookup.list_imported_namespaces(contexts.list_scopes(use.context))
     for scope in scopes:
         for hit in lookup.symbol_table(scope).get(unknown, ()):
             if hit.visibility in ("private", "protected") and scope.name:
@@ -191,19 +184,16 @@ def _explain_privacy(
     return ""
 
 
-def _find_unknown_part(
-    lookup: Lookup,
-    names: tuple[str, ...],
-    context: contexts.LookupContext,
-    container: Node | None,
-) -> tuple[str, Node | None]:
+def _find_unknown_part(use: _UnknownName) -> tuple[str, Node | None]:
     """Return the first part of a qualified name that is unknown, and the element before it."""
-    for count, name in enumerate(names[:-1], start=1):
-        element = _search_regardless(lookup, names[:count], context, container, everything=False)
+    container = use.container
+    for count, name in enumerate(use.names[:-1], start=1):
+        part = use._replace(names=use.names[:count], container=container)
+        element = _search_regardless(part, everything=False)
         if element is None:
             return name, container
         container = element
-    return names[-1], container
+    return use.names[-1], container
 
 
 def _advise_declaration(model: Model, container: Node, known_names: list[str]) -> str:
@@ -211,7 +201,7 @@ def _advise_declaration(model: Model, container: Node, known_names: list[str]) -
     if model.document(container) not in model.documents:
         return f"'{container.name}' of the library has no such name"
     # A feature usually has its members from its type.
-    types = model.types(container) if container.kind in _FEATURES else []
+    types = model.types(container) if container.kind in FEATURES else []
     own_types = (type_ for type_ in types if model.document(type_) in model.documents)
     place = next(own_types, container)
     listed = sorted(set(known_names))
@@ -219,51 +209,47 @@ def _advise_declaration(model: Model, container: Node, known_names: list[str]) -
     return f"declare it in '{place.name or container.name}'{others}"
 
 
-def _find_unimported_package(
-    model: Model,
-    use: tuple[Node, Relation],
-    names: tuple[str, ...],
-    context: contexts.LookupContext,
-) -> Node | None:
+def _find_unimported_package(use: _UnknownName) -> Node | None:
     """Return a package of the model or of the library that has the name with a suitable kind.
 
     In the library only types and units are considered: no step or part 'b' means the unit bel.
     """
-    if len(names) > 1:
+    model, name, kind = use.model, use.names[0], use.relation.kind
+    if len(use.names) > 1:
         return None
-    node, relation = use
-    scopes = contexts.list_scopes(context)
-    kinds = contexts.TARGET_KINDS.get(relation.kind)
-    for package in model.find_packages_owning(names[0]):
-        if package not in scopes and _has_visible_member(model.lookup, package, names[0], kinds):
+    scopes = contexts.list_scopes(use.context)
+    kinds = contexts.TARGET_KINDS.get(kind)
+    for package in model.find_packages_owning(name):
+        if package not in scopes and _has_visible_member(model.lookup, package, name, kinds):
             return package
-    if relation.kind == "FeatureTyping":
-        return _find_library_package(model, names[0], _TYPES_OF_LIBRARY, _CLASSIFIERS)
-    if relation.kind == "Membership" and _is_unit(node):
-        return _find_library_package(model, names[0], _UNITS_OF_LIBRARY, None)
+    if kind == "FeatureTyping":
+        for package_name in _TYPES_OF_LIBRARY:
+            element = model.find(f"{package_name}::{name}")
+            if element is not None and element.kind in _CLASSIFIERS:
+                return model.find(package_name)
+        for package in model.library.packages(name):
+            if package.name and _has_visible_member(model.lookup, package, name, _CLASSIFIERS):
+                return package
+    if kind == "Membership" and _is_unit(use.node) and model.find(f"SI::{name}") is not None:
+        return model.find("SI")
     return None
 
 
-def _name_in_library(
-    model: Model,
-    use: tuple[Node, Relation],
-    names: tuple[str, ...],
-    context: contexts.LookupContext,
-) -> str:
+def _name_in_library(use: _UnknownName) -> str:
     """Return what the libraries call a type or unit with the name of another language, or nothing.
 
     The name is qualified unless it is visible where it is used.
     """
-    node, relation = use
-    name = ""
-    if relation.kind == "FeatureTyping" and names[:-1] in ((), ("ScalarValues",)):
-        name = find_type(names[-1])
-    elif relation.kind == "Membership" and names[0] in _LITERALS:
-        return _LITERALS[names[0]]
-    elif relation.kind == "Membership" and names[:-1] in ((), ("SI",)) and _is_unit(node):
-        name = find_unit_name(model, names[-1])
+    name, kind, *qualifiers = "", use.relation.kind, *use.names[:-1]
+    if kind == "FeatureTyping" and qualifiers in ([], ["ScalarValues"]):
+        name = find_type(use.names[-1])
+    elif kind == "Membership" and use.names[0] in _LITERALS:
+        return _LITERALS[use.names[0]]
+    elif kind == "Membership" and qualifiers in ([], ["SI"]) and _is_unit(use.node):
+        name = find_unit_name(use.model, use.names[-1])
     own_name = name.rpartition("::")[2]
-    is_visible = name and model.lookup.search(context, (own_name.strip("'"),), None) is not None
+    lookup = use.model.lookup
+    is_visible = name and lookup.search(use.context, (own_name.strip("'"),), None) is not None
     return own_name if is_visible else name
 
 
@@ -276,31 +262,14 @@ def _is_unit(node: Node) -> bool:
     return False
 
 
-def _find_library_package(
-    model: Model, name: str, packages: tuple[str, ...], kinds: frozenset[str] | None
-) -> Node | None:
-    """Return a package of the library that has the name, first of those in ``packages``."""
-    for package_name in packages:
-        package, element = model.find(package_name), model.find(f"{package_name}::{name}")
-        if element is not None and (kinds is None or element.kind in kinds):
-            return package
-    if kinds is not None:
-        for package in model.library.packages(name):
-            if package.name and _has_visible_member(model.lookup, package, name, kinds):
-                return package
-    return None
-
-
 def _has_visible_member(
     lookup: Lookup, package: Node, name: str, kinds: frozenset[str] | None
 ) -> bool:
     """Whether a package owns a public member with the name."""
-    for hit in lookup.symbol_table(package).get(name, ()):
-        element = lookup.resolve_alias(hit)
-        is_wanted = element is not None and (kinds is None or element.kind in kinds)
-        if is_wanted and hit.visibility in ("", "public"):
-            return True
-    return False
+    return any(
+        hit.visibility in ("", "public") and _is_of_kind(lookup, hit, kinds)
+        for hit in lookup.symbol_table(package).get(name, ())
+    )
 
 
 def _advise_import(
@@ -316,16 +285,10 @@ def _advise_import(
     return f"'{name}' is in '{package.name}', which is not imported here"
 
 
-def _search_regardless(
-    lookup: Lookup,
-    names: tuple[str, ...],
-    context: contexts.LookupContext,
-    container: Node | None,
-    *,
-    everything: bool,
-) -> Node | None:
-    if container is not None:
-        return lookup.descend(container, names, 0, None, everything)
+def _search_regardless(use: _UnknownName, *, everything: bool) -> Node | None:
+    lookup, names, context = use.model.lookup, use.names, use.context
+    if use.container is not None:
+        return lookup.descend(use.container, names, 0, None, everything)
     if everything and context.inherited and context.scope is not None:
         hits = (
             lookup.own_members(general, names[0])
@@ -335,50 +298,42 @@ def _search_regardless(
     return lookup.search(context._replace(everything=everything), names, None)
 
 
-def _list_known_names(
-    model: Model,
-    use: tuple[Node, Relation],
-    unknown: str,
-    context: contexts.LookupContext,
-    container: Node | None,
-    searches_imports: bool,
-) -> list[str]:
+def _list_known_names(use: _UnknownName, unknown: str, container: Node | None) -> list[str]:
     """Return the names of elements of the kind that is needed.
 
     After a dot these are members of the element before it, else names in the scopes around and in
     the packages that they import. In the brackets of a quantity the units of SI are valid, too.
     """
-    node, relation = use
-    lookup = model.lookup
+    model, lookup, context = use.model, use.model.lookup, use.context
     if container is None and context.inherited and context.scope is not None:
         scopes = lookup.known_ancestors(context.scope)
-    elif container is not None:
-        scopes = [container, *lookup.known_ancestors(container)]
-        scopes += lookup.list_imported_namespaces([container]) if searches_imports else []
     else:
-        outward = contexts.list_scopes(context)
-        scopes = [*outward]
-        if searches_imports:
-            scopes += lookup.list_imported_namespaces(outward)
-        if searches_imports and _is_unit(node):
-            scopes += filter(None, map(model.find, _UNITS_OF_LIBRARY))
-    is_last = unknown == relation.reference.chain[-1][-1]
-    kinds = contexts.TARGET_KINDS.get(relation.kind) if is_last else None
-    if kinds is not None and relation.kind == "FeatureTyping":
+        starts = contexts.list_scopes(context) if container is None else [container]
+        scopes = [*starts]
+        if container is not None:
+            scopes += lookup.known_ancestors(container)
+        if use.searches_imports:
+            scopes += lookup.list_imported_namespaces(starts)
+        if use.searches_imports and container is None and _is_unit(use.node):
+            scopes += filter(None, [model.find("SI")])
+    kind = use.relation.kind
+    is_last = unknown == use.relation.reference.chain[-1][-1]
+    kinds = contexts.TARGET_KINDS.get(kind) if is_last else None
+    if kinds is not None and kind == "FeatureTyping":
         kinds = _CLASSIFIERS
     return [
         name
         for scope in scopes
         for name, hits in lookup.symbol_table(scope).items()
         if name != unknown
-        and node not in hits
+        and use.node not in hits
         and (kinds is None or any(_is_of_kind(lookup, hit, kinds) for hit in hits))
     ]
 
 
-def _is_of_kind(lookup: Lookup, hit: Node, kinds: frozenset[str]) -> bool:
+def _is_of_kind(lookup: Lookup, hit: Node, kinds: frozenset[str] | None) -> bool:
     element = lookup.resolve_alias(hit)
-    return element is not None and element.kind in kinds
+    return element is not None and (kinds is None or element.kind in kinds)
 
 
 _NAME = r"(?:'(?:[^'\\]|\\.)*'|[\w$~]+)"
@@ -416,8 +371,9 @@ def report_unresolved(
     # A keyword in place of the name, or a stray word that is read as an expression.
     if sink.has_reported(_SYNTAX_ERRORS, subject.place):
         return
-    use, names = (node, relation), reference.chain[index]
-    advice = _make_advice(model, use, names, context, container, len(sink))
+    names = reference.chain[index]
+    use = _UnknownName(model, node, relation, names, context, container, len(sink))
+    advice = _make_advice(use)
     is_quoted = reference.start >= 0 and document.text.startswith("'", reference.start)
     if advice == _UNKNOWN and is_quoted and relation.kind == "Membership":
         advice = f'{advice}; a string stands in double quotes: "{name}"'
