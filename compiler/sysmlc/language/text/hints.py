@@ -3,6 +3,7 @@
 from collections.abc import Callable, Collection
 from difflib import SequenceMatcher
 from functools import cache
+from typing import NamedTuple
 
 from sysmlc.language.text.lexer import Tokens
 from sysmlc.language.text.spelling import RESERVED
@@ -119,8 +120,32 @@ STEREOTYPE = (
     "'part def' declares is a block"
 )
 
-Hint = Callable[[Tokens, int, Collection[str]], str]
-"""Returns advice about a token in whose place only other tokens are valid, or an empty string."""
+
+class Spot(NamedTuple):
+    """A token that does not fit, in whose place only the ``expected`` tokens are valid.
+
+    ``before`` are the tokens of its member before it. ``previous`` and ``following`` are the tokens
+    beside it, empty at the ends of the text.
+    """
+
+    tokens: Tokens
+    position: int
+    symbol: str
+    before: list[str]
+    previous: str
+    following: str
+    expected: Collection[str]
+
+
+def _find_spot(tokens: Tokens, index: int, expected: Collection[str]) -> Spot:
+    previous = tokens[index - 1] if index else ""
+    following = "".join(list_next_tokens(tokens, index)[:1])
+    before = list_member_before(tokens, index)
+    return Spot(tokens, index, tokens[index], before, previous, following, expected)
+
+
+Hint = Callable[[Spot], str]
+"""Returns advice about a token that does not fit, or an empty string."""
 
 
 def advise_unexpected(
@@ -130,33 +155,32 @@ def advise_unexpected(
 
     ``beginnings`` are the words with which members of a body begin.
     """
-    advice = _first_advice(_SLIPS, tokens, index, expected)
+    spot = _find_spot(tokens, index, expected)
+    advice = _first_advice(_SLIPS, spot)
     if advice:
         return advice
     # The words of another language are names, and the first word of a member explains more.
-    is_symbol = not tokens[index].isalpha()
     return (
-        _TOKENS.get(tokens[index], "")
-        or (_first_advice(_FOREIGN, tokens, index, expected) if is_symbol else "")
+        _TOKENS.get(spot.symbol, "")
+        or ("" if spot.symbol.isalpha() else _first_advice(_FOREIGN, spot))
         or _advise_first_word(tokens, index - 1, beginnings)
-        or _first_advice(_FOREIGN, tokens, index, expected)
+        or _first_advice(_FOREIGN, spot)
     )
 
 
 def advise_missing(tokens: Tokens, before: int, index: int, beginnings: Collection[str]) -> str:
     """Return advice about token ``index`` after a member that seems to end at token ``before``."""
-    return (
-        _advise_import(tokens, index, ())
-        or _advise_ends(tokens, index, ())
-        or _advise_direction(tokens, before, index, beginnings)
-        or _advise_first_word(tokens, before, beginnings)
-    )
+    spot = _find_spot(tokens, index, ())
+    word, kind = spot.symbol, tokens[before]
+    advice = _advise_import(spot) or _advise_ends(spot)
+    # A direction behind the kind of a feature: ``port in p``.
+    if not advice and word in DIRECTIONS and kind in beginnings and kind.isalpha():
+        return f"write the direction before the kind: {word} {kind} ..."
+    return advice or _advise_first_word(tokens, before, beginnings)
 
 
-def _first_advice(
-    hints: tuple[Hint, ...], tokens: Tokens, index: int, expected: Collection[str]
-) -> str:
-    texts = (hint(tokens, index, expected) for hint in hints)
+def _first_advice(hints: tuple[Hint, ...], spot: Spot) -> str:
+    texts = (hint(spot) for hint in hints)
     return next((text for text in texts if text), "")
 
 
@@ -218,14 +242,6 @@ def _explain_first_word(word: str) -> str:
     return f"'{word}' is not a keyword: {_FIRST_WORDS[word][1]}"
 
 
-def _advise_direction(tokens: Tokens, before: int, index: int, beginnings: Collection[str]) -> str:
-    """Advise about a direction behind the kind of a feature: ``port in p``."""
-    word, kind = tokens[index], tokens[before]
-    if word not in DIRECTIONS or kind not in beginnings or not kind.isalpha():
-        return ""
-    return f"write the direction before the kind: {word} {kind} ..."
-
-
 def list_member_before(tokens: Tokens, index: int) -> list[str]:
     """Return the tokens before ``index`` that belong to the same member."""
     start = index
@@ -239,12 +255,17 @@ def list_next_tokens(tokens: Tokens, index: int) -> list[str]:
     return [tokens[position] for position in range(index + 1, min(index + 3, len(tokens.types)))]
 
 
+def _advise_if(applies: Callable[[Spot], bool], advice: str) -> Hint:
+    """Return a hint that has one text."""
+    return lambda at: advice if applies(at) else ""
+
+
 # -- slips in SysML ------------------------------------------------------------------------------
 
 
-def _advise_unit(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
+def _advise_unit(at: Spot) -> str:
     """Advise about a name behind a number: the author probably means a unit, ``5 [kg]``."""
-    unit, number = tokens[index], tokens[index - 1] if index else ""
+    unit, number = at.symbol, at.previous
     if not number[:1].isdigit() or not unit.isidentifier() or unit in RESERVED:
         return ""
     if unit in _OPERATORS:
@@ -255,193 +276,136 @@ def _advise_unit(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
     return f"units stand in brackets: {number} [{unit}]"
 
 
-def _advise_parameters(tokens: Tokens, index: int, expected: Collection[str]) -> str:
+def _advise_parameters(at: Spot) -> str:
     """Advise about a list in parentheses behind a declared name."""
-    before = list_member_before(tokens, index)
-    if tokens[index] == "(" and {";", "{"} <= set(expected):
-        names = [word for word in list_next_tokens(tokens, index) if word not in DIRECTIONS]
+    if at.symbol == "(" and {";", "{"} <= set(at.expected):
+        following = list_next_tokens(at.tokens, at.position)
+        names = [word for word in following if word not in DIRECTIONS]
         return _PARAMETERS.format(names[0] if names and names[0].isidentifier() else "x")
-    is_list = tokens[index] in (")", ",", ":") and before[2:3] == ["("] and "," in expected
-    return _PARAMETERS.format(before[3]) if is_list and len(before) > 3 else ""
+    is_list = at.symbol in (")", ",", ":") and at.before[2:3] == ["("] and "," in at.expected
+    return _PARAMETERS.format(at.before[3]) if is_list and len(at.before) > 3 else ""
 
 
-def _advise_multiplicity(tokens: Tokens, index: int, expected: Collection[str]) -> str:
-    if tokens[index] != "[" or _END_TOKENS.isdisjoint(expected):
+def _advise_multiplicity(at: Spot) -> str:
+    if at.symbol != "[" or _END_TOKENS.isdisjoint(at.expected):
         return ""
-    if "if" in expected and "transition" in list_member_before(tokens, index):
+    if "if" in at.expected and "transition" in at.before:
         return "a guard is written with 'if': transition first a if x > 0 then b"
     return "write the multiplicity before the end: [0..1] a"
 
 
-def _advise_import(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
-    before = list_member_before(tokens, index)
-    if tokens[index] == "import" and before[:1] == ["from"]:
-        name = "".join(list_next_tokens(tokens, index)[:1])
-        return f"write 'private import {'::'.join(before[1::2])}::{name};'"
-    if "import" not in before:
+def _advise_import(at: Spot) -> str:
+    if at.symbol == "import" and at.before[:1] == ["from"]:
+        return f"write 'private import {'::'.join(at.before[1::2])}::{at.following};'"
+    if "import" not in at.before:
         return ""
-    if tokens[index] == ".":
+    if at.symbol == ".":
         return "names of packages are joined by '::'"
-    name = "".join(list_next_tokens(tokens, index)[:1])
-    return f"another name is an alias: alias {name} for ...;" if tokens[index] == "as" else ""
+    return f"another name is an alias: alias {at.following} for ...;" if at.symbol == "as" else ""
 
 
-def _advise_ends(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
+def _advise_ends(at: Spot) -> str:
     """Advise about the ends of a succession or transition."""
-    before = list_member_before(tokens, index)
-    source = before[-1] if before else "a"
-    if tokens[index] == "then" and before[-2:-1] == ["succession"]:
+    source = at.before[-1] if at.before else "a"
+    if at.symbol == "then" and at.before[-2:-1] == ["succession"]:
         return f"write 'first' before the source: succession first {source} then ..."
-    if tokens[index] in ("from", "to") and "transition" in before:
-        source = source if tokens[index] == "to" else "a"
+    if at.symbol in ("from", "to") and "transition" in at.before:
+        source = source if at.symbol == "to" else "a"
         return f"a transition names its source and target: transition first {source} then ..."
     return ""
 
 
-def _advise_condition(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
-    is_condition = list_member_before(tokens, index)[:1] == ["assert"]
-    return (
-        "write the asserted condition in braces: assert constraint { x > 0 }"
-        if is_condition
-        else ""
-    )
-
-
-def _advise_result(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
-    """Advise about ``return`` with an expression: it declares the result."""
-    is_value = list_member_before(tokens, index)[:1] == ["return"]
-    return "'return' declares the result: return r = ...;" if is_value else ""
-
-
-def _advise_effect(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
-    """Advise about ``/`` before the effect of a transition, as SysML v1 writes it."""
-    is_effect = tokens[index] == "/" and "accept" in list_member_before(tokens, index)
-    return "an effect is written with 'do': accept e do action x then b" if is_effect else ""
-
-
-def _advise_quotes(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
+def _advise_quotes(at: Spot) -> str:
     """Advise about a declared name with a hyphen or a leading digit: ``part def my-part``."""
-    before, after = tokens[index - 1] if index else "", "".join(list_next_tokens(tokens, index)[:1])
-    is_hyphen = tokens[index] == "-" and before.isidentifier() and after.isalnum()
-    is_digit = tokens[index][:1].isdigit() and after.isidentifier() and before == "def"
-    name = f"{before}-{after}" if is_hyphen else f"{tokens[index]}{after}"
-    is_name = is_hyphen or is_digit
-    return (
-        f"put the name in single quotes, here and wherever it is used: '{name}'" if is_name else ""
-    )
+    name = ""
+    if at.symbol == "-" and at.previous.isidentifier() and at.following.isalnum():
+        name = f"{at.previous}-{at.following}"
+    elif at.symbol[:1].isdigit() and at.following.isidentifier() and at.previous == "def":
+        name = f"{at.symbol}{at.following}"
+    return name and f"put the name in single quotes, here and wherever it is used: '{name}'"
 
 
-def _advise_then(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
-    before = list_member_before(tokens, index)
-    if tokens[index] == "then" and "if" in before:
+def _advise_then(at: Spot) -> str:
+    if at.symbol == "then" and "if" in at.before:
         return "a conditional expression has a question mark: if a ? b else c"
-    is_implication = before[:1] == ["if"] and "then" in before and tokens[index] in _COMPARISONS
+    is_implication = at.before[:1] == ["if"] and "then" in at.before and at.symbol in _COMPARISONS
     return "a condition under a condition is written: a implies b" if is_implication else ""
 
 
-def _advise_call(tokens: Tokens, index: int, expected: Collection[str]) -> str:
-    """Advise about a call as a statement: ``Drill();``."""
-    before = list_member_before(tokens, index)
-    is_call = tokens[index] == ";" and list(expected) == ["}"] and before[1:2] == ["("]
-    return f"an action is performed by a usage: action x : {before[0]};" if is_call else ""
-
-
-def _advise_loop(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
-    is_loop = index > 0 and tokens[index] == "(" and tokens[index - 1] == "for"
-    return "a loop runs over a sequence: for i in 1..3 { ... }" if is_loop else ""
-
-
-def _advise_sum(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
+def _advise_sum(at: Spot) -> str:
     """Advise about an assignment that changes a value: ``n += 1``."""
-    before = list_member_before(tokens, index)
-    if before[:1] == ["assign"] and list_next_tokens(tokens, index)[:1] == ["="]:
-        return f"write the new value: {before[-1]} := {before[-1]} {tokens[index]} ..."
+    before = at.before
+    if before[:1] == ["assign"] and at.following == "=":
+        return f"write the new value: {before[-1]} := {before[-1]} {at.symbol} ..."
     name, operator = "".join(before[:-1]), "".join(before[-1:])
-    if tokens[index] == "=" and operator in ("+", "-", "*", "/") and before[0].isidentifier():
+    if at.symbol == "=" and operator in ("+", "-", "*", "/") and before[0].isidentifier():
         return f"write the new value: assign {name} := {name} {operator} ...;"
-    if tokens[index] in (";", "}") and before[1:] in (["+", "+"], ["-", "-"]):
+    if at.symbol in (";", "}") and before[1:] in (["+", "+"], ["-", "-"]):
         return f"write the new value: assign {before[0]} := {before[0]} {operator} 1;"
     return ""
 
 
-def _advise_values(tokens: Tokens, index: int, expected: Collection[str]) -> str:
+def _advise_call(at: Spot) -> str:
+    """Advise about a call as a statement: ``Drill();``."""
+    is_call = at.symbol == ";" and list(at.expected) == ["}"] and at.before[1:2] == ["("]
+    return f"an action is performed by a usage: action x : {at.before[0]};" if is_call else ""
+
+
+def _advise_values(at: Spot) -> str:
     """Advise about decimals and lists: ``3,5``, ``3.``, ``[1, 2]``, ``{1, 2}``."""
-    before = list_member_before(tokens, index)
-    following = "".join(list_next_tokens(tokens, index)[:1])
-    head = list_member_before(tokens, max(index - len(before) - 1, 0))
-    is_list = tokens[index] == "," and head[-1:] == ["="]
-    if is_list or (tokens[index] == "[" and "null" in expected):
+    before, following = at.before, at.following
+    head = list_member_before(at.tokens, max(at.position - len(before) - 1, 0))
+    is_list = at.symbol == "," and head[-1:] == ["="]
+    if is_list or (at.symbol == "[" and "null" in at.expected):
         return "a list of values stands in parentheses: (1, 2, 3)"
-    if tokens[index] == "," and before[-2:-1] == ["="] and (before[-1] + following).isdigit():
+    if at.symbol == "," and before[-2:-1] == ["="] and (before[-1] + following).isdigit():
         return f"a decimal number has a point: {before[-1]}.{following}"
     if before[-1:] == ["."] and before[-2:][0].isdigit():
         return f"a digit follows the point: {before[-2]}.0"
     return ""
 
 
-def _advise_bounds(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
+def _advise_bounds(at: Spot) -> str:
     """Advise about multiplicities: ``a[3..]``, ``part[3] a``."""
-    before = list_member_before(tokens, index)
-    if tokens[index] == "]" and before[-1:] == [".."]:
+    before = at.before
+    if at.symbol == "]" and before[-1:] == [".."]:
         return f"no upper bound is written '*': [{before[-2]}..*]"
-    is_early = before[1:2] == ["["] and before[0] in RESERVED and "]" in before[:-1]
-    name = before[-1] if before else ""
-    bounds = "".join(before[1:-1])
-    return f"the multiplicity follows the name: {before[0]} {name}{bounds}" if is_early else ""
-
-
-def _advise_relation(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
-    """Advise about ``alias B = A``, ``alias A as B``, ``bind a b`` and ``a --> b``."""
-    before, symbol = list_member_before(tokens, index), tokens[index]
-    following = "".join(list_next_tokens(tokens, index)[:1])
-    if before[:1] == ["alias"] and symbol in ("=", "as"):
-        names = (before[-1], following) if symbol == "=" else (following, before[-1])
-        return f"write 'alias {names[0]} for {names[1]};'"
-    if before[:1] == ["bind"] and symbol.isidentifier():
-        return f"write '=' between both: bind {''.join(before[1:])} = {symbol};"
-    return ARROW if symbol == "->" and before[-1:] == ["-"] else ""
-
-
-def _advise_body(tokens: Tokens, index: int, expected: Collection[str]) -> str:
-    """Advise about ``if x action a;`` and ``package A; { ... }``."""
-    if tokens[index] == "{" and index and tokens[index - 1] == ";":
-        return "take away the ';' before the body"
-    is_step = tokens[index] == ";" and list_member_before(tokens, index)[:1] == ["if"]
-    return "the steps stand in braces: if x > 0 { ... }" if is_step and "{" in expected else ""
-
-
-def _advise_name(tokens: Tokens, index: int, expected: Collection[str]) -> str:
-    """Advise about a name in double quotes: ``part def "My part"``."""
-    is_name = tokens[index].startswith('"') and "NAME" in expected and "BODY" not in expected
-    return f"a name stands in single quotes: '{tokens[index][1:-1]}'" if is_name else ""
-
-
-def _advise_package(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
-    before = list_member_before(tokens, index)
-    is_path = tokens[index] == "." and "package" in before
-    return (
-        f"a package in another one is a member of its body: package {before[-1]} {{ package ..."
-        if is_path
-        else ""
-    )
-
-
-def _advise_percent(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
-    is_unit = tokens[index] == "%" and index > 0 and tokens[index - 1] == "["
-    return "a ratio is a number: 0.2 for 20 %" if is_unit else ""
-
-
-def _advise_initial(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
-    return INITIAL if index and tokens[index] == ":" and tokens[index - 1] == "=" else ""
-
-
-def _advise_type_first(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
-    """Advise about a type before a name, as programming languages write it: ``Tank t;``."""
-    before, name = list_member_before(tokens, index), tokens[index]
-    is_pair = len(before) == 1 and before[0].isidentifier() and name.isidentifier()
-    if not is_pair or before[0] in _FIRST_WORDS or before[0][:1].islower():
+    if before[1:2] != ["["] or before[0] not in RESERVED or "]" not in before[:-1]:
         return ""
-    return f"write the kind first and the type after ':', such as part {name} : {before[0]};"
+    return f"the multiplicity follows the name: {before[0]} {before[-1]}{''.join(before[1:-1])}"
+
+
+def _advise_relation(at: Spot) -> str:
+    """Advise about ``alias B = A``, ``alias A as B``, ``bind a b`` and ``a --> b``."""
+    if at.before[:1] == ["alias"] and at.symbol in ("=", "as"):
+        names = at.before[-1], at.following
+        new, old = names if at.symbol == "=" else names[::-1]
+        return f"write 'alias {new} for {old};'"
+    if at.before[:1] == ["bind"] and at.symbol.isidentifier():
+        return f"write '=' between both: bind {''.join(at.before[1:])} = {at.symbol};"
+    return ARROW if at.symbol == "->" and at.before[-1:] == ["-"] else ""
+
+
+def _advise_name(at: Spot) -> str:
+    """Advise about a name in double quotes: ``part def "My part"``."""
+    is_name = at.symbol.startswith('"') and "NAME" in at.expected and "BODY" not in at.expected
+    return f"a name stands in single quotes: '{at.symbol[1:-1]}'" if is_name else ""
+
+
+def _advise_package(at: Spot) -> str:
+    if at.symbol != "." or "package" not in at.before:
+        return ""
+    package = at.before[-1]
+    return f"a package in another one is a member of its body: package {package} {{ package ..."
+
+
+def _advise_type_first(at: Spot) -> str:
+    """Advise about a type before a name, as programming languages write it: ``Tank t;``."""
+    type_, name = "".join(at.before), at.symbol
+    is_pair = len(at.before) == 1 and type_.isidentifier() and name.isidentifier()
+    if not is_pair or type_ in _FIRST_WORDS or type_[:1].islower():
+        return ""
+    return f"write the kind first and the type after ':', such as part {name} : {type_};"
 
 
 _SLIPS: tuple[Hint, ...] = (
@@ -450,22 +414,42 @@ _SLIPS: tuple[Hint, ...] = (
     _advise_multiplicity,
     _advise_import,
     _advise_ends,
-    _advise_result,
-    _advise_condition,
-    _advise_effect,
+    _advise_if(
+        lambda at: at.before[:1] == ["return"], "'return' declares the result: return r = ...;"
+    ),
+    _advise_if(
+        lambda at: at.before[:1] == ["assert"],
+        "write the asserted condition in braces: assert constraint { x > 0 }",
+    ),
+    # SysML v1 writes an effect in this way.
+    _advise_if(
+        lambda at: at.symbol == "/" and "accept" in at.before,
+        "an effect is written with 'do': accept e do action x then b",
+    ),
     _advise_quotes,
-    _advise_percent,
+    _advise_if(
+        lambda at: at.symbol == "%" and at.previous == "[", "a ratio is a number: 0.2 for 20 %"
+    ),
     _advise_then,
     _advise_call,
-    _advise_loop,
+    _advise_if(
+        lambda at: at.symbol == "(" and at.previous == "for",
+        "a loop runs over a sequence: for i in 1..3 { ... }",
+    ),
     _advise_sum,
     _advise_values,
     _advise_bounds,
     _advise_relation,
-    _advise_body,
+    _advise_if(
+        lambda at: at.symbol == "{" and at.previous == ";", "take away the ';' before the body"
+    ),
+    _advise_if(
+        lambda at: at.symbol == ";" and at.before[:1] == ["if"] and "{" in at.expected,
+        "the steps stand in braces: if x > 0 { ... }",
+    ),
     _advise_name,
     _advise_package,
-    _advise_initial,
+    _advise_if(lambda at: at.symbol == ":" and at.previous == "=", INITIAL),
     _advise_type_first,
 )
 
@@ -473,54 +457,38 @@ _SLIPS: tuple[Hint, ...] = (
 # -- symbols and words of other languages --------------------------------------------------------
 
 
-def _advise_doubled_operator(tokens: Tokens, index: int, _expected: Collection[str]) -> str:
+def _advise_doubled_operator(at: Spot) -> str:
     """Advise about ``&&`` and ``||``, which are two tokens each."""
-    symbol = tokens[index]
-    is_doubled = index > 0 and tokens[index - 1] == symbol and symbol in _DOUBLED_OPERATORS
-    return f"conditions are joined by {_DOUBLED_OPERATORS[symbol]}" if is_doubled else ""
+    is_doubled = at.previous == at.symbol and at.symbol in _DOUBLED_OPERATORS
+    return f"conditions are joined by {_DOUBLED_OPERATORS[at.symbol]}" if is_doubled else ""
 
 
-def _advise_comparison(tokens: Tokens, index: int, expected: Collection[str]) -> str:
-    is_binding = tokens[index] == "=" and "==" in expected and "=" not in expected
-    return COMPARISON if is_binding else ""
-
-
-def _advise_conditional(tokens: Tokens, index: int, expected: Collection[str]) -> str:
-    is_question = tokens[index] == "?" and "?" not in expected
-    return "a conditional expression starts with 'if': if a ? b else c" if is_question else ""
-
-
-def _advise_result_end(tokens: Tokens, index: int, expected: Collection[str]) -> str:
-    """Advise about a `;` behind the expression that is the result of a body."""
-    is_result = tokens[index] == ";" and list(expected) == ["}"]
-    return "the result is an expression without ';' at the end of the body" if is_result else ""
-
-
-def _advise_comment(tokens: Tokens, index: int, expected: Collection[str]) -> str:
-    is_text = tokens[index].startswith('"') and "BODY" in expected
-    return "write the text between /* and */" if is_text else ""
-
-
-def _advise_connection(tokens: Tokens, index: int, expected: Collection[str]) -> str:
-    is_arrow = tokens[index] in ARROWS and "to" in expected
-    return JOINED_BY_TO if is_arrow else ""
-
-
-def _advise_spelling(tokens: Tokens, index: int, expected: Collection[str]) -> str:
-    word = tokens[index]
+def _advise_spelling(at: Spot) -> str:
+    word = at.symbol
     if len(word) < _MIN_KEYWORD_LENGTH or not word.isalpha():
         return ""
-    keywords = [keyword for keyword in expected if len(keyword) >= _MIN_KEYWORD_LENGTH]
+    keywords = [keyword for keyword in at.expected if len(keyword) >= _MIN_KEYWORD_LENGTH]
     suggestion = did_you_mean(word, keywords)
     return suggestion if suggestion.startswith("did") and word not in suggestion else ""
 
 
 _FOREIGN: tuple[Hint, ...] = (
     _advise_doubled_operator,
-    _advise_comparison,
-    _advise_conditional,
-    _advise_result_end,
-    _advise_comment,
-    _advise_connection,
+    _advise_if(
+        lambda at: at.symbol == "=" and "==" in at.expected and "=" not in at.expected, COMPARISON
+    ),
+    _advise_if(
+        lambda at: at.symbol == "?" and "?" not in at.expected,
+        "a conditional expression starts with 'if': if a ? b else c",
+    ),
+    _advise_if(
+        lambda at: at.symbol == ";" and list(at.expected) == ["}"],
+        "the result is an expression without ';' at the end of the body",
+    ),
+    _advise_if(
+        lambda at: at.symbol.startswith('"') and "BODY" in at.expected,
+        "write the text between /* and */",
+    ),
+    _advise_if(lambda at: at.symbol in ARROWS and "to" in at.expected, JOINED_BY_TO),
     _advise_spelling,
 )
