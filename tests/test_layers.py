@@ -49,7 +49,7 @@ SUBLAYERS = {
         {"certain_runs", "witnesses"},
         {"controller_synthesis", "counterstrategy"},
         {"composition_check", "requirement_verdicts"},
-        {"contract_checks", "controller_files"},
+        {"contract_checks", "controller_files", "run_acceptance"},
     ],
 }
 """Packages and modules of two packages; those of one layer may import one another."""

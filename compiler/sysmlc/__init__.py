@@ -10,106 +10,32 @@ which may belong to a stranger, still comes first in the search for modules (see
 TYPE_CHECKING = False
 """Type checkers take it as true, like the name in ``typing``."""
 if TYPE_CHECKING:
-    from sysmlc.api.compiling import (
-        BackendError,
-        Change,
-        Compilation,
-        Config,
-        ConfigError,
-        Contract,
-        Diagnostic,
-        Edge,
-        Element,
-        Finding,
-        Graph,
-        Kind,
-        Pass,
-        RecipeModel,
-        Request,
-        Rule,
-        Severity,
-        Sink,
-        compile_model,
-        compile_texts,
-        diff,
-        format_findings,
-        list_findings,
-        query,
-        rule,
-        write,
-    )
-    from sysmlc.api.verification import (
-        CheckedContract,
-        CompositionVerdict,
-        ContractChecks,
-        SimulationReport,
-        Synthesis,
-        check_contracts,
-        simulate,
-        synthesise,
-    )
+    from sysmlc.api.compiling import *  # noqa: F403 - their ``__all__`` are the only lists
+    from sysmlc.api.verification import *  # noqa: F403
 
 __version__ = "0.1.0"
 
-__all__ = [
-    "BackendError",
-    "Change",
-    "CheckedContract",
-    "Compilation",
-    "CompositionVerdict",
-    "Config",
-    "ConfigError",
-    "Contract",
-    "ContractChecks",
-    "Diagnostic",
-    "Edge",
-    "Element",
-    "Finding",
-    "Graph",
-    "Kind",
-    "Pass",
-    "RecipeModel",
-    "Request",
-    "Rule",
-    "Severity",
-    "SimulationReport",
-    "Sink",
-    "Synthesis",
-    "check_contracts",
-    "compile_model",
-    "compile_texts",
-    "diff",
-    "format_findings",
-    "list_findings",
-    "query",
-    "rule",
-    "simulate",
-    "synthesise",
-    "write",
-]
-
-
-_VERIFICATION = (
-    "CheckedContract",
-    "CompositionVerdict",
-    "ContractChecks",
-    "SimulationReport",
-    "Synthesis",
-    "check_contracts",
-    "simulate",
-    "synthesise",
-)
-"""Names of ``sysmlc.api.verification``; the others are those of ``sysmlc.api.compiling``."""
-
 
 def __getattr__(name: str) -> object:
-    if name not in __all__:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from importlib import import_module
+    """Return a name of the API."""
+    from importlib.util import find_spec
 
-    module = "verification" if name in _VERIFICATION else "compiling"
-    return getattr(import_module(f"sysmlc.api.{module}"), name)
+    # 'from sysmlc import config' first looks for a name; it must not import the compiler.
+    is_special = name.startswith("_") and name != "__all__"
+    if not is_special and find_spec(f"{__name__}.{name}") is None:
+        from sysmlc.api import compiling
+
+        if name in compiling.__all__:
+            return getattr(compiling, name)
+        # This import takes as long as that of all other modules together.
+        from sysmlc.api import verification
+
+        if name == "__all__":
+            return [*compiling.__all__, *verification.__all__]
+        if name in verification.__all__:
+            return getattr(verification, name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return sorted({*globals(), *__getattr__("__all__")})  # type: ignore[misc]

@@ -37,8 +37,7 @@ def test_an_example_prints_the_output_on_the_page(
 
 
 def test_the_examples_have_their_output_on_the_page():
-    names = {"ports", "dependencies", "check", "requirements"}
-    assert set(OUTPUTS) == names < {name for name, _ in EXAMPLES}
+    assert {name for name, _ in EXAMPLES} - set(OUTPUTS) == {"contracts"}
 
 
 @pytest.mark.parametrize("name", sysmlc.__all__)
@@ -164,6 +163,108 @@ def test_two_models_are_compared(tmp_path):
     ]
     with pytest.raises(ValueError, match="there is no file or folder"):
         sysmlc.diff("lost.sysml", tmp_path / "new.sysml")
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "message"),
+    [
+        ({"config": 3}, TypeError, "'config' must be Config or str or PathLike or None, not int"),
+        ({"config": "lost.toml"}, sysmlc.ConfigError, "lost.toml"),
+        ({"emitt": "uml"}, TypeError, "has no argument 'emitt'; did you mean 'emit'?"),
+        ({"emit": 1}, TypeError, "'emit' must be str or Iterable, not int"),
+        ({"emit": [1]}, TypeError, "expected a back end, but 1 has no member 'name' of type str"),
+        ({"emit": "umll"}, sysmlc.BackendError, "did you mean 'uml'?"),
+        ({"passes": ["ports"]}, TypeError, "expected a pass, but 'ports' has no member 'name'"),
+        ({"rules": ["untyped-port"]}, TypeError, "'rules' must be Mapping, not list"),
+        ({"rules": {"untyped-prt": "off"}}, sysmlc.ConfigError, "did you mean 'untyped-port'?"),
+        ({"rules": {"untyped-port": "of"}}, sysmlc.ConfigError, "did you mean 'off'?"),
+        (
+            {"config": sysmlc.Config(rules={"untyped-prt": None})},
+            sysmlc.ConfigError,
+            "did you mean 'untyped-port'?",
+        ),
+    ],
+)
+def test_a_wrong_option_is_refused_with_what_is_expected(options, error, message):
+    with pytest.raises(error, match=re.escape(message)):
+        sysmlc.compile_texts({"a.sysml": "package A;"}, **options)
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "message"),
+    [
+        (lambda: sysmlc.compile_texts([1]), TypeError, "'texts' must be Mapping, not list"),
+        (lambda: sysmlc.compile_texts({"a": 1}), TypeError, "the text of 'a' must be str or bytes"),
+        (lambda: sysmlc.compile_model(3), TypeError, "'paths' must be Request or str or PathLike"),
+        (lambda: sysmlc.format_findings([], "jsn"), ValueError, "did you mean 'json'?"),
+        (lambda: sysmlc.check_contracts({}), TypeError, "must be Compilation, not dict"),
+        (lambda: sysmlc.synthesise(None), TypeError, "'contract' must be Contract, not None"),
+        (lambda: sysmlc.read_contracts("", sysmlc.Sink(), "sptt"), ValueError, "no format 'sptt'"),
+        (lambda: sysmlc.diff("a", "b", ignor="id"), TypeError, "did you mean 'ignore'?"),
+    ],
+)
+def test_a_wrong_argument_is_refused_with_what_is_expected(call, error, message):
+    with pytest.raises(error, match=re.escape(message)):
+        call()
+
+
+def test_rules_are_values_and_paths_name_texts():
+    untyped = sysmlc.Rule("ACME9", "untyped", sysmlc.Severity.ERROR, "'{port}' has no type")
+
+    class PortTypes:
+        name, after = "port-types", ("classify",)
+
+        def run(self, graph, sink):
+            for port in graph.of_kind(sysmlc.Kind.PORT):
+                sink.report(untyped, graph.subject(port), port=port.name)
+
+    texts = {Path("gate.sysml"): "package Plant { part def Gate { port inlet; } }"}
+    for severity, expected in ((None, []), ("info", ["info"]), ("error", ["error"])):
+        compilation = sysmlc.compile_texts(texts, passes=[PortTypes()], rules={untyped: severity})
+        findings = sysmlc.list_findings(compilation)
+        chosen = [f for f in findings if f.diagnostic.rule is untyped]
+        assert [finding.diagnostic.severity for finding in chosen] == expected
+        for form in ("json", "sarif"):
+            assert ("ACME9" in sysmlc.format_findings(chosen, form)) is bool(expected)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "rule", "end"),
+    [
+        ("a.sysml", "package P { part a : Lost; }", "unresolved-name", (1, 26)),
+        ("a.sysml", "package P { part a : 'L b'; }", "unresolved-name", (1, 27)),
+        ("a.sysml", "package P {\n  part é : Lost::B;\n}", "unresolved-name", (2, 16)),
+    ],
+)
+def test_findings_end_behind_the_word_at_which_they_start(name, text, rule, end):
+    findings = sysmlc.list_findings(sysmlc.compile_texts({name: text}))
+    ends = [(f.end_line, f.end_column) for f in findings if rule in f.diagnostic.rule.name]
+    assert ends[:1] == [end]
+
+
+def test_a_finding_about_an_xml_element_ends_behind_its_start_tag():
+    (uml,) = sysmlc.compile_texts({"lamp.sysml": LAMP}, emit="uml").artefacts
+    broken = uml.text.replace("<packagedElement", "<packagedElement\n lost='>'", 1)
+    findings = sysmlc.list_findings(sysmlc.compile_texts({"lamp.uml": broken}))
+    assert findings
+    for finding in findings:
+        line = broken.splitlines()[finding.end_line - 1]
+        assert line[finding.end_column - 2] == ">"
+
+
+def test_an_unrealizable_contract_is_explained():
+    sink = sysmlc.Sink()
+    text = "G (lit <-> X wanted)\n.inputs wanted\n.outputs lit\n"
+    (contract,) = sysmlc.read_contracts(text, sink, name="Lamp")
+    synthesis = sysmlc.synthesise(contract)
+    assert synthesis.machine is None
+    (diagnostic,) = synthesis.diagnostics
+    assert diagnostic.message == "no system can satisfy the contract of 'Lamp'"
+    with pytest.raises(ValueError, match="no format 'spectra' is written"):
+        sysmlc.write_contract(contract, "spectra")
+    verdict = sysmlc.accept_run(contract, '[{"wanted": true, "lit": false}]', sink)
+    assert verdict.text() == "Lamp: 1 step, no check is broken"
+    assert sysmlc.accept_run(contract, "wanted;lit\n1;2", sink) is None
 
 
 def test_a_request_can_be_compiled(tmp_path):

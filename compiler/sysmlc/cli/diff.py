@@ -58,6 +58,7 @@ def command(
     from sysmlc.cli import reports, session
     from sysmlc.ir import Graph
     from sysmlc.ir.compare import compare
+    from sysmlc.ir.compare.content import check_ignored
 
     settings = session.Settings(**setting_values)
     sides = [_read(path, settings) for path in (old, new)]
@@ -69,7 +70,10 @@ def command(
             settings,
         )
         ctx.exit(2)
-    _check_ignored(ignore, compilations)
+    try:
+        check_ignored(ignore, [compilation.graph for compilation in compilations])
+    except ValueError as problem:
+        raise click.BadParameter(str(problem), param_hint="'--ignore'") from problem
     changes: list[Change] = []
     for pair in _pair_units(*sides):
         _refine(pair)
@@ -109,19 +113,6 @@ def _is_unread(compilation: "Compilation") -> bool:
     return not compilation.is_complete and not (
         compilation.inputs and all(i.path in read for i in compilation.inputs)
     )
-
-
-def _check_ignored(ignore: tuple[str, ...], compilations: "list[Compilation]") -> None:
-    """Raise BadParameter for a word that names nothing in the models: it is probably misspelt."""
-    from sysmlc.ir.compare.content import ignorable_words
-    from sysmlc.support.suggestions import did_you_mean
-
-    words = ignorable_words(compilation.graph for compilation in compilations) if ignore else ()
-    for word in ignore:
-        if word not in words:
-            hint = did_you_mean(word, words)
-            advice = hint if hint.startswith("did") else "these models have no such attribute"
-            raise click.BadParameter(f"'{word}': {advice}", param_hint="'--ignore'")
 
 
 def _refine(compilations: "Sequence[Compilation | None]") -> None:

@@ -1,7 +1,7 @@
 """Compile the units of a command: options, configuration, cache, requests."""
 
 import sys
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
@@ -113,11 +113,13 @@ def load_config(models: Sequence[Path], settings: Settings) -> "Config":
 
 def _check_rule_names(names: Sequence[str]) -> None:
     """Exit with code 2 unless each name is a name, a code or the start of a code (``SM4``)."""
+    from sysmlc.driver.registry import describe_unknown_rule
+
     # The catalogue imports every module that defines rules, so it is loaded only if needed.
     rules = load_rules().values() if names else ()
     for name in names:
         if not any(name == rule.name or rule.code.startswith(name) for rule in rules):
-            fail(_describe_unknown_rule(name, rules))
+            fail(describe_unknown_rule(name, rules))
 
 
 def _check_rule_names_in_config(
@@ -128,21 +130,14 @@ def _check_rule_names_in_config(
     The keys of *names* are the paths of the names in the configuration.
     """
     from sysmlc.config import locate_key
+    from sysmlc.driver.registry import describe_unknown_rule
 
     rules = load_rules().values() if names else ()
     rule_names = {rule.code for rule in rules} | {rule.name for rule in rules}
     for path, name in names.items():
         if name not in rule_names and config.file is not None:
             where = locate_key(config.file, path)
-            fail(f"{where}: {_describe_unknown_rule(name, rules)}")
-
-
-def _describe_unknown_rule(name: str, rules: "Collection[Rule]") -> str:
-    from sysmlc.support.suggestions import find_similar
-
-    similar = find_similar(name, [rule.name for rule in rules])
-    advice = f"did you mean '{similar}'?" if similar else "'sysmlc explain' lists the rules"
-    return f"unknown rule '{name}'; {advice}"
+            fail(f"{where}: {describe_unknown_rule(name, rules)}")
 
 
 def _find_start(models: Sequence[Path]) -> Path:

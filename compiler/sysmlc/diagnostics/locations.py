@@ -159,6 +159,10 @@ def _quote(text: str) -> str:
 
 _EXCERPT = 200
 """Characters of a long line that an excerpt has on each side of the column."""
+_TOKEN = re.compile(r"""<(?:"[^"]*"|'[^']*'|[^<>"'])*>|'(?:[^'\\\r\n]|\\.)*'|\w+|[^\w\s]""")
+"""A start tag of XML, or a name, a number or one other character of a text."""
+_MAX_TAG = 10_000
+"""Characters of a start tag; without a limit, a file with many faults would be read often."""
 _NEWLINE = re.compile("\r\n|\r|\n")
 _START_TAG = re.compile(rb"<[^/]")
 _LIKE_ASCII = frozenset({"utf-8", "ascii", "latin-1", "iso8859-1", "cp1252"})
@@ -167,6 +171,9 @@ _LIKE_ASCII = frozenset({"utf-8", "ascii", "latin-1", "iso8859-1", "cp1252"})
 
 class Location(Struct, frozen=True):
     """Line and column, counted in characters from 1, and the ``text`` of the line.
+
+    ``end_line`` and ``end_column`` are those of the character behind the start tag, or behind the
+    word of a text, that stands at the location.
 
     The ``text`` of a long line is an excerpt around the column, and ``shift`` is the number of
     characters before it, because a file of one line can have many diagnostics. ``xpath`` leads to
@@ -179,6 +186,8 @@ class Location(Struct, frozen=True):
     text: str
     xpath: str = ""
     shift: int = 0
+    end_line: int = 0
+    end_column: int = 0
 
 
 def locate(
@@ -361,7 +370,12 @@ class _SourceText:
         start, end = self._find_line(line)
         shift = max(column - 1 - _EXCERPT, 0) if end - start > 2 * _EXCERPT else 0
         text = self._text[start + shift : min(start + shift + 2 * _EXCERPT, end)].rstrip("\r\n")
-        return Location(line, column, text, xpath, shift)
+        stop = start + column - 1
+        token = _TOKEN.match(self._text, stop, stop + _MAX_TAG)
+        stop = token.end() if token else stop
+        end_line = bisect_right(self._line_starts, stop)
+        end_column = stop - self._line_starts[end_line - 1] + 1
+        return Location(line, column, text, xpath, shift, end_line, end_column)
 
     def _decode(self, data: bytes) -> str:
         return data.decode(self._codec, "replace")

@@ -28,7 +28,7 @@ from sysmlc.diagnostics import Rule, catalogue
 from sysmlc.frontends.base import Frontend, LibraryFrontend
 from sysmlc.passes import pipeline
 from sysmlc.passes.pipeline import Pass
-from sysmlc.support.suggestions import did_you_mean
+from sysmlc.support.suggestions import did_you_mean, find_similar
 
 FRONTEND_GROUP = "sysmlc.frontends"
 """Entry point group of front ends; an entry names an object with the protocol ``Frontend``."""
@@ -197,21 +197,33 @@ def _load_plug_in(entry: EntryPoint, kind: str) -> object:
         place = _find_fault(problem, entry.module)
         text = f"{kind} '{entry.name}' cannot be loaded: {type(problem).__name__}: {problem}"
         raise PlugInError(f"{text} ({source}{place})") from problem
-    methods, members = _INTERFACES[kind]
-    if isinstance(plug_in, type):
-        raise PlugInError(f"{kind} '{entry.name}' is a class: name an instance of it ({source})")
-    for member, type_ in members.items():
-        if not isinstance(getattr(plug_in, member, None), type_):
-            needed = f"'{member}' of type {type_.__name__}"
-            raise PlugInError(f"{kind} '{entry.name}' has no member {needed} ({source})")
-    for method in methods:
-        if not callable(getattr(plug_in, method, None)):
-            raise PlugInError(f"{kind} '{entry.name}' has no method '{method}' ({source})")
+    fault = _find_interface_fault(plug_in, kind)
+    if fault:
+        raise PlugInError(f"{kind} '{entry.name}' {fault} ({source})")
     name = cast("Any", plug_in).name
     if name != entry.name:
         advice = f"the names of the {kind} and of its entry point must be equal"
         raise PlugInError(f"{kind} '{entry.name}' is called '{name}': {advice} ({source})")
     return cast("object", plug_in)
+
+
+def check_interfaces(steps: Iterable[object], kind: str) -> None:
+    """Raise TypeError for an object that is none of a *kind*, such as "back end"."""
+    for step in steps:
+        fault = _find_interface_fault(step, kind)
+        if fault:
+            raise TypeError(f"expected a {kind}, but {step!r} {fault}")
+
+
+def _find_interface_fault(step: object, kind: str) -> str:
+    methods, members = _INTERFACES[kind]
+    if isinstance(step, type):
+        return "is a class: name an instance of it"
+    for member, type_ in members.items():
+        if not isinstance(getattr(step, member, None), type_):
+            return f"has no member '{member}' of type {type_.__name__}"
+    missing = [method for method in methods if not callable(getattr(step, method, None))]
+    return f"has no method '{missing[0]}'" if missing else ""
 
 
 def describe_source(step: object, problem: Exception) -> str:
@@ -346,6 +358,22 @@ def load_full_catalogue(note: Callable[[str], None] = lambda _: None) -> dict[st
         taken = _BACKENDS if group == BACKEND_GROUP else (*pipeline.NAMES, *analysis.NAMES)
         list(_load_usable(_find_foreign(group, taken, warn), kind, warn))
     return catalogue()
+
+
+def check_rule_names(names: Iterable[str]) -> None:
+    """Raise ConfigError for a name that is neither the name nor the code of a rule."""
+    # The full catalogue imports every module that defines rules.
+    for rules in (catalogue, load_full_catalogue) if (names := set(names)) else ():
+        names -= {name for rule in rules().values() for name in (rule.code, rule.name)}
+    for name in sorted(names):
+        raise ConfigError(describe_unknown_rule(name, catalogue().values()))
+
+
+def describe_unknown_rule(name: str, rules: Iterable[Rule]) -> str:
+    """Return the message about a name that no rule has."""
+    similar = find_similar(name, [rule.name for rule in rules])
+    advice = f"did you mean '{similar}'?" if similar else "'sysmlc explain' lists the rules"
+    return f"unknown rule '{name}'; {advice}"
 
 
 def _load(name: str, foreign: Mapping[str, EntryPoint]) -> Backend:

@@ -13,7 +13,7 @@ from sysmlc.sources import Source
 
 
 class Finding(Struct, frozen=True):
-    """A diagnostic with its location; line and column count characters from 1, 0 is unknown."""
+    """A diagnostic with its location; lines and columns count characters from 1, 0 is unknown."""
 
     diagnostic: Diagnostic
     file: str = ""
@@ -25,6 +25,9 @@ class Finding(Struct, frozen=True):
     """XPath of the element, or of the innermost element that is open at the location."""
     shift: int = 0
     """Number of characters of the line before the excerpt."""
+    end_line: int = 0
+    end_column: int = 0
+    """Column behind the start tag or the word that stands at the location."""
 
     @property
     def where(self) -> str:
@@ -161,4 +164,6 @@ def _make_finding(
         location.text,
         location.xpath,
         location.shift,
+        location.end_line,
+        location.end_column,
     )

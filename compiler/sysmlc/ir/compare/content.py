@@ -3,12 +3,13 @@
 The others describe files, tools and the work of passes; the comparison ignores them.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from sysmlc.ir.element import Element
 from sysmlc.ir.graph import Graph
 from sysmlc.ir.kinds import Edge, Kind
 from sysmlc.ir.query import BEHAVIORS, CLASSIFIERS
+from sysmlc.support.suggestions import did_you_mean
 
 DETAILS = frozenset(
     {
@@ -185,6 +186,16 @@ _FACT_KEYS = frozenset(
 """``id``, and keys of facts that not every model has as attributes."""
 _NEVER_COMPARED = frozenset({"source", "trace"})
 """Accepted because ``--ignore id,source,trace`` is a usual combination."""
+
+
+def check_ignored(ignore: Iterable[str], graphs: Sequence[Graph]) -> None:
+    """Raise ValueError for a word that names nothing in the models: it is probably misspelt."""
+    words = ignorable_words(graphs) if ignore else ()
+    for word in ignore:
+        if word not in words:
+            hint = did_you_mean(word, words)
+            advice = hint if hint.startswith("did") else "these models have no such attribute"
+            raise ValueError(f"'{word}': {advice}")
 
 
 def ignorable_words(graphs: Iterable[Graph]) -> frozenset[str]:

@@ -7,6 +7,7 @@ several formats.
 """
 
 import re
+from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import Protocol, cast
@@ -19,6 +20,7 @@ from sysmlc.logic.contract import Contract
 from sysmlc.logic.formats import rules
 from sysmlc.logic.formats.draft import SpecificationFile
 from sysmlc.logic.formats.writing import NotExpressibleError
+from sysmlc.support.suggestions import did_you_mean
 
 __all__ = ["FORMATS", "Format", "NotExpressibleError", "detect_format", "lower", "read", "write"]
 
@@ -94,8 +96,7 @@ def read(
     if not name:
         file.report(rules.UNKNOWN_FORM, 0, file=path, forms=", ".join(FORMATS))
         return ()
-    if name not in FORMATS or not FORMATS[name].is_read:
-        raise ValueError(f"form {name!r} is not read")
+    _check_name(name, "read", [name for name, format_ in FORMATS.items() if format_.is_read])
     return _load_module(name).read(file)
 
 
@@ -105,9 +106,14 @@ def write(contract: Contract, format_name: str) -> str:
     Raises NotExpressibleError if the format cannot express it, and ValueError for a format that is
     unknown or not writable.
     """
-    if format_name not in FORMATS or not FORMATS[format_name].is_written:
-        raise ValueError(f"form {format_name!r} is not written")
+    written = [name for name, format_ in FORMATS.items() if format_.is_written]
+    _check_name(format_name, "written", written)
     return _load_module(format_name).write(contract, format_name)
+
+
+def _check_name(name: str, participle: str, known: Sequence[str]) -> None:
+    if name not in known:
+        raise ValueError(f"no format '{name}' is {participle}; {did_you_mean(name, known)}")
 
 
 def lower(contract: Contract, format_name: str) -> Contract:
