@@ -1,309 +1,268 @@
-"""The JSON form of a recipe model: absent members are omitted, lists keep the model's order."""
+"""The JSON form of a recipe model (metamodels/sysmlc-recipe.schema.json).
 
+A part of the model becomes an object of its fields, in camel case. Members without a value are
+omitted, lists keep the order of the model, and ``trace`` leads to the element of the part.
+"""
+
+import re
 from collections.abc import Callable, Iterable, Mapping
-from typing import TypeVar
+from typing import Any
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from sysmlc.backends.base import InputFile
-from sysmlc.backends.recipe.flow_graphs import (
-    describe_expression,
-    describe_flow_graph,
-    describe_parameters,
-    describe_trace,
-    describe_type,
+from sysmlc.ir.expressions import (
+    Binary,
+    Call,
+    Expression,
+    Index,
+    Literal,
+    Name,
+    Unary,
+    print_expression,
 )
 from sysmlc.recipe.check_tasks import is_complete
+from sysmlc.recipe.expression import Opaque, operands
 from sysmlc.recipe.model import (
     Condition,
     Derived,
-    EndTime,
-    Function,
-    Machine,
+    EnumType,
+    FlowEdge,
+    FlowGraph,
+    ListType,
     MachineVariable,
-    Material,
-    MaterialUse,
-    Mode,
     Model,
+    Node,
     OpcUa,
-    Performance,
-    Provider,
-    Range,
+    Parameter,
     Recipe,
+    ReferenceType,
     Service,
     Task,
-    TimeLimit,
 )
 from sysmlc.recipe.recipe_times import decide_limit
 
-Json = dict[str, object]
-_T = TypeVar("_T")
+Json = dict[str, Any]
 
 
 def describe_model(model: Model, inputs: Iterable[InputFile]) -> Json:
     """Return the recipe with everything that it refers to (``sysmlc-recipe/1``)."""
     return {
         "format": "sysmlc-recipe/1",
-        "source": _describe_each(_describe_input, sorted(inputs, key=lambda file: file.path)),
-        "machines": _describe_each(_describe_machine, model.machines),
-        "materials": _describe_each(_describe_material, model.materials),
-        "recipes": [_describe_recipe(model.recipe)],
-        "services": _describe_each(_describe_service, model.services),
-        "functions": _describe_each(_describe_function, model.functions),
-        "serviceGraphs": _describe_each(describe_flow_graph, model.service_graphs),
-        "functionGraphs": _describe_each(describe_flow_graph, model.function_graphs),
+        "source": [
+            {"file": file.path, "sha256": file.sha256, "language": file.language}
+            for file in sorted(inputs, key=lambda file: file.path)
+        ],
+        "machines": _describe(model.machines),
+        "materials": _describe(model.materials),
+        "recipes": [_describe(model.recipe)],
+        "services": _describe(model.services),
+        "functions": _describe(model.functions),
+        "serviceGraphs": _describe(model.service_graphs),
+        "functionGraphs": _describe(model.function_graphs),
     }
 
 
-def _describe_each(describe: Callable[[_T], Json], values: Iterable[_T]) -> list[Json]:
-    return [describe(value) for value in values]
+_NAMES = {
+    "machine_class": "class",
+    "priority": "defaultPriority",
+    "performances": "performedBy",
+    "limits": "timeLimits",
+    "is_else": "else",
+    "is_early": "early",
+    "least": "min",
+    "most": "max",
+    "source": "from",
+    "target": "to",
+}
+"""Members with another name than their field in camel case."""
+_PAIRS = frozenset(["bind", "assign", "arguments", "steps", "properties", "property_units"])
+"""Fields with pairs of a name and a value, which become objects."""
+_HIDDEN = frozenset(["element", "text"])
+_REQUIRED: Mapping[type[Struct], frozenset[str]] = {
+    Recipe: frozenset(["precedence"]),
+    Task: frozenset(["equipment"]),
+    FlowGraph: frozenset(["nodes", "edges"]),
+}
+"""Fields that are written without a value, too, because the schema requires them."""
+_LAST: Mapping[type[Struct], tuple[str, ...]] = {
+    Recipe: ("tasks", "precedence", "performedBy", "timeLimits", "derived"),
+    Task: ("timeLimits", "derived", "equipment"),
+    Service: ("providers",),
+    MachineVariable: ("node", "elements"),
+    OpcUa: ("object", "method", "namespaceUri", "doneWhen", "timeout"),
+    FlowEdge: ("role", "item"),
+}
+"""Members that come after those of the other fields."""
 
 
-def _drop_absent(members: Mapping[str, object]) -> Json:
-    """Return the members without None, false, empty texts, empty lists and empty objects."""
-    return {
-        key: value
-        for key, value in members.items()
-        if value is not None and value is not False and value not in ("", [], {})
-    }
+def _describe(value: object) -> object:
+    """Return the JSON form of a part of a model, of a list of parts, or of a plain value."""
+    if isinstance(value, Expression):
+        return describe_expression(value)
+    if isinstance(value, tuple):
+        return [_describe(item) for item in value]
+    if isinstance(value, Struct):
+        return _FORMS.get(type(value), _describe_fields)(value)
+    return value
 
 
-def _describe_input(file: InputFile) -> Json:
-    return {"file": file.path, "sha256": file.sha256, "language": file.language}
+def _describe_fields(part: Struct, **described: object) -> Json:
+    """Return the members for the fields of a part; *described* are members already."""
+    fields, defaults = part.__struct_fields__, part.__struct_defaults__
+    default_of = dict(zip(fields[len(fields) - len(defaults) :], defaults, strict=True))
+    members: Json = {}
+    for field in fields:
+        value = getattr(part, field)
+        is_default = field in default_of and value == default_of[field]
+        if field in _HIDDEN or (is_default and field not in _REQUIRED.get(type(part), ())):
+            continue
+        is_object = field in _PAIRS
+        content = {a: _describe(b) for a, b in value} if is_object else _describe(value)
+        if value is None or content not in (None, {}):
+            name = re.sub("_(.)", lambda match: match[1].upper(), field)
+            members[_NAMES.get(field, name)] = content
+    members |= described
+    for name in _LAST.get(type(part), ()):
+        if name in members:
+            members[name] = members.pop(name)
+    element = getattr(part, "element", "") if type(part) not in (FlowEdge, OpcUa) else ""
+    return {**members, **({"trace": {"element": element}} if element else {})}
 
 
-def _describe_range(value: Range | None) -> Json | None:
-    return None if value is None else {"min": value.min, "max": value.max}
-
-
-# -- level 1: recipes and tasks ----------------------------------------------------------------
-
-
-def _describe_recipe(recipe: Recipe) -> Json:
-    head = {
-        "id": recipe.id,
-        "inputs": describe_parameters(recipe.inputs),
-        "outputs": describe_parameters(recipe.outputs),
-        "variables": describe_parameters(recipe.variables),
-        "version": recipe.version,
-        "product": recipe.product,
-        "defaultPriority": recipe.priority,
-        "noWait": recipe.no_wait,
-    }
-    performances = _describe_each(_describe_performance, recipe.performances)
-    return {
-        **_drop_absent(head),
-        "tasks": _describe_each(_describe_task, recipe.tasks),
-        "precedence": [list(pair) for pair in recipe.precedence],
-        **_drop_absent(
-            {
-                "performedBy": performances,
-                "timeLimits": _describe_limits(recipe.limits, recipe.derived),
-                "derived": None if recipe.derived is None else _describe_derived(recipe.derived),
-            }
-        ),
-        **describe_trace(recipe.element),
-    }
-
-
-def _describe_performance(performance: Performance) -> Json:
-    members = {"arguments": dict(performance.arguments), "steps": dict(performance.steps)}
-    return {
-        "block": performance.block,
-        **_drop_absent(members),
-        **describe_trace(performance.element),
-    }
-
-
-def _describe_task(task: Task) -> Json:
-    members = {
-        "id": task.id,
-        "name": task.name,
-        "maxDuration": task.max_duration,
-        "materials": _describe_each(_describe_use, task.materials),
-        "implementation": task.implementation,
-        "pre": describe_expression(task.pre),
-        "post": describe_expression(task.post),
-        "bind": {name: describe_expression(value) for name, value in task.bind},
-        "assign": dict(task.assign),
-        "interruptible": task.interruptible,
-        "noWait": task.no_wait,
-        "timeLimits": _describe_limits(task.limits, task.derived),
-        "derived": None if task.derived is None else _describe_derived(task.derived),
-    }
-    # The schema requires this member, even if it is empty.
-    modes = {"equipment": _describe_each(_describe_mode, task.equipment)}
-    return {**_drop_absent(members), **modes, **describe_trace(task.element)}
-
-
-def _describe_limits(limits: Iterable[TimeLimit], derived: Derived | None) -> list[Json]:
-    return [
-        {
-            "requirement": limit.requirement,
-            **_drop_absent({"min": limit.least, "max": limit.most}),
-            "verdict": decide_limit(limit, derived),
-            **describe_trace(limit.element),
-        }
-        for limit in limits
+def _describe_owner(owner: Recipe | Task) -> Json:
+    """Describe a recipe or a task, with verdicts on the times that requirements allow."""
+    limits = [
+        _describe_fields(limit, verdict=decide_limit(limit, owner.derived))
+        for limit in owner.limits
     ]
+    return _describe_fields(owner, **({"timeLimits": limits} if limits else {}))
 
 
 def _describe_derived(derived: Derived) -> Json:
-    sub_tasks: list[Json] = [
-        {
-            "node": sub_task.node,
-            "alternatives": _describe_each(_describe_mode, sub_task.alternatives),
-            **_drop_absent(
-                {
-                    "after": list(sub_task.after),
-                    "runs": _describe_range(sub_task.runs),
-                    "when": _describe_each(_describe_condition, sub_task.when),
-                }
-            ),
-        }
-        for sub_task in derived.sub_tasks
-    ]
-    groups = [
-        {"nodes": list(group.nodes), "because": list(group.because)}
-        for group in derived.same_machine
-    ]
-    duration = _describe_range(derived.duration)
-    if duration is not None:
-        duration |= _drop_absent({"expected": derived.expected, "because": derived.because})
-    ends = _describe_each(_describe_end, derived.ends)
-    members = {
-        "subTasks": sub_tasks,
-        "sameMachine": groups,
-        "duration": duration,
-        "ends": ends,
-    }
-    return _drop_absent(members)
-
-
-def _describe_condition(condition: Condition) -> Json:
-    guard = describe_expression(condition.guard, condition.text)
-    members = {"decision": condition.decision, "guard": guard, "else": condition.is_else}
-    return _drop_absent(members)
-
-
-def _describe_end(end: EndTime) -> Json:
-    duration = _describe_range(end.duration)
-    return {"node": end.node, "duration": duration, **_drop_absent({"early": end.is_early})}
-
-
-def _describe_mode(mode: Mode) -> Json:
-    members = {
-        "machines": list(mode.machines),
-        "duration": mode.duration,
-        "power": _describe_range(mode.power),
-        "tools": list(mode.tools),
-    }
-    return {**_drop_absent(members), **_describe_availability(mode)}
-
-
-def _describe_availability(mode: Mode | Provider) -> Json:
-    """Return the member that states whether machines are available; false is not omitted."""
-    return {} if mode.available is None else {"available": mode.available}
-
-
-def _describe_use(use: MaterialUse) -> Json:
-    return {"material": use.material, "quantity": use.quantity, "use": use.use}
-
-
-# -- machines and materials --------------------------------------------------------------------
-
-
-def _describe_machine(machine: Machine) -> Json:
-    members = {
-        "id": machine.id,
-        "class": machine.machine_class,
-        "amlId": machine.aml_id,
-        "endpoint": machine.endpoint,
-        "plantElement": machine.plant_element,
-        "variables": _describe_each(_describe_machine_variable, machine.variables),
-    }
-    return {**_drop_absent(members), **describe_trace(machine.element)}
-
-
-def _describe_machine_variable(variable: MachineVariable) -> Json:
-    type_ = {} if variable.type is None else {"type": describe_type(variable.type)}
-    value = {} if variable.value is None else {"value": variable.value}
-    members = {"unit": variable.unit, "node": variable.node, "elements": list(variable.elements)}
-    return {"name": variable.name, **type_, **value, **_drop_absent(members)}
-
-
-def _describe_material(material: Material) -> Json:
-    members = {
-        "id": material.id,
-        "available": material.available,
-        "unit": material.unit,
-        "position": material.position,
-        "buffer": material.buffer,
-        "noWait": material.no_wait,
-        "properties": dict(material.properties),
-        "propertyUnits": dict(material.property_units),
-    }
-    return {**_drop_absent(members), **describe_trace(material.element)}
-
-
-# -- levels 2 and 3: services and functions ----------------------------------------------------
+    members = _describe_fields(derived)
+    details = {key: members.pop(key) for key in ("expected", "because") if key in members}
+    if derived.duration is not None:
+        members["duration"] |= details
+    return members
 
 
 def _describe_service(service: Service) -> Json:
-    members = {
-        "id": service.id,
-        "kind": service.kind,
-        "inputs": describe_parameters(service.inputs),
-        "outputs": describe_parameters(service.outputs),
-        "constants": describe_parameters(service.constants),
-        "materials": _describe_each(_describe_use, service.materials),
-        "duration": service.duration,
-        "implementation": service.implementation,
-        "pre": describe_expression(service.pre),
-        "post": describe_expression(service.post),
-        "interruptible": service.interruptible,
-        "opcua": _describe_opcua(service.opcua),
-    }
-    providers: Json = {}
-    if service.kind == "machine" or service.providers:
-        providers["providers"] = _describe_each(_describe_provider, service.providers)
-    return {**_drop_absent(members), **providers, **describe_trace(service.element)}
-
-
-def _describe_provider(provider: Provider) -> Json:
-    members = {
-        "machine": provider.machine,
-        "duration": provider.duration,
-        "power": _describe_range(provider.power),
-        "tools": list(provider.tools),
-        "opcua": _describe_opcua(provider.opcua),
-    }
-    return {**_drop_absent(members), **_describe_availability(provider)}
-
-
-def _describe_opcua(call: OpcUa | None) -> Json | None:
-    """Describe an OPC UA call; None if it is none or not complete (SM612)."""
-    if call is None or not is_complete(call):
-        return None
-    return _drop_absent(
-        {
-            "kind": call.kind,
-            "endpoint": call.endpoint,
-            "object": call.object,
-            "method": call.method,
-            "namespaceUri": call.namespace_uri,
-            "doneWhen": describe_expression(call.done_when),
-            "timeout": call.timeout,
-        }
+    required = service.kind == "machine" or service.providers
+    return _describe_fields(
+        service, **({"providers": _describe(service.providers)} if required else {})
     )
 
 
-def _describe_function(function: Function) -> Json:
-    members = {
-        "id": function.id,
-        "inputs": describe_parameters(function.inputs),
-        "outputs": describe_parameters(function.outputs),
-        "duration": _describe_range(function.duration),
-        "resources": [{"id": r.id, "mode": r.mode} for r in function.resources],
-        "interruptible": function.interruptible,
-        "opcua": _describe_opcua(function.opcua),
+def _describe_opcua(call: OpcUa) -> Json | None:
+    """Describe an OPC UA call; None if it is not complete (SM612)."""
+    return _describe_fields(call) if is_complete(call) else None
+
+
+def _describe_type(type_: EnumType | ReferenceType | ListType) -> Json:
+    match type_:
+        case EnumType(name, literals, values):
+            numbers = {"values": list(values)} if values else {}
+            return {"enumeration": name, "literals": list(literals), **numbers}
+        case ReferenceType(target, name):
+            return {target: name}
+        case ListType(item):
+            return {"list": _describe(item)}
+
+
+# -- graphs ------------------------------------------------------------------------------------
+
+
+def _describe_graph(graph: FlowGraph) -> Json:
+    nodes = {node.id: _describe_node(node, graph) for node in graph.nodes}
+    return _describe_fields(graph, nodes=list(nodes.values()))
+
+
+def _describe_guarded(part: Condition | FlowEdge) -> Json:
+    guard = describe_expression(part.guard, part.text)
+    return _describe_fields(part, **({"guard": guard} if guard else {}))
+
+
+def _describe_node(node: Node, graph: FlowGraph) -> Json:
+    trace = {"trace": {"element": node.element}} if node.element else {}
+    return {"id": node.id, "kind": node.kind, **_describe_step(node, graph), **trace}
+
+
+def _describe_step(  # noqa: PLR0911 - one for each kind
+    node: Node, graph: FlowGraph
+) -> Json:
+    """Return the members of a node that depend on its kind; control nodes have none."""
+    expression = describe_expression(node.expression, node.text if node.kind == "delay" else "")
+    data = {
+        "bind": {name: describe_expression(value) for name, value in node.bind},
+        "assign": dict(node.assign),
     }
-    return {**_drop_absent(members), **describe_trace(function.element)}
+    data = {key: value for key, value in data.items() if value}
+    most = {} if node.max_iterations is None else {"maxIterations": node.max_iterations}
+    match node.kind:
+        case "service" | "function" | "call":
+            return {"ref": node.ref, **data}
+        case "action":
+            return {"text": node.text, **data}
+        case "wait":
+            return {**({"until": expression} if expression else {}), "text": node.text, **data}
+        case "assign":
+            variable = graph.parameters.get(node.variable, Parameter(node.variable))
+            return {"variable": _describe(replace(variable, value=None)), "value": expression}
+        case "delay":
+            return {"time": expression}
+        case "loop":
+            return {"while": expression, **(most or {"unbounded": True})}
+        case "forEach":
+            variables = {variable.name: variable for variable in graph.variables}
+            variable = variables.get(node.variable, Parameter(node.variable))
+            least = {"minIterations": node.min_iterations} if node.min_iterations else {}
+            return {"variable": _describe(variable), "in": expression, **least, **most}
+        case _:
+            return {}
+
+
+# -- expressions -------------------------------------------------------------------------------
+
+
+def describe_expression(expression: Expression | None, source_text: str = "") -> Json | None:
+    """Return an expression as a tree, with its source text at the root if there is one."""
+    if expression is None:
+        return None
+    has_text = bool(source_text) and not isinstance(expression, Opaque)
+    return {**_describe_tree(expression), **({"text": source_text} if has_text else {})}
+
+
+def _describe_tree(expression: Expression) -> Json:  # noqa: PLR0911 - one for each kind
+    match expression:
+        case Literal(literal):
+            return {"lit": literal}
+        case Opaque((text,)):
+            return {"text": text}
+        case Name((name,)):
+            return {"var": name}
+        case Unary(op, _) | Binary(op, _, _):
+            return {"op": op, "args": [_describe_tree(operand) for operand in operands(expression)]}
+        case Index(base, index):
+            return {"index": [_describe_tree(base), _describe_tree(index)]}
+        case Call(Name((function,)), args):
+            return {"call": function, "args": [_describe_tree(arg) for arg in args]}
+        case _:
+            return {"text": print_expression(expression)}
+
+
+_FORMS: Mapping[type[Struct], Callable[[Any], Any]] = {
+    Recipe: _describe_owner,
+    Task: _describe_owner,
+    Derived: _describe_derived,
+    Service: _describe_service,
+    OpcUa: _describe_opcua,
+    EnumType: _describe_type,
+    ReferenceType: _describe_type,
+    ListType: _describe_type,
+    FlowGraph: _describe_graph,
+    Condition: _describe_guarded,
+    FlowEdge: _describe_guarded,
+}
+"""The parts that differ from their fields."""
