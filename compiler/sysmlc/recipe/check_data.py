@@ -7,9 +7,8 @@ from sysmlc.ir.algorithms import sort_topologically
 from sysmlc.ir.expressions import Expression, last_name
 from sysmlc.recipe.expression import (
     ANOTHER_TEXT,
-    UndecidedError,
+    evaluate,
     is_condition,
-    is_satisfied,
     iter_opaque_texts,
     iter_valuations,
     iter_variables,
@@ -99,14 +98,10 @@ def _iter_conflicts(
     expressions = [resolve_literals(guard, types) for _, guard in guards]
     has_overlap = has_gap = False
     for values in iter_valuations(expressions, types):
-        try:
-            satisfied = [
-                text
-                for (text, _), expression in zip(guards, expressions, strict=True)
-                if is_satisfied(expression, values)
-            ]
-        except UndecidedError:
+        truths = [evaluate(expression, values) for expression in expressions]
+        if None in truths:
             return
+        satisfied = [text for (text, _), truth in zip(guards, truths, strict=True) if truth]
         if len(satisfied) > 1 and not has_overlap:
             has_overlap = True
             first, second, *_ = satisfied

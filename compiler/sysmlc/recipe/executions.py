@@ -12,6 +12,7 @@ from typing import NamedTuple
 from msgspec import Struct
 
 from sysmlc.recipe.costs import Cost, Measures, Transition, compute_costs, compute_expected_time
+from sysmlc.recipe.expression import evaluate
 from sysmlc.recipe.flow import (
     STEPS,
     find_loop_cycles,
@@ -20,7 +21,7 @@ from sysmlc.recipe.flow import (
     list_forward_edges,
 )
 from sysmlc.recipe.model import FlowEdge, FlowGraph, Node
-from sysmlc.recipe.valuation import CHOICES, Valuation, Variables, evaluate, merge_values, set_value
+from sysmlc.recipe.valuation import CHOICES, Valuation, Variables, merge_values, set_value
 
 _ENDS = frozenset({"final", "flowFinal"})
 _ITERATION = "#"

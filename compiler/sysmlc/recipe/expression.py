@@ -139,10 +139,6 @@ _OPERATIONS: dict[str, Callable[..., Scalar]] = {
 }
 
 
-class UndecidedError(ValueError):
-    """An expression has no value, because one of its parts has none in the valuation."""
-
-
 def is_condition(expression: Expression, types: Mapping[str, ValueType | None]) -> bool:
     """Whether the expression is Boolean; an unknown type counts as Boolean."""
     name = variable_name(expression)
@@ -171,40 +167,40 @@ def iter_valuations(
             yield dict(zip(names, values, strict=True))
 
 
-def is_satisfied(expression: Expression, values: Mapping[str, Scalar]) -> bool:
-    """Whether a condition is true. Raises UndecidedError."""
-    return bool(_evaluate(expression, values))
-
-
-def _evaluate(  # noqa: PLR0911 - one for each kind
+def evaluate(  # noqa: PLR0911 - one for each kind
     expression: Expression, values: Mapping[str, Scalar]
-) -> Scalar:
+) -> Scalar | None:
+    """Return the value of an expression, or None if the known values do not determine it."""
     name = variable_name(expression)
-    if name is not None and name in values:
-        return values[name]
+    if name is not None:
+        return values.get(name)
     match expression:
         case Literal(value):
             return value
-        case Binary("and", left, right):
-            return is_satisfied(left, values) and is_satisfied(right, values)
-        case Binary("or", left, right):
-            return is_satisfied(left, values) or is_satisfied(right, values)
         case Unary("not", operand):
-            return not is_satisfied(operand, values)
+            truth = evaluate(operand, values)
+            return None if truth is None else not truth
         case Unary("-", operand):
-            return apply_operator("-", 0, _evaluate(operand, values))
+            return _calculate("-", 0, evaluate(operand, values))
+        case Binary("and" | "or" as op, left, right):
+            truths = [evaluate(operand, values) for operand in (left, right)]
+            # One operand is enough if it is true in a disjunction, or false in a conjunction.
+            if any(truth is not None and bool(truth) is (op == "or") for truth in truths):
+                return op == "or"
+            return None if None in truths else op == "and"
         case Binary(op, left, right):
-            return apply_operator(op, _evaluate(left, values), _evaluate(right, values))
+            return _calculate(op, evaluate(left, values), evaluate(right, values))
         case _:
-            raise UndecidedError
+            return None
 
 
-def apply_operator(op: str, *values: Scalar) -> Scalar:
-    """Return the result of an arithmetic operator or a comparison. Raises UndecidedError."""
+def _calculate(op: str, left: Scalar | None, right: Scalar | None) -> Scalar | None:
+    if left is None or right is None:
+        return None
     try:
-        return _OPERATIONS[op](*values)
+        return _OPERATIONS[op](left, right)
     except (TypeError, ZeroDivisionError, KeyError):
-        raise UndecidedError from None
+        return None
 
 
 def _sample_domain(name: str, guards: list[Expression], type_: ValueType | None) -> list[Scalar]:

@@ -9,14 +9,8 @@ from itertools import product
 
 from msgspec import Struct
 
-from sysmlc.ir.expressions import Binary, Expression, Literal, Unary
-from sysmlc.recipe.expression import (
-    UndecidedError,
-    apply_operator,
-    iter_variables,
-    resolve_literals,
-    variable_name,
-)
+from sysmlc.ir.expressions import Expression, Literal
+from sysmlc.recipe.expression import evaluate, iter_variables, resolve_literals
 from sysmlc.recipe.model import EnumType, FlowEdge, FlowGraph, Node, Parameter, Scalar, ValueType
 
 Valuation = tuple[tuple[str, Scalar], ...]
@@ -53,45 +47,6 @@ def merge_values(outcomes: list[Valuation], start: Valuation) -> Valuation | Non
             else:
                 merged[name] = value
     return tuple(sorted(merged.items()))
-
-
-def evaluate(  # noqa: PLR0911 - one for each kind
-    expression: Expression, values: Mapping[str, Scalar]
-) -> Scalar | None:
-    """Return the value of an expression, or None if the known values do not determine it."""
-    name = variable_name(expression)
-    if name is not None:
-        return values.get(name)
-    match expression:
-        case Literal(value):
-            return value
-        case Unary("not", operand):
-            truth = evaluate(operand, values)
-            return None if truth is None else not truth
-        case Unary("-", operand):
-            return _calculate("-", (0, evaluate(operand, values)))
-        case Binary("and" | "or" as op, left, right):
-            return _connect(evaluate(left, values), evaluate(right, values), decisive=op == "or")
-        case Binary(op, left, right):
-            return _calculate(op, (evaluate(left, values), evaluate(right, values)))
-        case _:
-            return None
-
-
-def _connect(left: Scalar | None, right: Scalar | None, *, decisive: bool) -> bool | None:
-    """Return the value of ``and`` or ``or``; one *decisive* operand is enough."""
-    if any(operand is not None and bool(operand) is decisive for operand in (left, right)):
-        return decisive
-    return None if left is None or right is None else not decisive
-
-
-def _calculate(op: str, operands: tuple[Scalar | None, Scalar | None]) -> Scalar | None:
-    if operands[0] is None or operands[1] is None:
-        return None
-    try:
-        return apply_operator(op, operands[0], operands[1])
-    except UndecidedError:
-        return None
 
 
 class Variables(Struct, frozen=True):
