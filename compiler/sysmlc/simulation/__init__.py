@@ -122,7 +122,7 @@ def _find_player(
 ) -> Player | None:
     """Return the player of the component: of the whole block, or else of its only behaviour."""
     name = scenario.component
-    matches = [player for player in players_by_name if _short_name(player) == name]
+    matches = [player for player in players_by_name if player.rpartition("::")[2] == name]
     if name not in players_by_name and len(matches) == 1:
         name = matches[0]
     player = find_component_player(graph, name) or players_by_name.get(name)
@@ -133,10 +133,6 @@ def _find_player(
         COMPONENT, scenario.subject(scenario.location), name=scenario.component, known=names
     )
     return None
-
-
-def _short_name(name: str) -> str:
-    return name.rpartition("::")[2]
 
 
 def _has_valid_entries(scenario: Scenario, player: Player, sink: Sink) -> bool:
@@ -193,6 +189,12 @@ def _follow_runs(
     is_complete = True
     inputs = dict(resting_values)
     traces: list[_Trace] = [()]
+    result = Result(
+        scenario.name,
+        player.component,
+        scenario.location.line,
+        inputs=frozenset(v.name for v in player.variables if v.owner is Owner.ENVIRONMENT),
+    )
     for number, step in enumerate(scenario.steps, 1):
         # Inputs that are not pulses retain their value until the scenario sets them again.
         inputs.update({name: resting_values[name] for name in player.pulses})
@@ -206,29 +208,13 @@ def _follow_runs(
                 location = scenario.subject(entry.location)
                 name, component = entry.name, player.component
                 sink.report(TOO_MANY_RUNS, location, name=name, component=component, limit=MAX_RUNS)
-                line = scenario.location.line
-                return Result(scenario.name, component, line, is_decided=False)
+                return replace(result, is_decided=False)
             actual = trace[-1].get(entry.name)
             difference = Difference(number, entry.name, entry.value, actual, entry.location.line)
-            return Result(
-                scenario.name,
-                player.component,
-                scenario.location.line,
-                trace,
-                difference,
-                _input_names(player),
-                range_text=_describe_bounds(player, trace),
-            )
+            text = _describe_bounds(player, trace)
+            return replace(result, trace=trace, difference=difference, range_text=text)
         traces = matching
-    return Result(
-        scenario.name,
-        player.component,
-        scenario.location.line,
-        traces[0],
-        None,
-        _input_names(player),
-        range_text=_describe_bounds(player, traces[0]),
-    )
+    return replace(result, trace=traces[0], range_text=_describe_bounds(player, traces[0]))
 
 
 def _describe_bounds(player: Player, trace: _Trace) -> str:
@@ -244,10 +230,6 @@ def _describe_bounds(player: Player, trace: _Trace) -> str:
     ]
     contract = Contract(player.component, "", tuple(player.variables), (), ())
     return describe_basis((contract,), reached).range_text
-
-
-def _input_names(player: Player) -> frozenset[str]:
-    return frozenset(v.name for v in player.variables if v.owner is Owner.ENVIRONMENT)
 
 
 def _extend_traces(
