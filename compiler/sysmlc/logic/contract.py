@@ -136,6 +136,11 @@ def drop_trivial(conjuncts: Iterable[Conjunct]) -> tuple[Conjunct, ...]:
     return tuple(conjunct for conjunct in conjuncts if conjunct.formula != TRUE)
 
 
+def select_classes(conjuncts: Iterable[Conjunct], *classes: Class) -> tuple[Conjunct, ...]:
+    """Return the conjuncts of these classes."""
+    return tuple(conjunct for conjunct in conjuncts if conjunct.class_ in classes)
+
+
 class Contract(Struct, frozen=True):
     """Contract of one component: the guarantees hold as long as the assumptions do."""
 

@@ -93,7 +93,7 @@ class JointProof:
             if not has_primes(conjunct.formula):
                 return runs.reachable & violation == nothing
             # Compute the reachable states only if some step, reachable or not, is a violation.
-            states = runs.predecessors_by(runs.manager.true, violation)
+            states = runs.predecessors(runs.manager.true, violation)
             return states == nothing or runs.reachable & states == nothing
 
     def _runs_of(self, robots: tuple[Robot, ...]) -> tuple[Universe, Runs]:

@@ -142,7 +142,11 @@ def check_compositions(
     for composite in composites:
         decided: list[tuple[Composite, Composition]] = []
         reasons: list[str] = []
-        for group in _list_groups(composite):
+        groups = _split_composite(composite)
+        for group in groups:
+            # A single part of a block without a contract has nothing to fit to.
+            if len(group.parts) == 1 and group.whole is None:
+                continue
             composition, reason = _compose(group, place, sink, options)
             decided += [] if composition is None else [(group, composition)]
             reasons += [reason] if reason else []
@@ -157,7 +161,7 @@ def check_compositions(
             for group, composition in decided
             for witness in _build_witnesses(group, composition)
         )
-        whole, has_shared = composite.whole, has_shared_variables(composite)
+        whole, has_shared = composite.whole, any(map(_shares_variables, groups))
         parts = [part for part in composite.parts if part.has_contract]
         has_whole = whole is not None and bool(whole.guarantees)
         yield CompositionVerdict(
@@ -171,12 +175,6 @@ def check_compositions(
             find_basis(_list_contracts(composite)),
             "; ".join(dict.fromkeys(reasons)),
         )
-
-
-def _list_groups(composite: Composite) -> list[Composite]:
-    """Return the groups of parts to compose, without single parts of a block without a contract."""
-    groups = _split_composite(composite)
-    return [group for group in groups if len(group.parts) > 1 or group.whole is not None]
 
 
 def _compose(
@@ -359,15 +357,9 @@ def _split_composite(composite: Composite) -> list[Composite]:
     ]
 
 
-def has_shared_variables(composite: Composite) -> bool:
-    """Whether two parts, or a part and the whole, share variables."""
-    return any(
-        len(group.parts) > 1 or _has_variables(group.whole) for group in _split_composite(composite)
-    )
-
-
-def _has_variables(whole: Contract | None) -> bool:
-    return whole is not None and bool(whole.variables)
+def _shares_variables(group: Composite) -> bool:
+    """Whether two parts of a group, or a part and the whole, share variables."""
+    return len(group.parts) > 1 or (group.whole is not None and bool(group.whole.variables))
 
 
 def _shared_variable_groups(composite: Composite) -> Iterator[list[str]]:

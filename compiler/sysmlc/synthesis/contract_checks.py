@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from msgspec import Struct
 from msgspec.structs import replace
 
-from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.diagnostics import Rule, Severity, Sink, rule
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.basis import Basis
@@ -151,6 +151,14 @@ class CheckedContract(Struct, frozen=True):
 _NO_BEHAVIOURS: Mapping[str, ComponentBehaviour] = {}
 
 
+class _Checks(Struct, frozen=True):
+    """The setting of the checks of one model."""
+
+    place: Place
+    sink: Sink
+    options: Options
+
+
 def check_contracts(
     chosen: Iterable[Contract],
     contracts: Iterable[Contract],
@@ -166,19 +174,20 @@ def check_contracts(
     the contract of a component describes its behaviour completely.
     """
     all_by_component = {contract.component: contract for contract in contracts}
+    setting = _Checks(place, sink, options)
     checks: list[tuple[ComponentBehaviour, Contract, BehaviourFindings]] = []
     for contract in chosen:
         component = contract.component
         behaviour = all_by_component.get(component.removesuffix(SUFFIX))
         if _is_requirement_contract(contract) and behaviour is not None:
             checked = behaviours.get(behaviour.component) or ComponentBehaviour(behaviour)
-            verdict = _decide_consistency(contract, checked, place, sink, options)
+            verdict = _decide_consistency(contract, checked, setting)
             yield CheckedContract(verdict, is_checked_by_behaviour=True)
             continue
         whole = behaviours.get(component)
         if whole is not None and whole.is_of_parts:
-            verdict = _decide_consistency(contract, whole, place, sink, options)
-            result = _check_requirements(verdict, whole, contract, place, sink, options)
+            verdict = _decide_consistency(contract, whole, setting)
+            result = _check_requirements(verdict, whole, contract, setting)
             if result.findings is not None:
                 checks.append((whole, contract, result.findings))
             yield replace(result, is_checked_by_behaviour=True)
@@ -186,7 +195,7 @@ def check_contracts(
         verdict = decide(contract, place, sink, options)
         # Lints play games and explore runs, so an undecided contract would meet the same obstacle.
         if verdict.is_realizable is not None:
-            _lint_within_limits(contract, place, sink, options)
+            _lint_within_limits(contract, setting)
         if verdict.is_realizable:
             check_viewpoints(contract, place, sink, options)
         requirements = all_by_component.get(f"{component}{SUFFIX}")
@@ -194,7 +203,7 @@ def check_contracts(
             yield CheckedContract(verdict)
         else:
             checked = behaviours.get(component) or ComponentBehaviour(contract)
-            result = _check_requirements(verdict, checked, requirements, place, sink, options)
+            result = _check_requirements(verdict, checked, requirements, setting)
             if result.findings is not None:
                 checks.append((checked, requirements, result.findings))
             yield result
@@ -206,9 +215,10 @@ def _is_requirement_contract(contract: Contract) -> bool:
 
 
 def _lint_within_limits(
-    contract: Contract, place: Place, sink: Sink, options: Options, *, has_behaviour: bool = False
+    contract: Contract, setting: _Checks, *, has_behaviour: bool = False
 ) -> None:
-    reduced, create_manager = reduce_contract(contract).contract, manager_factory(options)
+    place, sink, create_manager = setting.place, setting.sink, manager_factory(setting.options)
+    reduced = reduce_contract(contract).contract
     try:
         lint(reduced, place, sink, create_manager, has_behaviour=has_behaviour)
     except LimitError as problem:
@@ -220,11 +230,7 @@ def _lint_within_limits(
 
 
 def _decide_consistency(
-    requirements: Contract,
-    behaviour: ComponentBehaviour,
-    place: Place,
-    sink: Sink,
-    options: Options,
+    requirements: Contract, behaviour: ComponentBehaviour, setting: _Checks
 ) -> Verdict:
     """Decide whether a system can satisfy all requirements together, and lint them.
 
@@ -236,12 +242,12 @@ def _decide_consistency(
     if any(conjunct in irreducible for conjunct in requirements.assumptions):
         return Verdict(requirements.component, None)
     contract = _complete(requirements, behaviour, irreducible)
-    verdict = decide(contract, place, sink, options)
+    verdict = decide(contract, setting.place, setting.sink, setting.options)
     if verdict.is_realizable is not None:
         judged = _without(requirements, irreducible)
-        _lint_within_limits(judged, place, sink, options, has_behaviour=True)
+        _lint_within_limits(judged, setting, has_behaviour=True)
     if verdict.is_realizable:
-        check_viewpoints(contract, place, sink, options)
+        check_viewpoints(contract, setting.place, setting.sink, setting.options)
     return (
         replace(verdict, is_realizable=None) if irreducible and verdict.is_realizable else verdict
     )
@@ -291,28 +297,22 @@ def _reads(conjunct: Conjunct, names: Set[str]) -> bool:
 
 
 def _check_requirements(
-    verdict: Verdict,
-    behaviour: ComponentBehaviour,
-    requirements: Contract,
-    place: Place,
-    sink: Sink,
-    options: Options,
+    verdict: Verdict, behaviour: ComponentBehaviour, requirements: Contract, setting: _Checks
 ) -> CheckedContract:
     """Check a behaviour against each conjunct of its requirements, and report the failures."""
     contract = behaviour.contract
-    failures = _find_undischarged(contract, requirements, options)
+    failures = _find_undischarged(contract, requirements, setting.options)
     for failure in failures:
-        subject = place(failure.conjunct.origin)
-        report_failure(ASSUMES, failure, contract.component, subject, sink, atoms=behaviour.atoms)
+        _report_run(ASSUMES, failure, behaviour, setting)
     undischarged = [failure.conjunct for failure in failures]
-    check = BehaviourCheck(behaviour, requirements, tuple(undischarged), options)
+    check = BehaviourCheck(behaviour, requirements, tuple(undischarged), setting.options)
     verdicts = tuple(
         replace(answer, trace=answer.trace and _trim_run(answer.trace, answer.conjunct, contract))
         for answer in check.decide_requirements()
     )
     for requirement in verdicts:
-        _report_verdict(behaviour, requirement, place, sink)
-    findings = _find_behaviour_findings(check, behaviour, requirements, place, sink)
+        _report_verdict(behaviour, requirement, setting)
+    findings = _find_behaviour_findings(check, behaviour, requirements, setting)
     failures += [
         Failure(requirement.conjunct, False, requirement.trace)
         for requirement in verdicts
@@ -346,11 +346,10 @@ def _find_behaviour_findings(
     check: BehaviourCheck,
     behaviour: ComponentBehaviour,
     requirements: Contract,
-    place: Place,
-    sink: Sink,
+    setting: _Checks,
 ) -> BehaviourFindings | None:
     """Report write conflicts, and return all findings; None if a limit is reached."""
-    component = behaviour.contract.component
+    component, place, sink = behaviour.contract.component, setting.place, setting.sink
     try:
         conflicts = tuple(check.find_conflicts())
         unreachable = tuple(check.find_unreachable())
@@ -393,31 +392,27 @@ def _find_undischarged(
 
 
 def _report_verdict(
-    behaviour: ComponentBehaviour, requirement: RequirementVerdict, place: Place, sink: Sink
+    behaviour: ComponentBehaviour, requirement: RequirementVerdict, setting: _Checks
 ) -> None:
-    conjunct, component = requirement.conjunct, behaviour.contract.component
-    subject = place(conjunct.origin)
+    conjunct = requirement.conjunct
     if requirement.trace is not None:
-        failure = Failure(conjunct, False, requirement.trace)
-        report_failure(BREAKS, failure, component, subject, sink, atoms=behaviour.atoms)
-    elif requirement.vacuity:
-        sink.report(
-            VACUOUS,
-            subject,
-            component=component,
+        _report_run(BREAKS, Failure(conjunct, False, requirement.trace), behaviour, setting)
+    elif requirement.vacuity or requirement.answer is Answer.NOT_DECIDED:
+        setting.sink.report(
+            VACUOUS if requirement.vacuity else NOT_COMPARED,
+            setting.place(conjunct.origin),
+            component=behaviour.contract.component,
             formula=print_temporal(conjunct),
             context=text_in_parentheses(conjunct),
-            reason=requirement.vacuity,
+            reason=requirement.vacuity or requirement.reason,
         )
-    elif requirement.answer is Answer.NOT_DECIDED:
-        sink.report(
-            NOT_COMPARED,
-            subject,
-            component=component,
-            formula=print_temporal(conjunct),
-            context=text_in_parentheses(conjunct),
-            reason=requirement.reason,
-        )
+
+
+def _report_run(
+    rule_: Rule, failure: Failure, behaviour: ComponentBehaviour, setting: _Checks
+) -> None:
+    subject, component = setting.place(failure.conjunct.origin), behaviour.contract.component
+    report_failure(rule_, failure, component, subject, setting.sink, atoms=behaviour.atoms)
 
 
 def _build_witness(behaviour: ComponentBehaviour, failure: Failure) -> Witness:

@@ -16,7 +16,14 @@ from sysmlc.controllers.machine import Machine, Move
 from sysmlc.controllers.table import Entry, Table
 from sysmlc.diagnostics import Sink
 from sysmlc.logic import domains
-from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Variable
+from sysmlc.logic.contract import (
+    BooleanDomain,
+    Class,
+    Conjunct,
+    Contract,
+    Variable,
+    select_classes,
+)
 from sysmlc.logic.evaluate import Evaluation, compile_evaluation
 from sysmlc.logic.formats.contract_json import encode_domain
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
@@ -91,17 +98,21 @@ _MAX_LABEL_LINES = 4
 """Lines of a condition on an arrow; further cases are abbreviated."""
 
 
+def _encode_head(format_: str, controller: Controller, contract: Contract) -> dict[str, object]:
+    return {
+        "format": format_,
+        "name": contract.component,
+        "origin": contract.origin,
+        "inputs": [_encode_variable(variable) for variable in controller.inputs],
+        "outputs": [_encode_variable(variable) for variable in controller.outputs],
+    }
+
+
 def machine_json(machine: Machine, contract: Contract) -> str:
     """Return the machine as a JSON file with one line for each move."""
     names = register_names(machine)
-    head = {
-        "format": MACHINE_FORMAT,
-        "name": contract.component,
-        "origin": contract.origin,
-        "inputs": [_encode_variable(variable) for variable in machine.inputs],
-        "outputs": [_encode_variable(variable) for variable in machine.outputs],
-        "registers": [{"name": name, "of": of} for of, name in names.items()],
-    }
+    head = _encode_head(MACHINE_FORMAT, machine, contract)
+    head["registers"] = [{"name": name, "of": of} for of, name in names.items()]
     states = ",\n".join(f"    [{_encode_moves(moves, names)}]" for moves in machine.states)
     return append_members(head, [f'  "states": [\n{states}\n  ]'])
 
@@ -131,36 +142,27 @@ def _rename_registers(formula: Formula, registers: Mapping[str, str]) -> Formula
 
 def _encode_variable(variable: Variable) -> dict[str, object]:
     """Return a variable as a JSON value."""
-    return {
-        "name": variable.name,
-        "type": encode_domain(variable.domain),
-        "origin": variable.origin,
-    }
+    kind = encode_domain(variable.domain)
+    return {"name": variable.name, "type": kind, "origin": variable.origin}
 
 
 def _encode_moves(moves: Sequence[Move], names: Mapping[str, str]) -> str:
     if not moves:
         return ""
-    lines = (
-        "      "
-        + encode_row(
-            {
-                "when": _print_with_registers(move.when, names),
-                "output": [_describe_output(output, names) for output in move.output],
-                "next": move.state,
-            }
-        )
+    rows = (
+        {
+            "when": _print_with_registers(move.when, names),
+            "output": [
+                output.value
+                if isinstance(output, Const)
+                else {"value": _print_with_registers(output, names)}
+                for output in move.output
+            ],
+            "next": move.state,
+        }
         for move in moves
     )
-    return "\n" + ",\n".join(lines) + "\n    "
-
-
-def _describe_output(output: Formula, names: Mapping[str, str]) -> object:
-    return (
-        output.value
-        if isinstance(output, Const)
-        else {"value": _print_with_registers(output, names)}
-    )
+    return "\n" + ",\n".join(f"      {encode_row(row)}" for row in rows) + "\n    "
 
 
 def _print_with_registers(formula: Formula, names: Mapping[str, str]) -> str:
@@ -225,13 +227,7 @@ _NODES_PER_LINE = 8
 
 def table_json(table: Table, contract: Contract) -> str:
     """Return the table as a JSON file with ``_NODES_PER_LINE`` nodes on a line."""
-    head = {
-        "format": TABLE_FORMAT,
-        "name": contract.component,
-        "origin": contract.origin,
-        "inputs": [_encode_variable(variable) for variable in table.inputs],
-        "outputs": [_encode_variable(variable) for variable in table.outputs],
-    }
+    head = _encode_head(TABLE_FORMAT, table, contract)
     members = (
         _encode_list("bits", _encode_bits(table)),
         _encode_list("nodes", _encode_nodes(table)),
@@ -350,7 +346,10 @@ class _Unrolling:
     ) -> str:
         variables = (*self._controller.inputs, *self._controller.outputs)
         node = {
-            "state": [_value_code(variable, values[variable.name]) for variable in variables],
+            "state": [
+                domains.values(variable.domain).index(values[variable.name])
+                for variable in variables
+            ],
             "mode": state,
             # gr1c's measure of the distance to a goal, which this compiler does not compute.
             "rgrad": -1,
@@ -361,10 +360,4 @@ class _Unrolling:
 
 
 def _compile_conjuncts(conjuncts: Sequence[Conjunct], class_: Class) -> list[Evaluation]:
-    return [
-        compile_evaluation(conjunct.formula) for conjunct in conjuncts if conjunct.class_ is class_
-    ]
-
-
-def _value_code(variable: Variable, value: Literal) -> int:
-    return domains.values(variable.domain).index(value)
+    return [compile_evaluation(item.formula) for item in select_classes(conjuncts, class_)]

@@ -31,12 +31,12 @@ from sysmlc.synthesis.games.arena import Arena, nodes_of
 from sysmlc.synthesis.games.command_elimination import eliminate_commands
 from sysmlc.synthesis.games.game import Constraint, Game
 from sysmlc.synthesis.games.solver import solve_arena
-from sysmlc.synthesis.lints.checks import describe_vacuity
+from sysmlc.synthesis.lints import describe_vacuity
 from sysmlc.synthesis.strategies.closed_loop import Controller
 from sysmlc.synthesis.strategies.conditions import build_machine
 from sysmlc.synthesis.strategies.explicit_states import enumerate_states
 from sysmlc.synthesis.strategies.minimisation import minimise
-from sysmlc.synthesis.strategies.strategy import Functions, Mode, Strategy, extract_strategy
+from sysmlc.synthesis.strategies.strategy import Mode, Strategy, extract_strategy
 from sysmlc.synthesis.strategies.strategy_memory import choose_registers, explore_strategy
 from sysmlc.synthesis.strategies.tables import build_table, rebuild_in_variable_order
 from sysmlc.synthesis.strategies.verification import Fault, find_faults
@@ -270,37 +270,17 @@ def combine_independent_strategies(game: Game) -> Strategy | None:
 
 
 def _combine_strategies(strategies: Sequence[Strategy], symbols: Symbols) -> Strategy:
-    sides = {
-        owner: tuple(
-            variable.name for variable in symbols.variables.values() if variable.owner is owner
-        )
-        for owner in Owner
-    }
     first = _combine_modes([strategy.first for strategy in strategies], symbols)
     modes = tuple(
         _combine_modes(modes, symbols)
         for modes in product(*(strategy.modes for strategy in strategies))
     )
-    return Strategy(symbols, sides[Owner.ENVIRONMENT], sides[Owner.SYSTEM], first, modes)
+    return Strategy(symbols, first, modes)
 
 
 def _combine_modes(modes: Sequence[Mode], symbols: Symbols) -> Mode:
-    outputs: dict[str, Node] = {}
-    for mode in modes:
-        outputs |= mode.outputs
-    return Mode(_order_outputs(outputs, symbols), tuple(_combine_successors(modes, symbols)))
-
-
-def _combine_successors(modes: Sequence[Mode], symbols: Symbols) -> list[Node]:
-    """Return for each combination of modes the condition under which it is the next mode."""
-    combined = list[Node]()
-    for conditions in product(*(mode.successors for mode in modes)):
-        node = symbols.manager.true
-        for condition in conditions:
-            node = node & condition
-        combined.append(node)
-    return combined
-
-
-def _order_outputs(outputs: Functions, symbols: Symbols) -> Functions:
-    return {bit: outputs[bit] for bit in symbols.bits_of_owner(Owner.SYSTEM)}
+    outputs = {bit: node for mode in modes for bit, node in mode.outputs.items()}
+    ordered = {bit: outputs[bit] for bit in symbols.bits_of_owner(Owner.SYSTEM)}
+    # For each combination of modes, the condition under which it is the next mode.
+    successors = map(symbols.manager.conjoin, product(*(mode.successors for mode in modes)))
+    return Mode(ordered, tuple(successors))

@@ -129,20 +129,27 @@ def decide_game(contract: Contract, place: Place, sink: Sink, options: Options) 
             options.progress(step)
 
     start_time = time.process_time()
+    undecided = Decision(Verdict(contract.component, None))
     try:
         game, encoded, solution = _solve_contract(contract, options, progress, start_time)
     except OutsideGr1Error as problem:
         _report_outside(contract, problem, place, sink)
-        return Decision(Verdict(contract.component, None))
+        return undecided
     except LimitError as problem:
-        seconds = time.process_time() - start_time
-        _report_limit(contract, problem, seconds, current_activity[0], place, sink)
-        return Decision(Verdict(contract.component, None))
+        sink.report(
+            rules.LIMIT,
+            place(contract.origin),
+            component=contract.component,
+            reached=str(problem),
+            seconds=f"{time.process_time() - start_time:.1f}",
+            doing=current_activity[0],
+        )
+        return undecided
     basis = find_basis((contract,))
     if not solution.is_realizable and basis.conditions:
         question = f"a system can satisfy the contract of '{contract.component}'"
         sink.report(rules.DEPENDS, place(contract.origin), question=question, reason=basis.reason)
-        return Decision(Verdict(contract.component, None))
+        return undecided
     if not solution.is_realizable:
         reasons = tuple(explain_unrealizability(game, contract)) if options.is_explained else ()
         sink.report(
@@ -152,7 +159,16 @@ def decide_game(contract: Contract, place: Place, sink: Sink, options: Options) 
             component=contract.component,
             within=basis.range_text,
         )
-    figures = _collect_figures(contract, game, solution)
+    usage = game.manager.usage()
+    figures = Figures(
+        variables=len(game.symbols.variables),
+        bits=len(game.inputs) + len(game.outputs),
+        conjuncts=len(contract.assumptions) + len(contract.guarantees),
+        rounds=solution.rounds,
+        steps=solution.steps,
+        nodes=usage.peak,
+        seconds=usage.seconds,
+    )
     verdict = Verdict(contract.component, solution.is_realizable, figures, basis)
     return Decision(verdict, encoded, solution.arena)
 
@@ -193,44 +209,9 @@ def _report_outside(contract: Contract, problem: OutsideGr1Error, place: Place, 
             rules.OUTSIDE_GR1,
             place(conjunct.origin or contract.origin),
             component=contract.component,
-            formula=_print_formula(conjunct),
+            formula=print_formula(conjunct.formula),
             why=problem.reason,
         )
-
-
-def _report_limit(
-    contract: Contract,
-    problem: LimitError,
-    seconds: float,
-    activity: str,
-    place: Place,
-    sink: Sink,
-) -> None:
-    sink.report(
-        rules.LIMIT,
-        place(contract.origin),
-        component=contract.component,
-        reached=str(problem),
-        seconds=f"{seconds:.1f}",
-        doing=activity,
-    )
-
-
-def _print_formula(conjunct: Conjunct) -> str:
-    return print_formula(conjunct.formula)
-
-
-def _collect_figures(contract: Contract, game: Game, solution: Solution) -> Figures:
-    usage = game.manager.usage()
-    return Figures(
-        variables=len(game.symbols.variables),
-        bits=len(game.inputs) + len(game.outputs),
-        conjuncts=len(contract.assumptions) + len(contract.guarantees),
-        rounds=solution.rounds,
-        steps=solution.steps,
-        nodes=usage.peak,
-        seconds=usage.seconds,
-    )
 
 
 # -- smallest bounds ---------------------------------------------------------------------------

@@ -17,7 +17,7 @@ from typing import Generic, TypeVar
 from msgspec.structs import replace
 
 from sysmlc.logic import formula as f
-from sysmlc.logic.contract import BooleanDomain, Class, Conjunct, Contract, Owner, Variable
+from sysmlc.logic.contract import Class, Conjunct, Contract, Owner, Variable, equals
 from sysmlc.logic.domains import size, values
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.printing import print_formula
@@ -45,7 +45,11 @@ def find_minimal_conflict(
 
 
 class _QuickXplain(Generic[T]):
-    """The search for a minimal conflict (Junker 2004)."""
+    """The search for a minimal conflict (Junker 2004).
+
+    A recursive closure instead would be a cycle of references to the manager of diagrams, which the
+    collector must not free (``bdd.limits``).
+    """
 
     def __init__(
         self, items: Sequence[T], is_conflict: Callable[[Sequence[T]], bool], max_checks: int
@@ -168,11 +172,8 @@ def _describe_conflict(game: Game, contract: Contract) -> Iterator[str]:
             "without any one of them the rest can:"
         )
     for conjunct in core:
-        text = (
-            f" ({conjunct.text})"
-            if conjunct.text not in ("", print_formula(conjunct.formula))
-            else ""
-        )
+        is_new = conjunct.text not in ("", print_formula(conjunct.formula))
+        text = f" ({conjunct.text})" if is_new else ""
         yield f"{_print_conjunct(conjunct)}{text}"
 
 
@@ -235,35 +236,20 @@ def _iter_candidates(game: Game) -> Iterator[Conjunct]:
     for input_variable in inputs:
         for predicate in _list_value_predicates(input_variable):
             yield Conjunct(predicate, Class.LIVENESS, input_variable.origin)
-    for input_variable in inputs:
-        yield Conjunct(_make_frame_condition(input_variable), Class.SAFETY, input_variable.origin)
+    frames = [(equals(v, f.var(v.name), is_next=True), v.origin) for v in inputs]
+    for frame, origin in frames:
+        yield Conjunct(frame, Class.SAFETY, origin)
     for output in outputs:
         for predicate in _list_value_predicates(output):
-            for input_variable in inputs:
-                yield Conjunct(
-                    f.implies(predicate, _make_frame_condition(input_variable)),
-                    Class.SAFETY,
-                    input_variable.origin,
-                )
+            for frame, origin in frames:
+                yield Conjunct(f.implies(predicate, frame), Class.SAFETY, origin)
 
 
 def _list_value_predicates(variable: Variable) -> Sequence[Formula]:
     """Return for each value the predicate that the variable has it; none for many values."""
     if size(variable.domain) > _MAX_VALUES:
         return ()
-    variable_term = f.var(variable.name)
-    return tuple(
-        (variable_term if value else f.negate(variable_term))
-        if isinstance(value, bool)
-        else f.eq(variable_term, f.const(value))
-        for value in values(variable.domain)
-    )
-
-
-def _make_frame_condition(variable: Variable) -> Formula:
-    current = f.var(variable.name)
-    next_value = f.prime(current)
-    return (f.iff if isinstance(variable.domain, BooleanDomain) else f.eq)(next_value, current)
+    return [equals(variable, f.const(value)) for value in values(variable.domain)]
 
 
 def _makes_realizable(game: Game, assumption: Conjunct) -> bool:

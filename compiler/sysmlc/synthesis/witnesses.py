@@ -83,7 +83,7 @@ def describe_run(trace: Trace, broken: Conjunct | None = None) -> Iterator[str]:
             yield f"and {count(number - last_shown - 1, 'more step')}"
         shown_names = [name for name in changed if name not in hidden]
         unchanged = "only auxiliary variables change" if changed else "nothing changes"
-        mark = _describe_violation(marked) if number == violated else ""
+        mark = KEY_MARK + _NAMES_OF_VIOLATIONS[marked.is_open] if number == violated else ""
         yield f"step {number}: {_print_values(changed, shown_names) or unchanged}{mark}"
         last_shown = number
     if last_shown < len(trace.steps):
@@ -92,24 +92,18 @@ def describe_run(trace: Trace, broken: Conjunct | None = None) -> Iterator[str]:
     yield "then there is no answer" if is_ended else f"then again from step {trace.loop + 1}"
 
 
-def _describe_violation(trace: Trace) -> str:
-    """Return the mark at the line of the violated step."""
-    return KEY_MARK + _NAMES_OF_VIOLATIONS[trace.is_open]
-
-
 def _hidden_variables(trace: Trace, broken: Conjunct | None) -> Set[str]:
     """Return the variables that texts and diagrams of a run omit."""
     if broken is None:
         return trace.auxiliary
-    named = {variable.name for variable in f.variables(broken.wording or broken.formula)}
+    named = f.variable_names(broken.wording or broken.formula)
     return (trace.auxiliary - named) | _constant_variables(trace, broken)
 
 
 def _constant_variables(trace: Trace, broken: Conjunct) -> set[str]:
     """Return the variables that never change, unless the conjunct reads them or they matter."""
     changing = {name for changed in list(_iter_changes(trace))[1:] for name in changed}
-    read = {variable.name for variable in f.variables(broken.formula)}
-    return set(trace.steps[0]) - changing - read - trace.relevant
+    return set(trace.steps[0]) - changing - f.variable_names(broken.formula) - trace.relevant
 
 
 def name_run(trace: Trace, atoms: Sequence[Atom]) -> Trace:
@@ -118,7 +112,7 @@ def name_run(trace: Trace, atoms: Sequence[Atom]) -> Trace:
     Variables that no atom replaces stay. Without *atoms* the run is returned as it is.
     """
     replaced = {atom.replaced for atom in atoms}
-    read = [{variable.name for variable in f.variables(atom.meaning)} for atom in atoms]
+    read = [f.variable_names(atom.meaning) for atom in atoms]
     steps = tuple(
         {
             atom.variable.name: value_of(atom.meaning, values)
@@ -228,10 +222,19 @@ def _diagram_steps(trace: Trace, contracts: Sequence[Contract]) -> Iterator[str]
 
 def _diagram_messages(changed: Values, contracts: Sequence[Contract]) -> Iterator[str]:
     """Yield the messages of one step, from the owner of a variable to its readers."""
+
+    def find_parties(name: str, owner: Owner) -> list[int]:
+        return [
+            index
+            for index, contract in enumerate(contracts, 1)
+            if any(item.name == name and item.owner is owner for item in contract.variables)
+        ]
+
     names_by_arrow: dict[tuple[int, int], list[str]] = {}
     for name in changed:
-        sender = _find_sender(name, contracts)
-        for receiver in _find_receivers(name, contracts) or [sender]:
+        # The environment, which is no party, has the number 0.
+        sender = next(iter(find_parties(name, Owner.SYSTEM)), 0)
+        for receiver in find_parties(name, Owner.ENVIRONMENT) or [sender]:
             names_by_arrow.setdefault((sender, receiver), []).append(name)
     for (sender, receiver), names in sorted(names_by_arrow.items()):
         text = _print_values(changed, names)
@@ -239,23 +242,6 @@ def _diagram_messages(changed: Values, contracts: Sequence[Contract]) -> Iterato
             yield f"hnote over p{sender} : {format_label(text)}"
         else:
             yield f"p{sender} -> p{receiver} : {format_label(text)}"
-
-
-def _find_sender(name: str, contracts: Sequence[Contract]) -> int:
-    """Return the number of the party that owns the variable; 0 is the environment."""
-    return next(iter(_find_parties(name, contracts, Owner.SYSTEM)), 0)
-
-
-def _find_receivers(name: str, contracts: Sequence[Contract]) -> list[int]:
-    return list(_find_parties(name, contracts, Owner.ENVIRONMENT))
-
-
-def _find_parties(name: str, contracts: Sequence[Contract], owner: Owner) -> Iterator[int]:
-    for index, contract in enumerate(contracts, 1):
-        if any(
-            variable.name == name and variable.owner is owner for variable in contract.variables
-        ):
-            yield index
 
 
 def _print_values(values: Values, names: Iterable[str]) -> str:

@@ -25,6 +25,7 @@ from sysmlc.logic.contract import (
     Owner,
     Part,
     Variable,
+    select_classes,
 )
 from sysmlc.logic.formula import Formula, Var
 from sysmlc.logic.identifiers import Names
@@ -81,9 +82,10 @@ def _compose(composite: Composite, manager: Manager) -> Composition:
     # One call for all contracts, so that equal formulas outside GR(1) share their history bits.
     observed = observe_histories((*(part.contract for part in composite.parts), wiring, whole))
     *contracts, wiring_contract, whole_contract = observed.contracts
+    # The variables stay, because history bits are outputs of no part.
     parts = tuple(
-        _with_contract(part, reduced_contract)
-        for part, reduced_contract in zip(composite.parts, contracts, strict=True)
+        replace(part, contract=replace(reduced, variables=part.contract.variables))
+        for part, reduced in zip(composite.parts, contracts, strict=True)
     )
     universe = Universe(observed.contracts, manager)
     reduced_composite = replace(composite, parts=parts, wiring=wiring_contract.assumptions)
@@ -102,7 +104,7 @@ def _compose(composite: Composite, manager: Manager) -> Composition:
     demands = [
         conjunct
         for conjunct in _list_demands(whole_contract)
-        if undecided.isdisjoint(_list_variables(conjunct))
+        if undecided.isdisjoint(f.variable_names(conjunct.formula))
     ]
     failures = tuple(_find_violations(demands, runs))
     losses = tuple(_find_violations(composite.exclusions, runs))
@@ -115,11 +117,13 @@ def _compose(composite: Composite, manager: Manager) -> Composition:
         if not assumption.conjunct.is_derived
         or not _list_inputs(assumption.part, assumption.conjunct).isdisjoint(decided)
     )
-    unchecked = {
-        name for conjunct in whole_contract.guarantees for name in _list_variables(conjunct)
-    } & undecided
+    guaranteed = f.variable_names(*(conjunct.formula for conjunct in whole_contract.guarantees))
     return Composition(
-        contract, open_assumptions, failures, losses, undecided=tuple(sorted(unchecked))
+        contract,
+        open_assumptions,
+        failures,
+        losses,
+        undecided=tuple(sorted(guaranteed & undecided)),
     )
 
 
@@ -163,11 +167,7 @@ def _find_undecided(composite: Composite, whole: Contract) -> set[str]:
 
 def _list_inputs(part: Part, conjunct: Conjunct) -> set[str]:
     """Return the variables of an assumption that the part itself does not decide."""
-    return _list_variables(conjunct) - set(outputs_of(part))
-
-
-def _list_variables(conjunct: Conjunct) -> set[str]:
-    return f.variable_names(conjunct.formula)
+    return f.variable_names(conjunct.formula) - outputs_of(part)
 
 
 def _list_defined_names(whole: Contract) -> set[str]:
@@ -219,14 +219,6 @@ def _contract_with_environment(composite: Composite) -> Contract:
 def _is_about_outside(conjunct: Conjunct, inner_names: set[str], own_names: set[str]) -> bool:
     names = f.variable_names(conjunct.formula)
     return not names <= inner_names and not names & (inner_names - own_names)
-
-
-def _with_contract(part: Part, contract: Contract) -> Part:
-    """Replace the contract of a part by its reduction to GR(1).
-
-    The variables stay, because history bits are outputs of no part.
-    """
-    return replace(part, contract=replace(contract, variables=part.contract.variables))
 
 
 def _compose_contract(composite: Composite, whole: Contract) -> Contract:
@@ -302,9 +294,12 @@ def conjoin_viewpoints(contract: Contract) -> Contract:
     _check_liveness(viewpoints)
     names = Names(*(variable.name for variable in contract.variables))
     bits = [
-        Var(names.new("broken")) if _has_breakable_assumptions(viewpoint) else None
+        Var(names.new("broken"))
+        if len(select_classes(viewpoint.assumptions, Class.LIVENESS)) < len(viewpoint.assumptions)
+        else None
         for viewpoint in viewpoints
     ]
+    memory = (Variable(bit.name, Owner.SYSTEM, BooleanDomain()) for bit in bits if bit)
     common_guarantees = [conjunct for conjunct in contract.guarantees if not conjunct.viewpoint]
     weakened = [
         conjunct
@@ -313,7 +308,7 @@ def conjoin_viewpoints(contract: Contract) -> Contract:
     ]
     return replace(
         contract,
-        variables=(*contract.variables, *(_memory_variable(bit) for bit in bits if bit)),
+        variables=(*contract.variables, *memory),
         assumptions=tuple(_common_assumptions(contract, viewpoints)),
         guarantees=(*common_guarantees, *weakened),
     )
@@ -331,20 +326,13 @@ def _check_liveness(viewpoints: Sequence[Viewpoint]) -> None:
     """
     first_guarantees: dict[frozenset[tuple[Class, Formula]], Conjunct] = {}
     for viewpoint in viewpoints:
-        liveness_guarantees = [
-            conjunct for conjunct in viewpoint.guarantees if conjunct.class_ is Class.LIVENESS
-        ]
+        liveness_guarantees = select_classes(viewpoint.guarantees, Class.LIVENESS)
         if liveness_guarantees:
-            first_guarantees.setdefault(
-                _formulas_of(_liveness_assumptions(viewpoint)), liveness_guarantees[0]
-            )
+            assumed = _formulas_of(select_classes(viewpoint.assumptions, Class.LIVENESS))
+            first_guarantees.setdefault(assumed, liveness_guarantees[0])
     if len(first_guarantees) > 1:
         reason = "viewpoints that assume different things again and again are more than GR(1)"
         raise OutsideGr1Error(list(first_guarantees.values())[1], reason)
-
-
-def _liveness_assumptions(view: Viewpoint) -> Iterator[Conjunct]:
-    return (conjunct for conjunct in view.assumptions if conjunct.class_ is Class.LIVENESS)
 
 
 def _common_assumptions(contract: Contract, views: Sequence[Viewpoint]) -> Iterator[Conjunct]:
@@ -353,17 +341,9 @@ def _common_assumptions(contract: Contract, views: Sequence[Viewpoint]) -> Itera
     # `_check_liveness` has made sure that all viewpoints with liveness guarantees have the same
     # liveness assumptions, so those of the first one are enough.
     for view in views:
-        if any(conjunct.class_ is Class.LIVENESS for conjunct in view.guarantees):
-            yield from _liveness_assumptions(view)
+        if select_classes(view.guarantees, Class.LIVENESS):
+            yield from select_classes(view.assumptions, Class.LIVENESS)
             return
-
-
-def _memory_variable(bit: Var) -> Variable:
-    return Variable(bit.name, Owner.SYSTEM, BooleanDomain())
-
-
-def _has_breakable_assumptions(view: Viewpoint) -> bool:
-    return any(conjunct.class_ is not Class.LIVENESS for conjunct in view.assumptions)
 
 
 def _weaken_guarantees(view: Viewpoint, broken: Var | None) -> Iterator[Conjunct]:
@@ -389,4 +369,4 @@ def _weaken_guarantees(view: Viewpoint, broken: Var | None) -> Iterator[Conjunct
 
 
 def _conjoin_class(conjuncts: Iterable[Conjunct], class_: Class) -> Formula:
-    return f.both(*(conjunct.formula for conjunct in conjuncts if conjunct.class_ is class_))
+    return f.both(*(conjunct.formula for conjunct in select_classes(conjuncts, class_)))

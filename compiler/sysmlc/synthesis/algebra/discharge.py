@@ -8,13 +8,14 @@ guarantee recurs. That is a Streett condition; the check enumerates its cases.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
+from functools import cached_property
 from itertools import product
 from math import prod
 
 from msgspec import Struct
 from msgspec.structs import replace
 
-from sysmlc.logic.contract import Class, Composite, Conjunct, Owner, Part
+from sysmlc.logic.contract import Class, Composite, Conjunct, Owner, Part, select_classes
 from sysmlc.logic.formula import has_primes
 from sysmlc.synthesis.algebra.fair_systems import Runs, Trace, Universe, build_lasso, shortest_path
 from sysmlc.synthesis.algebra.instantaneous_dependencies import (
@@ -53,9 +54,7 @@ class Recurrence:
         """Return a run in which a conjunct does not recur, or None if there is none."""
         violation = ~self._universe.node(conjunct)
         for cases in product(*self._cases):
-            stay = violation
-            for case in cases:
-                stay = stay & case.stay
+            stay = violation & self._runs.manager.conjoin(case.stay for case in cases)
             trace = self._find_run(tuple(goal for case in cases for goal in case.recurring), stay)
             if trace is not None:
                 return trace
@@ -83,8 +82,7 @@ class Recurrence:
                 yield StreettCase((), ~assumption)
 
     def _liveness_nodes(self, conjuncts: Sequence[Conjunct]) -> tuple[Node, ...]:
-        liveness = (conjunct for conjunct in conjuncts if conjunct.class_ is Class.LIVENESS)
-        return tuple(self._universe.node(conjunct) for conjunct in liveness)
+        return tuple(map(self._universe.node, select_classes(conjuncts, Class.LIVENESS)))
 
 
 class OpenAssumption(Struct, frozen=True):
@@ -114,18 +112,15 @@ class _Facts:
     def __init__(self, universe: Universe, facts: Iterable[Conjunct]) -> None:
         self._universe = universe
         self.facts = tuple(dict.fromkeys(facts))
-        self._entailment: Entailment | None = None
 
     def extended_by(self, conjuncts: Iterable[Conjunct]) -> "_Facts":
         """Return the facts with additional conjuncts."""
         return _Facts(self._universe, (*self.facts, *conjuncts))
 
-    @property
+    @cached_property
     def runs(self) -> Entailment:
         """The runs in which all facts hold."""
-        if self._entailment is None:
-            self._entailment = Entailment(self._universe, self._universe.system(self.facts))
-        return self._entailment
+        return Entailment(self._universe, self._universe.system(self.facts))
 
     def entails(self, conjuncts: Iterable[Conjunct]) -> bool:
         """Return whether all conjuncts hold in every run."""
@@ -152,7 +147,7 @@ class _Facts:
         violation, invariant = ~self._universe.node(conjunct), facts_of_last_step._invariant()
         if conjunct.class_ is not Class.INIT and has_primes(conjunct.formula):
             return (
-                runs_before.reachable & runs_of_last_step.predecessors_by(invariant, violation)
+                runs_before.reachable & runs_of_last_step.predecessors(invariant, violation)
                 != runs_before.manager.false
             )
         can_begin = (
@@ -161,18 +156,17 @@ class _Facts:
         if can_begin or conjunct.class_ is Class.INIT:
             return can_begin
         return (
-            runs_before.reachable
-            & runs_of_last_step.predecessors_by(invariant & violation, runs_before.manager.true)
+            runs_before.reachable & runs_of_last_step.predecessors(invariant & violation)
             != runs_before.manager.false
         )
 
     def _invariant(self) -> Node:
         """Return the conjunction of the facts about a single step."""
-        invariant = self._universe.manager.true
-        for fact in self.facts:
-            if fact.class_ is Class.SAFETY and not has_primes(fact.formula):
-                invariant = invariant & self._universe.node(fact)
-        return invariant
+        return self._universe.manager.conjoin(
+            self._universe.node(fact)
+            for fact in self.facts
+            if fact.class_ is Class.SAFETY and not has_primes(fact.formula)
+        )
 
 
 def discharge(
@@ -244,20 +238,16 @@ def _parts_with_recurring_assumptions(parts: _PartSequence, facts: "_Facts") -> 
         for part in parts
         if not any(
             recurrence.find_violation(conjunct)
-            for conjunct in _liveness_conjuncts(part.contract.assumptions)
+            for conjunct in select_classes(part.contract.assumptions, Class.LIVENESS)
         )
     ]
 
 
-def _liveness_conjuncts(conjuncts: Iterable[Conjunct]) -> list[Conjunct]:
-    return [conjunct for conjunct in conjuncts if conjunct.class_ is Class.LIVENESS]
-
-
-def _safety_conjuncts(part: Part, is_assumed: bool) -> list[Conjunct]:
+def _safety_conjuncts(part: Part, is_assumed: bool) -> tuple[Conjunct, ...]:
     """Return the initial and safety conjuncts that a part assumes or guarantees."""
     contract = part.contract
     conjuncts = contract.assumptions if is_assumed else contract.guarantees
-    return [conjunct for conjunct in conjuncts if conjunct.class_ in (Class.INIT, Class.SAFETY)]
+    return select_classes(conjuncts, Class.INIT, Class.SAFETY)
 
 
 def _largest_inductive_set(

@@ -17,7 +17,7 @@ from sysmlc.logic.reduction.contract_reduction import as_ltl, is_gr1
 from sysmlc.logic.reduction.formula_reduction import NotReducibleError, reduce_formula
 from sysmlc.logic.reduction.history import History, share_history
 from sysmlc.synthesis.bdd.manager import Manager, Node
-from sysmlc.synthesis.bdd.symbols import SymbolError, Symbols, conjoin
+from sysmlc.synthesis.bdd.symbols import SymbolError, Symbols
 from sysmlc.synthesis.bdd.variable_order import list_related
 from sysmlc.synthesis.games.game import OutsideGr1Error
 from sysmlc.synthesis.games.relational_product import Product
@@ -76,7 +76,7 @@ class Universe:
             )
         # Initial values first, single values before relations among several variables: few states
         # remain, and conditions on them have small diagrams.
-        init = conjoin(self.manager, (*sorted(nodes[Class.INIT], key=len), *invariants))
+        init = self.manager.conjoin((*sorted(nodes[Class.INIT], key=len), *invariants))
         parts = (*self._ranges, *map(self.symbols.prime, invariants), *nodes[Class.SAFETY])
         return FairSystem(self.symbols, init, parts, tuple(nodes[Class.LIVENESS]))
 
@@ -123,7 +123,6 @@ class Runs:
         self.next_bits: Sequence[str] = symbols.all_bits(names, primed=True)
         self._forward = Product(self.manager, system.parts, self.bits)
         self._reachable: Node | None = None
-        self._fair: Node | None = None
 
     @property
     def manager(self) -> Manager:
@@ -134,13 +133,10 @@ class Runs:
         """Return the states that one step reaches."""
         return self.system.symbols.unprime(self._forward(states))
 
-    def predecessors(self, states: Node) -> Node:
-        """Return the states from which one step leads to *states*."""
-        return self._backward(self.system.symbols.prime(states))
-
-    def predecessors_by(self, states: Node, step: Node) -> Node:
+    def predecessors(self, states: Node, step: Node | None = None) -> Node:
         """Return the states from which one step that satisfies *step* leads to *states*."""
-        return self._backward(self.system.symbols.prime(states) & step)
+        targets = self.system.symbols.prime(states)
+        return self._backward(targets if step is None else targets & step)
 
     def predecessors_among_reachable(self, states: Node, step: Node | None = None) -> Node:
         """Return states from which one step that satisfies *step* leads to *states*.
@@ -170,14 +166,9 @@ class Runs:
             self._reachable = self._compute_closure(self.system.init)
         return self._reachable
 
-    @property
+    @cached_property
     def fair(self) -> Node:
         """The reachable states in which some fair run begins."""
-        if self._fair is None:
-            self._fair = self._find_fair_states()
-        return self._fair
-
-    def _find_fair_states(self) -> Node:
         # Without fairness, each state of a total relation begins a fair run. That it is total takes
         # one product with early quantification of nearly all bits; Emerson and Lei take several.
         is_total = not self.system.fairness and self.reachable <= self.predecessors_among_reachable(

@@ -8,8 +8,17 @@ from collections.abc import Iterable, Iterator, Sequence, Set
 
 from msgspec import Struct
 
+from sysmlc.ir.algorithms import strongly_connected_components
 from sysmlc.logic import formula as f
-from sysmlc.logic.contract import Class, Composite, Conjunct, Contract, Owner, Part
+from sysmlc.logic.contract import (
+    Class,
+    Composite,
+    Conjunct,
+    Contract,
+    Owner,
+    Part,
+    select_classes,
+)
 from sysmlc.synthesis.algebra.fair_systems import Runs, Universe
 from sysmlc.synthesis.bdd.manager import Node
 
@@ -71,10 +80,8 @@ def _restricted_together(contract: Contract, universe: Universe) -> frozenset[st
     A component has to avoid all other states, which relates its outputs to inputs even if no single
     guarantee does.
     """
-    safety_guarantees = [
-        guarantee for guarantee in contract.guarantees if guarantee.class_ is Class.SAFETY
-    ]
-    live_states = Runs(universe.system(safety_guarantees)).states_with_infinite_runs
+    system = universe.system(select_classes(contract.guarantees, Class.SAFETY))
+    live_states = Runs(system).states_with_infinite_runs
     names = (variable.name for variable in contract.variables)
     return frozenset(name for name in names if _is_restricted(name, live_states, universe))
 
@@ -108,25 +115,17 @@ class DependencyGraph(Struct, frozen=True):
     def circular_parts(self, parts: Sequence[Part]) -> list[Part]:
         """Return the parts with an output that depends on itself within a step, via other parts."""
         nodes = [(part, dependency) for part, dependency in self.dependencies if part in parts]
-        return [
-            part
-            for part in parts
-            if any(self._reaches_itself(node, nodes) for node in nodes if node[0] == part)
+        successors = {
+            str(index): [str(i) for i, writer in enumerate(nodes) if self._reads(reader, writer)]
+            for index, reader in enumerate(nodes)
+        }
+        circular = [
+            nodes[int(index)][0]
+            for component in strongly_connected_components(successors)
+            if len(component) > 1
+            for index in component
         ]
-
-    def _reaches_itself(
-        self, start: tuple[Part, Dependency], nodes: Sequence[tuple[Part, Dependency]]
-    ) -> bool:
-        visited: list[tuple[Part, Dependency]] = []
-        stack = [node for node in nodes if self._reads(start, node)]
-        while stack:
-            node = stack.pop()
-            if node == start:
-                return True
-            if node not in visited:
-                visited.append(node)
-                stack += [successor for successor in nodes if self._reads(node, successor)]
-        return False
+        return [part for part in parts if part in circular]
 
     def _reads(self, reader: tuple[Part, Dependency], writer: tuple[Part, Dependency]) -> bool:
         """Whether *reader* reads an output of *writer* in the same step, also by wires."""

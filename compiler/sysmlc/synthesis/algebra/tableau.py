@@ -78,12 +78,9 @@ class _Encoder:
 
     def encode(self, formula: Formula) -> Formula:
         """Return a formula without temporal operators and primes that is equivalent from now on."""
-        if not isinstance(formula, Apply):
-            return self._predict(formula) if has_primes(formula) else formula
-        if formula.op in FUTURE:
-            args = tuple(map(self.encode, formula.args))
-            return self._encode_operator(formula.op, args)
-        if formula.op in _CONNECTIVES:
+        if isinstance(formula, Apply) and formula.op in FUTURE:
+            return self._encode_operator(formula.op, tuple(map(self.encode, formula.args)))
+        if isinstance(formula, Apply) and formula.op in _CONNECTIVES:
             return Apply(formula.op, tuple(map(self.encode, formula.args)))
         return self._predict(formula) if has_primes(formula) else formula
 

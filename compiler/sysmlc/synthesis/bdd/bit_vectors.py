@@ -14,7 +14,8 @@ Vector = tuple[Node, ...]
 def constant(manager: Manager, value: int) -> Vector:
     """Return the vector of a number."""
     width = (value if value >= 0 else ~value).bit_length() + 1
-    return tuple(_constant_bit(manager, value >> place & 1) for place in range(width))
+    bits = (manager.false, manager.true)
+    return tuple(bits[value >> place & 1] for place in range(width))
 
 
 def from_unsigned(manager: Manager, bits: Sequence[Node]) -> Vector:
@@ -86,12 +87,8 @@ def _divide_absolute(manager: Manager, left: Vector, right: Vector) -> tuple[Vec
 def equal(manager: Manager, left: Vector, right: Vector) -> Node:
     """Return the condition under which both vectors are the same number."""
     width = max(len(left), len(right))
-    result = manager.true
-    for left_bit, right_bit in zip(
-        _sign_extend(left, width), _sign_extend(right, width), strict=True
-    ):
-        result = result & left_bit.equiv(right_bit)
-    return result
+    pairs = zip(_sign_extend(left, width), _sign_extend(right, width), strict=True)
+    return manager.conjoin(left_bit.equiv(right_bit) for left_bit, right_bit in pairs)
 
 
 def less(manager: Manager, left: Vector, right: Vector) -> Node:
@@ -129,7 +126,3 @@ def _trim_sign(vector: Vector) -> Vector:
     while len(vector) > 1 and vector[-1] == vector[-2]:
         vector = vector[:-1]
     return vector
-
-
-def _constant_bit(manager: Manager, value: int) -> Node:
-    return manager.true if value else manager.false

@@ -8,9 +8,11 @@ import logging
 import sys
 import time
 import warnings
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import reduce
 from importlib import import_module
+from operator import and_, or_
 from types import FrameType, ModuleType
 from typing import Any, Protocol, Self, cast
 from weakref import WeakKeyDictionary
@@ -128,6 +130,23 @@ class Manager:
     def ite(self, test: Node, then: Node, otherwise: Node) -> Node:
         """Return the diagram that equals *then* where *test* holds, else *otherwise*."""
         return cast("Node", self._bdd.ite(test, then, otherwise))
+
+    def conjoin(self, parts: Iterable[Node]) -> Node:
+        """Return the conjunction of the parts; true for none."""
+        return reduce(and_, parts, self.true)
+
+    def disjoin(self, parts: Iterable[Node]) -> Node:
+        """Return the disjunction of the parts; false for none."""
+        return reduce(or_, parts, self.false)
+
+    def conjoin_small(self, parts: Iterable[Node], limit: int) -> Node | None:
+        """Return the conjunction, or None if it or an intermediate one has over *limit* nodes."""
+        result = self.true
+        for part in parts:
+            result = result & part
+            if len(result) > limit:
+                return None
+        return result
 
     def exist(self, bits: Collection[str], node: Node) -> Node:
         """Quantify the bits existentially."""

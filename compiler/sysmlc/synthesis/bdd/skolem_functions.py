@@ -4,7 +4,7 @@ If the relation allows several answers, earlier bits are decided first, and a bi
 be. So the functions do not depend on the order of bits in the library.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 from sysmlc.synthesis.bdd.manager import Manager, Node
 
@@ -30,6 +30,22 @@ def choose_functions(manager: Manager, relation: Node, bits: Sequence[str]) -> d
     return functions
 
 
+def find_functions(
+    manager: Manager, relation: Node, bits: Collection[str]
+) -> dict[str, Node] | None:
+    """Return each of *bits* as a function of the other bits if the relation allows one answer.
+
+    The functions are arbitrary where it allows none. None if it allows several answers somewhere.
+    """
+    functions: dict[str, Node] = {}
+    for bit in sorted(bits):
+        functions[bit] = manager.and_exist(relation, manager.var(bit), bits)
+        can_be_false = manager.and_exist(relation, ~manager.var(bit), bits)
+        if functions[bit] & can_be_false != manager.false:
+            return None
+    return functions
+
+
 def substitute(manager: Manager, node: Node, functions: Mapping[str, Node]) -> Node:
     """Replace bits of the diagram by functions, none of which depends on a replaced bit."""
     # Bit by bit, because the simultaneous composition of the library takes ten times as long
@@ -52,20 +68,3 @@ def combine_cases(
         for bit, function in functions.items():
             combined[bit] = combined.get(bit, manager.false) | (condition & function)
     return combined
-
-
-def find_least_assignment(
-    manager: Manager, node: Node, bits: Sequence[str]
-) -> dict[str, bool] | None:
-    """Return the satisfying assignment that is least if *bits* are read as a binary number.
-
-    None if the diagram is unsatisfiable. *bits* must contain the support of the diagram.
-    """
-    if node == manager.false:
-        return None
-    assignment: dict[str, bool] = {}
-    for bit in bits:
-        low = manager.assign(node, {bit: False})
-        assignment[bit] = low == manager.false
-        node = manager.assign(node, {bit: True}) if assignment[bit] else low
-    return assignment

@@ -61,12 +61,13 @@ class Symbols:
         bits = self._bits[name]
         return tuple(map(next_bit, bits)) if primed else bits
 
+    def names_of(self, owner: Owner) -> tuple[str, ...]:
+        """Return the variables of one owner."""
+        return tuple(name for name, item in self.variables.items() if item.owner is owner)
+
     def bits_of_owner(self, owner: Owner, primed: bool = False) -> tuple[str, ...]:
         """Return the bits of all variables of one owner, in the order of the variables."""
-        return self.all_bits(
-            [variable.name for variable in self.variables.values() if variable.owner is owner],
-            primed,
-        )
+        return self.all_bits(self.names_of(owner), primed)
 
     def all_bits(self, names: Iterable[str], primed: bool = False) -> tuple[str, ...]:
         """Return the bits of several variables."""
@@ -178,12 +179,11 @@ class Symbols:
 
     def _equal_literals(self, left: Formula, right: Formula) -> Node:
         right_literals = frozenset(self._literals_of(right))
-        result = self.manager.false
-        for literal in self._literals_of(left):
-            if literal in right_literals:
-                both = self._equal_literal(left, literal) & self._equal_literal(right, literal)
-                result = result | both
-        return result
+        return self.manager.disjoin(
+            self._equal_literal(left, literal) & self._equal_literal(right, literal)
+            for literal in self._literals_of(left)
+            if literal in right_literals
+        )
 
     def _equal_literal(self, formula: Formula, literal: str) -> Node:
         """Return the condition under which a variable, or a constant literal, is *literal*."""
@@ -254,6 +254,16 @@ def next_bit(bit: str) -> str:
     return f"{bit}'"
 
 
+def current_bit(bit: str) -> str:
+    """Return the name of the bit of the current value."""
+    return bit.removesuffix("'")
+
+
+def is_next(bit: str) -> bool:
+    """Whether a bit belongs to a next value."""
+    return bit.endswith("'")
+
+
 def _bit_names(variable: Variable) -> tuple[str, ...]:
     return tuple(f"{variable.name}.{index}" for index in range(domains.width(variable.domain)))
 
@@ -265,25 +275,10 @@ def _decode_value(variable: Variable, bits: list[bool]) -> Literal:
     return domains.values(variable.domain)[index]
 
 
-def conjoin(manager: Manager, parts: Iterable[Node]) -> Node:
-    """Return the conjunction of the parts; true for none."""
-    result = manager.true
-    for part in parts:
-        result = result & part
-    return result
-
-
-def _disjoin(manager: Manager, parts: list[Node]) -> Node:
-    result = manager.false
-    for part in parts:
-        result = result | part
-    return result
-
-
 _CONNECTIVES: dict[Op, Callable[[Manager, list[Node]], Node]] = {
     Op.NOT: lambda _, parts: ~parts[0],
-    Op.AND: conjoin,
-    Op.OR: _disjoin,
+    Op.AND: Manager.conjoin,
+    Op.OR: Manager.disjoin,
     Op.IMPLIES: lambda _, parts: parts[0].implies(parts[1]),
     Op.IFF: lambda _, parts: parts[0].equiv(parts[1]),
 }

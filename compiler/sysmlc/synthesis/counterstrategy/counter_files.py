@@ -212,12 +212,11 @@ def _print_guards(
     rows: Sequence[Row], other_rows: Sequence[Row], outputs: Sequence[Variable]
 ) -> Iterator[str]:
     for row, columns in _distinguish_rows(rows, other_rows):
-        comparisons = [_print_comparison(outputs[column], row[column]) for column in columns]
+        comparisons = (
+            f"{quote_name(outputs[i].name)} == {_print_sysml_literal(outputs[i], row[i])}"
+            for i in columns
+        )
         yield " and ".join(comparisons) or "true"
-
-
-def _print_comparison(variable: Variable, value: Literal) -> str:
-    return f"{quote_name(variable.name)} == {_print_sysml_literal(variable, value)}"
 
 
 def _print_sysml_literal(variable: Variable, value: Literal) -> str:

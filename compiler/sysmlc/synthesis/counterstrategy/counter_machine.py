@@ -1,6 +1,6 @@
 """Machines of counter-strategies (``controllers.counter_strategy``), and example runs of them."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 
 from msgspec.structs import replace
 
@@ -105,27 +105,21 @@ def _merge_equal_states(machine: CounterStrategy) -> CounterStrategy:
     # Partition refinement (Moore): split classes until all states of a class have equal keys.
     classes, count = [0] * len(machine.states), 0
     while True:
-        keys: dict[object, int] = {}
-        classes = [
-            keys.setdefault(_state_key(state, classes), len(keys)) for state in machine.states
+        # The moves between classes are the keys, and the states of the quotient.
+        merged = [
+            State(state.inputs, {row: classes[successor] for row, successor in state.moves.items()})
+            for state in machine.states
         ]
-        if len(keys) == count:
-            return _quotient(machine, classes)
-        count = len(keys)
-
-
-def _state_key(state: State, classes: Sequence[int]) -> tuple[Row, frozenset[tuple[Row, int]]]:
-    return state.inputs, frozenset(
-        (row, classes[successor]) for row, successor in state.moves.items()
-    )
-
-
-def _quotient(machine: CounterStrategy, classes: Sequence[int]) -> CounterStrategy:
-    representatives: dict[int, State] = {}
-    for state, class_ in zip(machine.states, classes, strict=True):
-        moves = {row: classes[successor] for row, successor in state.moves.items()}
-        representatives.setdefault(class_, replace(state, moves=moves))
-    return replace(machine, states=tuple(representatives.values()))
+        numbers: dict[object, int] = {}
+        refined = [
+            numbers.setdefault((state.inputs, frozenset(state.moves.items())), len(numbers))
+            for state in merged
+        ]
+        if len(numbers) == count:
+            representatives = dict(zip(reversed(classes), reversed(merged), strict=True))
+            states = tuple(representatives[class_] for class_ in range(count))
+            return replace(machine, states=states)
+        classes, count = refined, len(numbers)
 
 
 def example_run(machine: CounterStrategy) -> Trace:
@@ -182,19 +176,15 @@ def find_counterstrategies(
     """
     for contract in contracts:
         try:
-            yield _find_counterstrategy(contract, options), contract
+            environment = find_environment_strategy(contract, options)
+            goals = (goal.conjunct for goal in environment.lost_game.game.goals)
+            unmet = find_original_conjuncts((goal for goal in goals if goal is not None), contract)
+            with environment.lost_game.arena.manager.guard():
+                machine = build_counterstrategy(environment, contract)
+            yield replace(machine, unmet_guarantees=tuple(unmet)), contract
         except LimitError as problem:
             subject, reached = place(contract.origin), str(problem)
             sink.report(NO_COUNTER, subject, component=contract.component, reached=reached)
-
-
-def _find_counterstrategy(contract: Contract, options: Options) -> CounterStrategy:
-    environment = find_environment_strategy(contract, options)
-    goals = (goal.conjunct for goal in environment.lost_game.game.goals)
-    unmet = find_original_conjuncts((goal for goal in goals if goal is not None), contract)
-    with environment.lost_game.arena.manager.guard():
-        machine = build_counterstrategy(environment, contract)
-        return replace(machine, unmet_guarantees=tuple(unmet))
 
 
 def find_environment_strategy(contract: Contract, options: Options) -> EnvironmentStrategy:

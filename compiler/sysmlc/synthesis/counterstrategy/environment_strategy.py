@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from msgspec import Struct
 
 from sysmlc.synthesis.bdd.manager import Node
-from sysmlc.synthesis.bdd.symbols import next_bit
+from sysmlc.synthesis.bdd.symbols import current_bit, next_bit
 from sysmlc.synthesis.games.arena import Arena, PredecessorOperator, build_plain_arena
 from sysmlc.synthesis.games.game import Game
 
@@ -49,26 +49,20 @@ class LostGame(Struct, frozen=True):
 def find_ranks(game: Game) -> LostGame:
     """Return the ranks of the states in which the environment wins. Raises LimitError."""
     arena = build_plain_arena(game)
+    true = arena.manager.true
+    goals, fairness = arena.goals or (true,), arena.fairness or (true,)
     with arena.manager.guard():
-        return _RankSearch(game, arena).run()
+        ranks = tuple(_RankSearch(arena, goals, fairness).iter_ranks())
+        return LostGame(game, arena, goals, fairness, ranks)
 
 
 class _RankSearch:
-    def __init__(self, game: Game, arena: Arena) -> None:
-        self._game = game
-        self._arena = arena
+    def __init__(self, arena: Arena, goals: tuple[Node, ...], fairness: tuple[Node, ...]) -> None:
+        self._arena, self._goals, self._fairness = arena, goals, fairness
         self._steps = PredecessorOperator(arena)
-        true = arena.manager.true
-        self._goals = arena.goals or (true,)
-        self._fairness = arena.fairness or (true,)
 
-    def run(self) -> LostGame:
+    def iter_ranks(self) -> Iterator[Rank]:
         """Compute ranks until no goal can be prevented from more states."""
-        return LostGame(
-            self._game, self._arena, self._goals, self._fairness, tuple(self._iter_ranks())
-        )
-
-    def _iter_ranks(self) -> Iterator[Rank]:
         # A least fixpoint: cycle through the goals until none of them adds states.
         won = self._arena.manager.false
         unchanged_goals, goal = 0, 0
@@ -88,9 +82,8 @@ class _RankSearch:
         while True:
             candidates = allowed & self._steps.environment_predecessors(stay) & self._arena.states
             attractors = tuple(self._attractor_layers(fair, candidates) for fair in self._fairness)
-            shrunk = stay
-            for attractor in attractors:
-                shrunk = shrunk & attractor[-1]
+            layers = (attractor[-1] for attractor in attractors)
+            shrunk = stay & self._arena.manager.conjoin(layers)
             if shrunk == stay:
                 return Rank(won | stay, goal, stay, attractors)
             stay = shrunk
@@ -130,11 +123,9 @@ class EnvironmentStrategy:
         """Return first inputs after which every answer of the system is losing."""
         input_turn, answer_turn = self._arena.start
         manager = self._arena.manager
-        winning_inputs = _conjoin(input_turn.parts, manager.true)
-        allowed_answers = _conjoin(answer_turn.parts, manager.true)
-        winning_inputs = winning_inputs & ~manager.exist(
-            answer_turn.bits, allowed_answers & ~self.lost_game.states
-        )
+        escaping_answers = manager.conjoin(answer_turn.parts) & ~self.lost_game.states
+        winning_inputs = manager.conjoin(input_turn.parts)
+        winning_inputs = winning_inputs & ~manager.exist(answer_turn.bits, escaping_answers)
         inputs = manager.pick(winning_inputs, input_turn.bits)
         if inputs is None:
             raise NotLostError("the environment does not win")
@@ -149,11 +140,11 @@ class EnvironmentStrategy:
         if state is not None:
             answer_turn = self._arena.turns[1]
             values = {**state, **{next_bit(bit): value for bit, value in inputs.items()}}
-        parts = [self._arena.manager.assign(part, values) for part in answer_turn.parts]
-        for answer in self._iter_assignments(
-            _conjoin(parts, self._arena.manager.true), answer_turn.bits
-        ):
-            yield self._unprime(answer)
+        manager = self._arena.manager
+        allowed = manager.conjoin(manager.assign(part, values) for part in answer_turn.parts)
+        while (answer := manager.pick(allowed, answer_turn.bits)) is not None:
+            yield _unprime(answer)
+            allowed = allowed & ~manager.cube(answer)
 
     def rank(self, state: Bits) -> Rank:
         """Return the first rank that contains the state.
@@ -188,35 +179,22 @@ class EnvironmentStrategy:
         """Return inputs after which all answers lead to *target*; unchanged inputs if possible."""
         manager = self._arena.manager
         input_turn, answer_turn = self._arena.turns
-        allowed_answers = _conjoin(
-            [manager.assign(part, state) for part in answer_turn.parts], manager.true
+        winning_inputs, allowed_answers = (
+            manager.conjoin(manager.assign(part, state) for part in turn.parts)
+            for turn in (input_turn, answer_turn)
         )
         escaping_answers = allowed_answers & ~self._arena.symbols.prime(target)
-        winning_inputs = _conjoin(
-            [manager.assign(part, state) for part in input_turn.parts], manager.true
-        )
         winning_inputs = winning_inputs & ~manager.exist(answer_turn.bits, escaping_answers)
         current_inputs = {next_bit(bit): state[bit] for bit in self.first}
         if self._holds(winning_inputs, current_inputs):
             return {bit: state[bit] for bit in self.first}
-        return self._unprime(manager.pick(winning_inputs, input_turn.bits) or {})
-
-    def _unprime(self, next_values: Bits) -> Bits:
-        """Return the values with unprimed names of bits."""
-        return {bit.removesuffix("'"): value for bit, value in next_values.items()}
-
-    def _iter_assignments(self, node: Node, bits: tuple[str, ...]) -> Iterator[Bits]:
-        manager = self._arena.manager
-        while (assignment := manager.pick(node, bits)) is not None:
-            yield assignment
-            node = node & ~manager.cube(assignment)
+        return _unprime(manager.pick(winning_inputs, input_turn.bits) or {})
 
     def _holds(self, node: Node, values: Bits) -> bool:
         manager = self._arena.manager
         return manager.assign(node, values) == manager.true
 
 
-def _conjoin(parts: list[Node] | tuple[Node, ...], result: Node) -> Node:
-    for part in parts:
-        result = result & part
-    return result
+def _unprime(next_values: Bits) -> Bits:
+    """Return the values with unprimed names of bits."""
+    return {current_bit(bit): value for bit, value in next_values.items()}

@@ -69,10 +69,7 @@ def build_plain_arena(game: Game) -> Arena:
 
 def domain_constraint(symbols: Symbols, names: Collection[str], primed: bool = False) -> Node:
     """Return the condition that the variables *names* have values of their domains."""
-    result = symbols.manager.true
-    for name in names:
-        result = result & symbols.domain(name, primed)
-    return result
+    return symbols.manager.conjoin(symbols.domain(name, primed) for name in names)
 
 
 def nodes_of(constraints: Collection[Constraint]) -> tuple[Node, ...]:

@@ -15,7 +15,7 @@ from msgspec.structs import replace
 
 from sysmlc.logic.contract import Owner
 from sysmlc.synthesis.bdd.manager import Manager, Node
-from sysmlc.synthesis.bdd.symbols import Symbols
+from sysmlc.synthesis.bdd.symbols import Symbols, is_next
 from sysmlc.synthesis.games.arena import Arena, Turn, build_plain_arena, domain_constraint, nodes_of
 from sysmlc.synthesis.games.game import Game
 from sysmlc.synthesis.games.relational_product import Product
@@ -52,7 +52,7 @@ def _find_commands(game: Game) -> tuple[str, ...]:
 def _is_bound_by_own_step(game: Game, name: str) -> bool:
     own_bits = game.symbols.bits(name, primed=True)
     return all(
-        all(bit.endswith("'") for bit in support)
+        all(map(is_next, support))
         for support in map(game.manager.support, nodes_of(game.guarantees))
         if not support.isdisjoint(own_bits)
     )
@@ -165,21 +165,18 @@ def _has_unique_values(
 ) -> bool:
     """Whether the parts leave exactly one value of *own_bits* for all allowed commands."""
     manager = symbols.manager
-    relation = manager.true
-    for part in parts:
-        relation = relation & part
-        if len(relation) > MAX_JOINED_NODES:
-            return False
+    relation = manager.conjoin_small(parts, MAX_JOINED_NODES)
+    if relation is None:
+        return False
     care = domain_constraint(symbols, symbols.names(relation))
     stuck = care & ~manager.exist(own_bits, relation)
     if _restrict_to_allowed(manager, stuck, choice) != manager.false:
         return False
-    doubtful = manager.false
-    for bit in sorted(own_bits):
-        can_be_true = manager.and_exist(relation & care, manager.var(bit), own_bits)
-        doubtful = doubtful | (
-            can_be_true & manager.and_exist(relation & care, ~manager.var(bit), own_bits)
-        )
+    doubtful = manager.disjoin(
+        manager.and_exist(relation & care, manager.var(bit), own_bits)
+        & manager.and_exist(relation & care, ~manager.var(bit), own_bits)
+        for bit in sorted(own_bits)
+    )
     return _restrict_to_allowed(manager, doubtful, choice) == manager.false
 
 
@@ -203,11 +200,7 @@ def _find_state_invariants(
     A game checks them in the next step, so they do not bind the system in a state in which the
     environment has no next input. Without such states they must hold in all states.
     """
-    invariants = [
-        node
-        for node in guarantees
-        if not any(bit.endswith("'") for bit in game.manager.support(node))
-    ]
+    invariants = [node for node in guarantees if not any(map(is_next, game.manager.support(node)))]
     if not invariants:
         return []
     progress = Product(game.manager, nodes_of(game.assumptions), game.next_inputs)
@@ -227,9 +220,7 @@ def _quantify_unread_bits(
     parts, bits = list(command.parts), list(command.bits)
     for bit in command_bits:
         touching = _parts_over(manager, parts, frozenset([bit]))
-        conjunction = manager.true
-        for node in touching:
-            conjunction = conjunction & node
+        conjunction = manager.conjoin(touching)
         if bit in read_bits or len(conjunction) > MAX_JOINED_NODES:
             continue
         parts = [node for node in parts if node not in touching]

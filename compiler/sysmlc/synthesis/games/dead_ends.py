@@ -13,7 +13,7 @@ from msgspec import Struct
 from sysmlc.logic.contract import Owner
 from sysmlc.support.disjoint_sets import group_related
 from sysmlc.synthesis.bdd.manager import Manager, Node
-from sysmlc.synthesis.bdd.symbols import Symbols, conjoin
+from sysmlc.synthesis.bdd.symbols import Symbols
 from sysmlc.synthesis.games.relational_product import Product
 
 MAX_DEFINITION_NODES = 1_000
@@ -45,7 +45,7 @@ def find_viable_inputs(
     predecessors = Product(
         manager, (*assumptions, *history), symbols.all_bits(symbols.variables, primed=True)
     )
-    viable, shrunk = manager.false, conjoin(manager, map(symbols.domain, symbols.variables))
+    viable, shrunk = manager.false, manager.conjoin(map(symbols.domain, symbols.variables))
     while shrunk != viable:
         manager.check("searching for dead ends of the environment")
         viable, shrunk = shrunk, predecessors(symbols.prime(shrunk)) & shrunk
@@ -106,7 +106,9 @@ def _drop_definitions(manager: Manager, parts: Iterable[Node], bits: Sequence[st
         is_changed = False
         for bit in bits:
             touching = [part for part in by_bit[bit] if part in remaining]
-            conjunction = _conjoin_small(manager, touching) if touching else None
+            conjunction = (
+                manager.conjoin_small(touching, MAX_DEFINITION_NODES) if touching else None
+            )
             if conjunction is not None and manager.exist([bit], conjunction) == manager.true:
                 is_changed = True
                 for part in touching:
@@ -114,24 +116,11 @@ def _drop_definitions(manager: Manager, parts: Iterable[Node], bits: Sequence[st
     return list(remaining)
 
 
-def _conjoin_small(manager: Manager, parts: Iterable[Node]) -> Node | None:
-    """Return the conjunction, or None if it is large."""
-    result = manager.true
-    for part in parts:
-        result = result & part
-        if len(result) > MAX_DEFINITION_NODES:
-            return None
-    return result
-
-
 def _holds_in_ranges(symbols: Symbols, node: Node) -> bool:
     """Whether all values of the variables satisfy the condition."""
-    ranges = conjoin(
-        symbols.manager,
-        (
-            symbols.domain(name, primed)
-            for primed in (False, True)
-            for name in symbols.names(node, primed)
-        ),
+    ranges = symbols.manager.conjoin(
+        symbols.domain(name, primed)
+        for primed in (False, True)
+        for name in symbols.names(node, primed)
     )
     return ranges <= node

@@ -101,11 +101,12 @@ def make_game(
     Raises OutsideGr1Error for a conjunct that GR(1) cannot express, LimitError if a limit is
     exceeded.
     """
-    names = {owner: _variable_names(contract, owner) for owner in Owner}
-    for conjunct in contract.assumptions:
-        _check_conjunct(conjunct, names, is_assumption=True)
-    for conjunct in contract.guarantees:
-        _check_conjunct(conjunct, names, is_assumption=False)
+    outputs = frozenset(v.name for v in contract.variables if v.owner is Owner.SYSTEM)
+    for is_assumption, conjuncts in ((True, contract.assumptions), (False, contract.guarantees)):
+        for conjunct in conjuncts:
+            objection = _find_objection(conjunct, outputs, is_assumption)
+            if objection:
+                raise OutsideGr1Error(conjunct, objection)
     # An order of bits that suits single constraints can be bad for the whole game, so the
     # initial order is kept while the contract is translated.
     with manager.guard(), manager.without_reordering():
@@ -180,34 +181,17 @@ def _encode_ranges(symbols: Symbols, owner: Owner, primed: bool) -> Iterator[Con
                 yield Constraint(node)
 
 
-_VariableNames = Mapping[Owner, frozenset[str]]
-"""The names of each owner's variables."""
-
-
-def _variable_names(contract: Contract, owner: Owner) -> frozenset[str]:
-    return frozenset(variable.name for variable in contract.variables if variable.owner is owner)
-
-
-def _check_conjunct(conjunct: Conjunct, names: _VariableNames, is_assumption: bool) -> None:
-    """Raise OutsideGr1Error if GR(1) does not allow these variables in the conjunct's class."""
-    objection = _find_objection(conjunct, names, is_assumption)
-    if objection:
-        raise OutsideGr1Error(conjunct, objection)
-
-
-def _find_objection(conjunct: Conjunct, names: _VariableNames, is_assumption: bool) -> str:
-    """Return why GR(1) does not allow the conjunct, or an empty string."""
+def _find_objection(conjunct: Conjunct, outputs: frozenset[str], is_assumption: bool) -> str:
+    """Return why GR(1) does not allow these variables in the conjunct's class, or an empty text."""
     if conjunct.class_ is Class.OTHER:
         return "it is neither initial, nor for every step (G), nor recurring (GF)"
     if conjunct.class_ is not Class.SAFETY:
-        after = _first_variable(conjunct.formula, frozenset().union(*names.values()), primed=True)
+        after = _first_variable(conjunct.formula, None, primed=True)
         kind = "an initial condition" if conjunct.class_ is Class.INIT else "what must recur"
         if after:
             return f"{kind} cannot refer to the next step ({after}')"
-    return _find_assumption_objection(conjunct, names[Owner.SYSTEM]) if is_assumption else ""
-
-
-def _find_assumption_objection(conjunct: Conjunct, outputs: frozenset[str]) -> str:
+    if not is_assumption:
+        return ""
     if conjunct.class_ is Class.INIT:
         output = _first_variable(conjunct.formula, outputs, primed=False)
         # The environment chooses first, before there is any output.
@@ -218,11 +202,14 @@ def _find_assumption_objection(conjunct: Conjunct, outputs: frozenset[str]) -> s
     return output and f"an assumption cannot refer to the next value of an output ({output}')"
 
 
-def _first_variable(formula: Formula, names: frozenset[str], primed: bool) -> str:
-    """Return the name of the formula's first variable that is in *names*, or an empty string."""
+def _first_variable(formula: Formula, names: frozenset[str] | None, primed: bool) -> str:
+    """Return the name of the formula's first variable among *names*, or an empty string.
+
+    None stands for all variables.
+    """
     matches = (
         variable.name
         for variable in variables(formula)
-        if variable.primed == primed and variable.name in names
+        if variable.primed == primed and (names is None or variable.name in names)
     )
     return next(matches, "")

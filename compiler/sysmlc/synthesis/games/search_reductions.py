@@ -16,14 +16,14 @@ one after the other. Booleans may change in every move.
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import combinations
+from itertools import combinations, permutations
 
 from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.logic.contract import BooleanDomain, Owner
 from sysmlc.synthesis.bdd.manager import Manager, Node
-from sysmlc.synthesis.bdd.symbols import next_bit
+from sysmlc.synthesis.bdd.symbols import current_bit, next_bit
 from sysmlc.synthesis.games.arena import (
     Arena,
     PredecessorOperator,
@@ -234,16 +234,10 @@ def _cannot_move_alone(arena: Arena, turn: Turn, left_name: str, right_name: str
         if any(own_bits.isdisjoint(support) for own_bits in bit_sets):
             continue
         if len(part) > MAX_RULE_NODES or not all(
-            _can_move_alone(arena, part, *pair) for pair in _both_orders(bit_sets)
+            _can_move_alone(arena, part, *pair) for pair in permutations(bit_sets, 2)
         ):
             return True
     return False
-
-
-def _both_orders(
-    bits: Sequence[frozenset[str]],
-) -> tuple[tuple[frozenset[str], frozenset[str]], ...]:
-    return (bits[0], bits[1]), (bits[1], bits[0])
 
 
 def _can_move_alone(
@@ -251,9 +245,9 @@ def _can_move_alone(
 ) -> bool:
     manager = arena.manager
     restricted = _substitute_frames(manager, part, _frame_functions(manager, staying))
-    unchanged = manager.true
-    for bit in sorted(moving):
-        unchanged = unchanged & manager.var(bit).equiv(manager.var(_current_bit(bit)))
+    unchanged = manager.conjoin(
+        manager.var(bit).equiv(manager.var(current_bit(bit))) for bit in sorted(moving)
+    )
     return restricted & ~unchanged != manager.false
 
 
@@ -284,7 +278,7 @@ def _restrict_turns(
 
 
 def _frame_functions(manager: Manager, bits: Iterable[str]) -> dict[str, Node]:
-    return {bit: manager.var(_current_bit(bit)) for bit in sorted(bits)}
+    return {bit: manager.var(current_bit(bit)) for bit in sorted(bits)}
 
 
 def _substitute_frames(manager: Manager, part: Node, frames: Mapping[str, Node]) -> Node:
@@ -292,10 +286,6 @@ def _substitute_frames(manager: Manager, part: Node, frames: Mapping[str, Node])
     return manager.compose(
         part, {bit: current for bit, current in frames.items() if bit in support}
     )
-
-
-def _current_bit(bit: str) -> str:
-    return bit.removesuffix("'")
 
 
 @dataclass(slots=True)
@@ -322,9 +312,10 @@ class SingleMoveOperator:
 
     def controllable_predecessors(self, target: Node) -> Node:
         """Return the states from which the move of some component forces *target*."""
-        result = self.arena.manager.false
-        for index in range(len(self._component_products)):
-            result = result | self._predecessors_by_move(index, target)
+        result = self.arena.manager.disjoin(
+            self._predecessors_by_move(index, target)
+            for index in range(len(self._component_products))
+        )
         return predecessors_through(self._shared_products, result)
 
     def extend_attractor(self, attractor: Node, winning: Node) -> Node:

@@ -78,10 +78,7 @@ class Attractor:
             self._states_to_wait_in(start, ~fair, bound)
             for fair, bound in zip(self.fairness, self._waiting_bounds(), strict=True)
         )
-        states = start
-        for waiting_set in waiting:
-            states = states | waiting_set
-        return Layer(states, waiting)
+        return Layer(start | self.operator.arena.manager.disjoin(waiting), waiting)
 
     def _compute_fast_layer(self, states: Node) -> Layer:
         previous = self.operator.arena.manager.false

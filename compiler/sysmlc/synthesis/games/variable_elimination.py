@@ -13,8 +13,9 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.logic.contract import Owner
-from sysmlc.synthesis.bdd.manager import Manager, Node
-from sysmlc.synthesis.bdd.symbols import conjoin
+from sysmlc.synthesis.bdd.manager import Node
+from sysmlc.synthesis.bdd.skolem_functions import find_functions
+from sysmlc.synthesis.bdd.symbols import current_bit, is_next
 from sysmlc.synthesis.games.arena import domain_constraint
 from sysmlc.synthesis.games.game import Constraint, Game
 
@@ -53,17 +54,7 @@ def _merge_by_support(game: Game, parts: Iterable[Constraint]) -> list[Constrain
     groups: dict[frozenset[str], list[Node]] = {}
     for part in parts:
         groups.setdefault(game.manager.support(part.node), []).append(part.node)
-    return [Constraint(conjoin(game.manager, nodes)) for nodes in groups.values()]
-
-
-def _conjoin_within_limit(manager: Manager, conjuncts: Iterable[Node]) -> Node | None:
-    """Return the conjunction, or None if an intermediate result is too large."""
-    result = manager.true
-    for conjunct in conjuncts:
-        result = result & conjunct
-        if len(result) > MAX_DEFINITION_NODES:
-            return None
-    return result
+    return [Constraint(game.manager.conjoin(nodes)) for nodes in groups.values()]
 
 
 class _Definition(Struct, frozen=True):
@@ -82,36 +73,24 @@ def _find_definition(game: Game, name: str) -> _Definition | None:
     is_input = symbols.variables[name].owner is Owner.ENVIRONMENT
     parts = _parts_over(game, game.assumptions if is_input else game.guarantees, own_bits)
     parts = [part for part in parts if _is_about_next_step(game, part.node)]
-    relation = _conjoin_within_limit(manager, (part.node for part in parts))
+    relation = manager.conjoin_small((part.node for part in parts), MAX_DEFINITION_NODES)
     if not parts or relation is None:
         return None
     # Codes outside of the ranges have no meaning, so the definition may be partial there.
     other_names = [name_ for name_ in symbols.names(relation, primed=True) if name_ != name]
     care = domain_constraint(symbols, other_names, primed=True)
-    bits = _find_functions(manager, relation, own_bits, care)
-    if bits is None or not _holds_initially(game, is_input, bits, other_names):
-        return None
-    return _Definition(bits, tuple(parts))
-
-
-def _find_functions(
-    manager: Manager, relation: Node, own_bits: frozenset[str], care: Node
-) -> dict[str, Node] | None:
-    """Return each bit as a function of the other bits if the relation leaves exactly one value.
-
-    Only assignments in *care* are considered.
-    """
     # A relation that leaves no value for some assignment restricts the other variables.
     if not care <= manager.exist(own_bits, relation):
         return None
-    functions: dict[str, Node] = {}
-    for bit in sorted(own_bits):
-        can_be_true = manager.and_exist(relation & care, manager.var(bit), own_bits)
-        can_be_false = manager.and_exist(relation & care, ~manager.var(bit), own_bits)
-        if can_be_true & can_be_false != manager.false:
-            return None
-        functions[bit] = manager.restrict(can_be_true, care)
-    return functions
+    functions = find_functions(manager, relation & care, own_bits)
+    if functions is None:
+        return None
+    bits = {bit: manager.restrict(node, care) for bit, node in functions.items()}
+    return (
+        _Definition(bits, tuple(parts))
+        if _holds_initially(game, is_input, bits, other_names)
+        else None
+    )
 
 
 def _holds_initially(
@@ -119,10 +98,10 @@ def _holds_initially(
 ) -> bool:
     """Whether the definition also holds in the first step."""
     manager, symbols = game.manager, game.symbols
-    current_bits = {_current_bit(bit): symbols.unprime(node) for bit, node in bits.items()}
+    current_bits = {current_bit(bit): symbols.unprime(node) for bit, node in bits.items()}
     parts = game.init_assumptions if is_input else game.init_guarantees
-    constraint = conjoin(
-        manager, (part.node for part in _parts_over(game, parts, frozenset(current_bits)))
+    constraint = manager.conjoin(
+        part.node for part in _parts_over(game, parts, frozenset(current_bits))
     )
     initial_states = constraint & domain_constraint(symbols, other_names)
     return all(initial_states <= manager.var(bit).equiv(node) for bit, node in current_bits.items())
@@ -131,9 +110,7 @@ def _holds_initially(
 def _substitute_definition(game: Game, name: str, definition: _Definition) -> Game:
     """Return the game with the definition in place of the variable."""
     next_bits = dict(definition.bits)
-    current_bits = {
-        _current_bit(bit): game.symbols.unprime(node) for bit, node in next_bits.items()
-    }
+    current_bits = {current_bit(bit): game.symbols.unprime(node) for bit, node in next_bits.items()}
     substitution = current_bits | next_bits
     removed = {id(part) for part in definition.parts}
     lists = {
@@ -185,8 +162,4 @@ def _parts_over(game: Game, parts: Iterable[Constraint], bits: frozenset[str]) -
 
 
 def _is_about_next_step(game: Game, node: Node) -> bool:
-    return all(bit.endswith("'") for bit in game.manager.support(node))
-
-
-def _current_bit(bit: str) -> str:
-    return bit.removesuffix("'")
+    return all(map(is_next, game.manager.support(node)))

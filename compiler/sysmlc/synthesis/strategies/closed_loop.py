@@ -94,10 +94,12 @@ def _translate_table(table: Table, symbols: Symbols, state: Variable) -> Control
     by_mode = [tuple(_translate_entry(table, mode, nodes, symbols, state)) for mode in table.modes]
     later = list[Node]()
     for parts in zip(*by_mode, strict=True):
-        step_part = symbols.manager.true
-        for mode_number, part in enumerate(parts):
-            step_part = step_part & symbols.encode({state.name: mode_number}).implies(part)
-        later.append(step_part)
+        later.append(
+            symbols.manager.conjoin(
+                symbols.encode({state.name: mode_number}).implies(part)
+                for mode_number, part in enumerate(parts)
+            )
+        )
     return ControllerRelation(first, (*later, symbols.domain(state.name)))
 
 

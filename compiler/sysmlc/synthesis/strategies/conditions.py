@@ -33,7 +33,6 @@ from sysmlc.logic.formula import (
 from sysmlc.logic.formula import variables as variables_of
 from sysmlc.synthesis.bdd.limits import TooLargeError
 from sysmlc.synthesis.bdd.manager import Node
-from sysmlc.synthesis.bdd.skolem_functions import find_least_assignment
 from sysmlc.synthesis.bdd.symbols import Symbols
 from sysmlc.synthesis.strategies.explicit_states import Answer, DraftMachine
 
@@ -108,9 +107,7 @@ class _ConditionWriter:
 
         The conditions may overlap for values that are impossible in the state.
         """
-        possible = self._manager.false
-        for condition in moves.values():
-            possible = possible | condition
+        possible = self._manager.disjoin(moves.values())
         variables = self._variables_of(moves.values())
         for (output, state), condition in moves.items():
             forbidden = possible & ~condition
@@ -144,7 +141,7 @@ class _ConditionWriter:
             for variable in variables
             for bit in self._symbols.bits(variable.name, variable.primed)
         ]
-        while (values := find_least_assignment(self._manager, remaining, bits)) is not None:
+        while (values := self._manager.pick(remaining, bits)) is not None:
             self._cases_left -= 1
             self._manager.check("computing the conditions of the machine")
             if self._cases_left < 0:

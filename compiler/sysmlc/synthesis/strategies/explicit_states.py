@@ -86,12 +86,9 @@ class _StateEnumeration:
         self._registers = registers
         self._max_states, self._max_moves = max_states, max_moves
         self._move_count = 0
-        self._hidden_bits = [
-            bit
-            for name in self._symbols.variables
-            if name not in registers
-            for bit in self._symbols.bits(name)
-        ]
+        self._hidden_bits = self._symbols.all_bits(
+            name for name in self._symbols.variables if name not in registers
+        )
         outputs = [name for name in self._strategy.outputs if name not in registers]
         self._listed_bits = self._symbols.all_bits(outputs)
         """Bits of the outputs that are no registers; moves give their values."""
@@ -220,16 +217,13 @@ class _StateEnumeration:
         if key not in self._class_cache:
             values = dict(zip(self._listed_bits, bits, strict=True))
             restricted_classes = (
-                _MemoryClass(
-                    self._symbols.prime(self._manager.assign(memory_class.memory, values)),
-                    memory_class.state,
-                )
-                for memory_class in self._classes[mode]
+                (self._symbols.prime(self._manager.assign(item.memory, values)), item.state)
+                for item in self._classes[mode]
             )
             self._class_cache[key] = [
-                memory_class
-                for memory_class in restricted_classes
-                if memory_class.memory != self._manager.false
+                _MemoryClass(memory, state)
+                for memory, state in restricted_classes
+                if memory != self._manager.false
             ]
         return self._class_cache[key]
 
@@ -266,16 +260,13 @@ class _StateEnumeration:
         candidates = [*steps, *map(Const, domains.values(variable.domain))]
         changes: list[tuple[Formula, Node]] = []
         for value in candidates:
-            overlap = remaining & self._states_with_value(outputs, name, value)
+            overlap = remaining & states_with_value(self._strategy, outputs, name, value)
             if overlap == remaining:
                 return [*changes, (value, remaining)]
             if overlap != self._manager.false:
                 changes.append((value, overlap))
                 remaining = remaining & ~overlap
         return changes
-
-    def _states_with_value(self, outputs: Functions, name: str, value: Formula) -> Node:
-        return states_with_value(self._strategy, outputs, name, value)
 
     def _check_count(self, noun: str, number: int, limit: int) -> None:
         self._manager.check("listing the states of the machine")

@@ -6,7 +6,7 @@ are compatible too. Pairs are chosen greedily in the order of the states. For al
 result gives the same answers as before.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from msgspec.structs import replace
 
@@ -39,10 +39,10 @@ def _equivalence_classes(states: tuple[Moves, ...], manager: Manager) -> list[in
         keys: dict[object, int] = {}
         refined = []
         for moves in states:
-            moves_by_class: dict[Answer, Node] = {}
-            for (output, state), node in moves.items():
-                key = output, classes[state]
-                moves_by_class[key] = moves_by_class.get(key, manager.false) | node
+            moves_by_class = _unite(
+                (((output, classes[state]), node) for (output, state), node in moves.items()),
+                manager,
+            )
             refined.append(keys.setdefault(frozenset(moves_by_class.items()), len(keys)))
         # Moore's refinement only splits classes, so an equal number means equal classes.
         if len(keys) == count:
@@ -58,13 +58,13 @@ def _quotient(states: tuple[Moves, ...], classes: list[int], manager: Manager) -
     numbers: dict[int, int] = {}
     for class_ in classes:
         numbers.setdefault(class_, len(numbers))
-    quotient: list[dict[Answer, Node]] = [{} for _ in numbers]
+    merged: list[list[tuple[Answer, Node]]] = [[] for _ in numbers]
     for state, moves in enumerate(states):
-        merged = quotient[numbers[classes[state]]]
-        for (output, next_state), node in moves.items():
-            key = output, numbers[classes[next_state]]
-            merged[key] = merged.get(key, manager.false) | node
-    return tuple(quotient)
+        merged[numbers[classes[state]]] += (
+            ((output, numbers[classes[next_state]]), node)
+            for (output, next_state), node in moves.items()
+        )
+    return tuple(_unite(moves, manager) for moves in merged)
 
 
 class _StateMerger:
@@ -125,9 +125,8 @@ class _StateMerger:
                 return False
             trail.append((first, second, self._moves[first]))
             self._parents[second] = first
-            self._moves[first] = _union_moves(
-                self._moves[first], self._moves[second], self._manager
-            )
+            both = (*self._moves[first].items(), *self._moves[second].items())
+            self._moves[first] = _unite(both, self._manager)
             pairs += required
         return True
 
@@ -152,8 +151,9 @@ class _StateMerger:
             self._moves[first] = moves
 
 
-def _union_moves(moves: Moves, additional: Moves, manager: Manager) -> Moves:
-    union = dict(moves)
-    for answer, node in additional.items():
-        union[answer] = union.get(answer, manager.false) | node
-    return union
+def _unite(moves: Iterable[tuple[Answer, Node]], manager: Manager) -> dict[Answer, Node]:
+    """Return the moves with one condition for each answer."""
+    united: dict[Answer, Node] = {}
+    for answer, node in moves:
+        united[answer] = united.get(answer, manager.false) | node
+    return united

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator
 
 from sysmlc.synthesis.bdd.limits import TooLargeError
 from sysmlc.synthesis.bdd.manager import Node
+from sysmlc.synthesis.bdd.symbols import is_next
 from sysmlc.synthesis.games.relational_product import Product, join_conjuncts
 from sysmlc.synthesis.strategies.closed_loop import ClosedLoop
 
@@ -93,7 +94,7 @@ class QuickCheck:
     def _transitions_about(self, step: Node) -> list[Node]:
         """Return the assumptions, and the transitions that constrain next values read by *step*."""
         support = self.manager.support
-        next_bits = frozenset(bit for bit in support(step) if bit.endswith("'"))
+        next_bits = frozenset(filter(is_next, support(step)))
         return [
             *self.closed_loop.assumptions,
             *(
@@ -119,7 +120,7 @@ class QuickCheck:
         return product(self.reachable) != self.manager.false
 
     def _is_state_predicate(self, node: Node) -> bool:
-        return all(not bit.endswith("'") for bit in self.manager.support(node))
+        return not any(map(is_next, self.manager.support(node)))
 
     def _about_next_step(self, node: Node) -> Node:
         return self.closed_loop.symbols.prime(node) if self._is_state_predicate(node) else node
@@ -171,9 +172,7 @@ class QuickCheck:
         """
         conjuncts = [node for node in self._list_state_predicates() if self._is_live(node)]
         for _ in range(MAX_STRENGTHENINGS):
-            candidate = self.manager.true
-            for conjunct in conjuncts:
-                candidate = candidate & conjunct
+            candidate = self.manager.conjoin(conjuncts)
             # Strengthening only removes states: no later candidate contains the initial states
             # again.
             if not initial <= candidate:
@@ -193,7 +192,7 @@ class QuickCheck:
         ):
             if self._is_state_predicate(node):
                 yield node
-            elif all(bit.endswith("'") for bit in self.manager.support(node)):
+            elif all(map(is_next, self.manager.support(node))):
                 yield symbols.unprime(node)
 
     def _is_live(self, node: Node) -> bool:

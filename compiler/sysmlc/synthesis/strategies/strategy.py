@@ -22,8 +22,13 @@ from msgspec import Struct
 
 from sysmlc.logic.contract import Owner
 from sysmlc.synthesis.bdd.manager import Manager, Node
-from sysmlc.synthesis.bdd.skolem_functions import choose_functions, combine_cases, substitute
-from sysmlc.synthesis.bdd.symbols import Symbols, next_bit
+from sysmlc.synthesis.bdd.skolem_functions import (
+    choose_functions,
+    combine_cases,
+    find_functions,
+    substitute,
+)
+from sysmlc.synthesis.bdd.symbols import Symbols, current_bit, is_next, next_bit
 from sysmlc.synthesis.games.arena import (
     Arena,
     PredecessorOperator,
@@ -52,13 +57,20 @@ class Strategy(Struct, frozen=True):
     """A winning strategy as functions of memory and inputs."""
 
     symbols: Symbols
-    inputs: tuple[str, ...]
-    """Names of the environment's variables."""
-    outputs: tuple[str, ...]
     first: Mode
     """The behaviour in the first step, which has no memory."""
     modes: tuple[Mode, ...]
     """The behaviour in later steps: a mode for each goal, and possibly one for the second step."""
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of the environment's variables."""
+        return self.symbols.names_of(Owner.ENVIRONMENT)
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Names of the system's variables."""
+        return self.symbols.names_of(Owner.SYSTEM)
 
     @property
     def manager(self) -> Manager:
@@ -88,16 +100,8 @@ class _StrategyExtractor:
 
     def extract(self) -> Strategy:
         """Return the strategy with its first step and all modes."""
-        symbols = self.symbols
-        sides = {
-            owner: tuple(
-                variable.name for variable in symbols.variables.values() if variable.owner is owner
-            )
-            for owner in Owner
-        }
         first, modes = self._extract_ahead() if self.arena.is_ahead else self._extract_plain()
-        inputs, outputs = sides[Owner.ENVIRONMENT], sides[Owner.SYSTEM]
-        return Strategy(symbols, inputs, outputs, first, modes)
+        return Strategy(self.symbols, first, modes)
 
     def _extract_plain(self) -> tuple[Mode, tuple[Mode, ...]]:
         first = self._first_outputs(self.solution.winning)
@@ -132,8 +136,8 @@ class _StrategyExtractor:
     def _first_outputs(self, winning: Node) -> Functions:
         """Return first outputs, as functions of the first inputs, that let the system win."""
         _, turn, *later_turns = self.arena.start
-        outputs = [bit for bit in turn.bits if not bit.endswith("'")]
-        plant_bits = [bit for bit in turn.bits if bit.endswith("'")]
+        outputs = [bit for bit in turn.bits if not is_next(bit)]
+        plant_bits = list(filter(is_next, turn.bits))
         possible = Product(self.manager, turn.parts, plant_bits)(
             predecessors_through(turn_products(self.manager, later_turns), winning)
         )
@@ -148,17 +152,13 @@ class _StrategyExtractor:
         self, goal: int, predecessor_choices: Callable[[Node], Node], bits: Sequence[str]
     ) -> Functions:
         """Return functions for *bits* that lead towards the goal (``_choose_targets``)."""
-        allowed = self.manager.false
-        for choices in _choose_targets(
-            self.solution, self.operator, goal, predecessor_choices, bits
-        ):
-            allowed = allowed | choices
-        return choose_functions(self.manager, allowed, bits)
+        targets = _choose_targets(self.solution, self.operator, goal, predecessor_choices, bits)
+        return choose_functions(self.manager, self.manager.disjoin(targets), bits)
 
     def _complete_answer(self, functions: Functions) -> Functions:
         """Add the determined bits of the answer; keys lose their primes."""
         functions = self.open_answers.complete(self.symbols, functions)
-        return {bit.removesuffix("'"): node for bit, node in functions.items()}
+        return {current_bit(bit): node for bit, node in functions.items()}
 
     def _answers_into(self, target: Node) -> Node:
         """Return the answers that lead into *target*, as a relation over the open bits."""
@@ -171,10 +171,8 @@ class _StrategyExtractor:
         command, later_turns = self.arena.command, turn_products(self.manager, self.arena.turns[1:])
         if command is None:
             return {}
-        bits = [bit for bit in command.bits if not bit.endswith("'")]
-        choice = Product(
-            self.manager, command.parts, [bit for bit in command.bits if bit not in bits]
-        )
+        bits = [bit for bit in command.bits if not is_next(bit)]
+        choice = Product(self.manager, command.parts, list(filter(is_next, command.bits)))
 
         def choices_into(target: Node) -> Node:
             return choice(predecessors_through(later_turns, self.symbols.prime(target)))
@@ -325,10 +323,9 @@ def _find_open_answers(arena: Arena) -> OpenAnswers:
     """Divide the last turn of an arena into determined bits and open bits."""
     turn = arena.turns[-1]
     names = [
-        variable.name
-        for variable in arena.symbols.variables.values()
-        if variable.owner is Owner.SYSTEM
-        and arena.symbols.bits(variable.name, primed=True)[0] in turn.bits
+        name
+        for name in arena.symbols.names_of(Owner.SYSTEM)
+        if arena.symbols.bits(name, primed=True)[0] in turn.bits
     ]
     return _Elimination(arena, turn, names).run()
 
@@ -381,19 +378,8 @@ class _Elimination:
         For assignments that leave no value, the function is arbitrary.
         """
         manager = self._manager
-        relation = manager.true
-        for part in constraints:
-            relation = relation & part
-            if len(relation) > MAX_RELATION_NODES:
-                return None
+        relation = manager.conjoin_small(constraints, MAX_RELATION_NODES)
+        if relation is None:
+            return None
         relation = relation & domain_constraint(self._symbols, self._symbols.names(relation))
-        functions: dict[str, Node] = {}
-        for bit in sorted(own_bits):
-            can_be_true = manager.and_exist(relation, manager.var(bit), own_bits)
-            if (
-                can_be_true & manager.and_exist(relation, ~manager.var(bit), own_bits)
-                != manager.false
-            ):
-                return None
-            functions[bit] = can_be_true
-        return functions
+        return find_functions(manager, relation, own_bits)

@@ -47,9 +47,7 @@ class _Exploration:
     ) -> None:
         self.strategy, self.manager, self.symbols = strategy, strategy.manager, strategy.symbols
         self.later = later
-        self.allowed = self.manager.true
-        for node in first:
-            self.allowed = self.allowed & self.symbols.prime(node)
+        self.allowed = self.manager.conjoin(map(self.symbols.prime, first))
         self.names = self._remembered_names()
 
     def run(self) -> ReachableStrategy:
@@ -59,17 +57,12 @@ class _Exploration:
         reached_states = [manager.false] * count
         frontier = self._successors(strategy.first, (), self.allowed)
         while any(node != manager.false for node in frontier):
-            reached_states = [
-                reached | added for reached, added in zip(reached_states, frontier, strict=True)
-            ]
+            reached_states = _unite(reached_states, frontier)
             next_frontier = [manager.false] * count
             for mode, node in zip(strategy.modes, frontier, strict=True):
                 if node != manager.false:
                     successors = self._successors(mode, self.later, node)
-                    next_frontier = [
-                        reached | added
-                        for reached, added in zip(next_frontier, successors, strict=True)
-                    ]
+                    next_frontier = _unite(next_frontier, successors)
             frontier = [
                 added & ~reached
                 for added, reached in zip(next_frontier, reached_states, strict=True)
@@ -101,6 +94,11 @@ class _Exploration:
         ]
         product = Product(manager, [*parts, *graph], removed_bits)
         return [symbols.unprime(product(start & condition)) for condition in mode.successors]
+
+
+def _unite(left: Iterable[Node], right: Iterable[Node]) -> list[Node]:
+    """Return for each mode the states in one of both lists."""
+    return [first | second for first, second in zip(left, right, strict=True)]
 
 
 def _functions_of_modes(strategy: Strategy) -> Iterator[Node]:

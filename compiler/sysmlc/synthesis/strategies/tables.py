@@ -5,6 +5,7 @@ be reproducible: ``rebuild_in_variable_order`` builds the table again in the ord
 """
 
 from sysmlc.controllers.table import Bit, Entry, Table
+from sysmlc.logic.contract import Owner
 from sysmlc.synthesis.bdd.limits import LimitError, TooLargeError
 from sysmlc.synthesis.bdd.manager import Manager, Node
 from sysmlc.synthesis.bdd.symbols import Symbols
@@ -84,34 +85,19 @@ def rebuild_in_variable_order(table: Table, manager: Manager) -> Table:
     """
     try:
         with manager.guard(), manager.without_reordering():
-            return _Rebuild(table, manager).build()
+            symbols = Symbols(manager, (*table.inputs, *table.outputs))
+            nodes = table_diagrams(table, symbols)
+            bits = symbols.bits_of_owner(Owner.SYSTEM)
+            first, *modes = (
+                Mode(
+                    {bit: nodes[root] for bit, root in zip(bits, entry.outputs, strict=True)},
+                    tuple(nodes[root] for root in entry.successors),
+                )
+                for entry in (table.first, *table.modes)
+            )
+            return build_table(Strategy(symbols, first, tuple(modes)))
     except LimitError:
         return table
-
-
-class _Rebuild:
-    def __init__(self, table: Table, manager: Manager) -> None:
-        self._table = table
-        self._symbols = Symbols(manager, (*table.inputs, *table.outputs))
-        self._nodes = table_diagrams(table, self._symbols)
-
-    def build(self) -> Table:
-        """Build the table again from the diagrams of its nodes."""
-        inputs, outputs = (
-            tuple(variable.name for variable in side)
-            for side in (self._table.inputs, self._table.outputs)
-        )
-        modes = tuple(map(self._build_mode, self._table.modes))
-        return build_table(
-            Strategy(self._symbols, inputs, outputs, self._build_mode(self._table.first), modes)
-        )
-
-    def _build_mode(self, entry: Entry) -> Mode:
-        bits = self._symbols.all_bits(variable.name for variable in self._table.outputs)
-        outputs = {
-            bit: self._nodes[position] for bit, position in zip(bits, entry.outputs, strict=True)
-        }
-        return Mode(outputs, tuple(self._nodes[position] for position in entry.successors))
 
 
 def table_diagrams(table: Table, symbols: Symbols) -> list[Node]:

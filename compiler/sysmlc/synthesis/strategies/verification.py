@@ -13,7 +13,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.logic import domains
-from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
+from sysmlc.logic.contract import Class, Conjunct, Contract, Owner, select_classes
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.reduction.history import list_history_conjuncts
 from sysmlc.support.disjoint_sets import group_related
@@ -114,11 +114,7 @@ class _Verification:
         Groups of independent variables are checked separately.
         """
         initial_guarantees, safety_guarantees, liveness_guarantees = (
-            [
-                self.universe.node(guarantee)
-                for guarantee in self.contract.guarantees
-                if guarantee.class_ is class_
-            ]
+            list(map(self.universe.node, select_classes(self.contract.guarantees, class_)))
             for class_ in (Class.INIT, Class.SAFETY, Class.LIVENESS)
         )
         if not self._answers_first_inputs() or not all(
@@ -192,19 +188,14 @@ class _Verification:
 
     def _answers_first_inputs(self) -> bool:
         """Return whether the controller has an answer to all first inputs."""
-        product = Product(
-            self.manager, self.first_relation, self.symbols.all_bits(self._output_names())
-        )
+        output_bits = self.symbols.bits_of_owner(Owner.SYSTEM)
+        product = Product(self.manager, self.first_relation, output_bits)
         return self.initial_inputs <= product(self.manager.true)
 
     def _states_without_answer(self, moves: Iterable[Node]) -> Node:
         """Return the steps with next inputs to which the controller has no answer."""
-        next_outputs = self.symbols.all_bits(self._output_names(), primed=True)
+        next_outputs = self.symbols.bits_of_owner(Owner.SYSTEM, primed=True)
         return ~Product(self.manager, moves, next_outputs)(self.manager.true)
-
-    def _output_names(self) -> tuple[str, ...]:
-        variables = self.symbols.variables.values()
-        return tuple(variable.name for variable in variables if variable.owner is Owner.SYSTEM)
 
     def find_initial_fault(self, conjunct: Conjunct, violation: Node) -> Iterator[Fault]:
         """Yield the violation of an initial guarantee, if there is one."""

@@ -1,32 +1,36 @@
-"""Lints of the text of a contract, and lints that explore runs or solve games.
+"""Lints of one contract: assumptions and guarantees that are impossible, vacuous or misplaced.
 
 The text shows conjuncts on the wrong side of the contract. Games show vacuous wins, missing or
 needless fairness, and assumptions that the component can force the environment to violate. Runs
 show dead ends of the environment, and outputs without a frame condition.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from msgspec import Struct
 from msgspec.structs import replace
 
-from sysmlc.diagnostics import Rule
+from sysmlc.diagnostics import Rule, Sink
 from sysmlc.logic import formula as f
+from sysmlc.logic.basis import find_basis
 from sysmlc.logic.contract import (
-    BooleanDomain,
     Class,
     Conjunct,
     Contract,
     IntegerDomain,
     Owner,
     Variable,
+    equals,
+    select_classes,
 )
 from sysmlc.logic.domains import size, values
 from sysmlc.logic.formula import Formula, Var, variable_names, variables
 from sysmlc.logic.printing import print_formula, print_literal
 from sysmlc.synthesis import rules
 from sysmlc.synthesis.algebra.fair_systems import FairSystem, Runs
+from sysmlc.synthesis.algebra.refinement import has_environment
 from sysmlc.synthesis.bdd.manager import Manager, ManagerFactory, Node
+from sysmlc.synthesis.decision import Place
 from sysmlc.synthesis.games.arena import nodes_of
 from sysmlc.synthesis.games.game import Game, make_game
 from sysmlc.synthesis.games.relational_product import Product
@@ -44,7 +48,56 @@ class LintFinding(Struct, frozen=True):
     """Value of the placeholder ``detail`` in the message of the rule."""
 
 
-def check_ownership(contract: Contract) -> Iterator[LintFinding]:
+_LEFT_OPEN = (rules.NO_FRAME, rules.IDLE)
+"""Findings about what a contract leaves open, which a behaviour may decide."""
+
+
+def lint(
+    contract: Contract,
+    place: Place,
+    sink: Sink,
+    create_manager: ManagerFactory,
+    *,
+    has_behaviour: bool = False,
+) -> None:
+    """Report suspicious properties of a contract; *create_manager* is called for each lint.
+
+    *has_behaviour*: the contract states requirements on a component with a behaviour, which decides
+    what they leave open. Raises OutsideGr1Error for a contract that GR(1) cannot express,
+    LimitError.
+    """
+    within = find_basis((contract,)).reservation
+    for finding in _find_all(contract, create_manager):
+        if has_behaviour and finding.rule in _LEFT_OPEN:
+            continue
+        origin = contract.origin if finding.conjunct is None else finding.conjunct.origin
+        formula = "" if finding.conjunct is None else print_formula(finding.conjunct.formula)
+        sink.report(
+            finding.rule,
+            place(origin),
+            component=contract.component,
+            formula=formula,
+            name=finding.name,
+            detail=finding.detail,
+            within=within,
+        )
+
+
+def _find_all(contract: Contract, create_manager: ManagerFactory) -> Iterator[LintFinding]:
+    findings = list(_check_ownership(contract))
+    yield from findings
+    # A liveness conjunct about two steps is outside GR(1), so no game can be built.
+    if any(finding.rule is rules.NEXT_IN_LIVENESS for finding in findings):
+        return
+    # Without any environment, every further lint would only show a consequence of that.
+    if not has_environment(contract, create_manager()):
+        yield LintFinding(rules.NO_ENVIRONMENT)
+        return
+    yield from _check_runs(contract, create_manager())
+    yield from _check_games(contract, create_manager)
+
+
+def _check_ownership(contract: Contract) -> Iterator[LintFinding]:
     """Yield findings about conjuncts that the wrong side decides, and about misplaced primes."""
     owners = {variable.name: variable.owner for variable in contract.variables}
     for conjunct in contract.assumptions:
@@ -88,19 +141,21 @@ def _primed_names(formula: Formula) -> set[str]:
 
 # -- games and runs ----------------------------------------------------------------------------
 
+_NOT_LIVENESS = (Class.INIT, Class.SAFETY, Class.OTHER)
 _MAX_REMOVED_ASSUMPTIONS = 40
 """Assumptions up to which each of them is removed in turn to find the culprits."""
 
 
-def check_games(contract: Contract, create_manager: ManagerFactory) -> Iterator[LintFinding]:
+def _check_games(contract: Contract, create_manager: ManagerFactory) -> Iterator[LintFinding]:
     """Yield findings about the games of a contract and of variants of it."""
+    assumed, guaranteed = (
+        select_classes(side, Class.LIVENESS) for side in (contract.assumptions, contract.guarantees)
+    )
     if not is_won(contract, create_manager):
         yield from _suggest_fairness(contract, create_manager)
-    elif _has_liveness((*contract.assumptions, *contract.guarantees)) and is_won(
-        _with_idle_outputs(contract), create_manager
-    ):
+    elif (assumed or guaranteed) and is_won(_with_idle_outputs(contract), create_manager):
         yield LintFinding(rules.IDLE)
-    elif _has_liveness(contract.assumptions) and _has_liveness(contract.guarantees):
+    elif assumed and guaranteed:
         yield from _check_needless_fairness(contract, create_manager)
     if is_forced(contract, create_manager):
         yield LintFinding(rules.NOT_SEPARATED, detail=_describe_culprits(contract, create_manager))
@@ -115,26 +170,19 @@ def _check_needless_fairness(
     contract: Contract, create_manager: ManagerFactory
 ) -> Iterator[LintFinding]:
     """Yield a finding if the contract is realizable without its liveness assumptions, too."""
-    safety_assumptions = tuple(
-        assumption for assumption in contract.assumptions if assumption.class_ is not Class.LIVENESS
-    )
+    safety_assumptions = select_classes(contract.assumptions, *_NOT_LIVENESS)
     if is_won(replace(contract, assumptions=safety_assumptions), create_manager):
         yield LintFinding(rules.NEEDLESS)
 
 
-def _has_liveness(conjuncts: Iterable[Conjunct]) -> bool:
-    return any(conjunct.class_ is Class.LIVENESS for conjunct in conjuncts)
-
-
 def _with_idle_outputs(contract: Contract) -> Contract:
     """Return the contract with the additional guarantee that all outputs stay constant."""
-    outputs = [
-        variable.name
+    frames = (
+        f.eq(Var(variable.name, primed=True), Var(variable.name))
         for variable in contract.variables
         if variable.owner is Owner.SYSTEM and not variable.is_auxiliary
-    ]
-    frames = (f.eq(Var(name, primed=True), Var(name)) for name in outputs)
-    frame_conjuncts = tuple(Conjunct(frame, Class.SAFETY, contract.origin) for frame in frames)
+    )
+    frame_conjuncts = (Conjunct(frame, Class.SAFETY, contract.origin) for frame in frames)
     return replace(contract, guarantees=(*contract.guarantees, *frame_conjuncts))
 
 
@@ -156,14 +204,18 @@ def describe_vacuity(contract: Contract, create_manager: ManagerFactory) -> str:
 def _suggest_fairness(contract: Contract, create_manager: ManagerFactory) -> Iterator[LintFinding]:
     """Yield a finding with a liveness assumption that makes an unrealizable contract realizable."""
     # Fairness helps only if the safety guarantees alone are realizable.
-    safety_guarantees = tuple(
-        guarantee for guarantee in contract.guarantees if guarantee.class_ is not Class.LIVENESS
-    )
+    safety_guarantees = select_classes(contract.guarantees, *_NOT_LIVENESS)
     if len(safety_guarantees) == len(contract.guarantees) or not is_won(
         replace(contract, guarantees=safety_guarantees), create_manager
     ):
         return
-    for condition in _input_predicates(contract):
+    conditions = (
+        equals(variable, f.const(value))
+        for variable in contract.variables
+        if variable.owner is Owner.ENVIRONMENT and not isinstance(variable.domain, IntegerDomain)
+        for value in sorted(values(variable.domain), key=lambda value: value is False)
+    )
+    for condition in conditions:
         assumption = Conjunct(condition, Class.LIVENESS, contract.origin)
         extended_contract = replace(contract, assumptions=(*contract.assumptions, assumption))
         if is_won(extended_contract, create_manager) and not is_forced(
@@ -172,25 +224,6 @@ def _suggest_fairness(contract: Contract, create_manager: ManagerFactory) -> Ite
             text = f", for instance if '{print_formula(condition)}' recurred"
             yield LintFinding(rules.NO_FAIRNESS, detail=text)
             return
-
-
-def _input_predicates(contract: Contract) -> Iterator[Formula]:
-    for variable in contract.variables:
-        if variable.owner is Owner.ENVIRONMENT:
-            yield from _value_predicates(variable)
-
-
-def _value_predicates(variable: Variable) -> Iterator[Formula]:
-    """Yield the predicates that a Boolean or an enumeration has one of its values."""
-    match variable.domain:
-        case BooleanDomain():
-            yield f.var(variable.name)
-            yield f.negate(f.var(variable.name))
-        case IntegerDomain():
-            return
-        case domain:
-            for value in values(domain):
-                yield f.eq(f.var(variable.name), f.const(value))
 
 
 # -- separation --------------------------------------------------------------------------------
@@ -214,9 +247,7 @@ def _with_impossible_goal(contract: Contract) -> Contract:
     component that wins its contract may not either.
     """
     impossible_goal = Conjunct(f.FALSE, Class.LIVENESS, contract.origin)
-    safety_guarantees = tuple(
-        guarantee for guarantee in contract.guarantees if guarantee.class_ is not Class.LIVENESS
-    )
+    safety_guarantees = select_classes(contract.guarantees, *_NOT_LIVENESS)
     return replace(contract, guarantees=(*safety_guarantees, impossible_goal))
 
 
@@ -227,24 +258,23 @@ def _describe_culprits(contract: Contract, create_manager: ManagerFactory) -> st
     culprits = [
         assumption
         for assumption in contract.assumptions
-        if not is_forced(_without_assumption(contract, assumption), create_manager)
+        if not is_forced(
+            replace(
+                contract,
+                assumptions=tuple(item for item in contract.assumptions if item is not assumption),
+            ),
+            create_manager,
+        )
     ]
     texts = ", ".join(f"'{print_formula(assumption.formula)}'" for assumption in culprits)
     return f"; not without {texts}" if texts else ""
-
-
-def _without_assumption(contract: Contract, conjunct: Conjunct) -> Contract:
-    remaining = tuple(
-        assumption for assumption in contract.assumptions if assumption is not conjunct
-    )
-    return replace(contract, assumptions=remaining)
 
 
 _MIN_QUANTITY_VALUES = 3
 """Least number of values of an integer that counts as a quantity; quantities should not jump."""
 
 
-def check_runs(contract: Contract, manager: Manager) -> Iterator[LintFinding]:
+def _check_runs(contract: Contract, manager: Manager) -> Iterator[LintFinding]:
     """Yield findings about dead ends of the environment and outputs without a frame condition."""
     game = make_game(contract, manager)
     with manager.guard():
@@ -265,9 +295,7 @@ def _check_game(contract: Contract, game: Game) -> Iterator[LintFinding]:
 
 def _system_of_game(game: Game) -> FairSystem:
     """Return the fair system of all steps that assumptions and guarantees allow."""
-    initial = game.manager.true
-    for part in (*game.init_assumptions, *game.init_guarantees):
-        initial = initial & part.node
+    initial = game.manager.conjoin(nodes_of((*game.init_assumptions, *game.init_guarantees)))
     parts = (*nodes_of(game.assumptions), *nodes_of(game.guarantees))
     return FairSystem(game.symbols, initial, parts, nodes_of(game.fairness))
 
@@ -334,11 +362,11 @@ def _states_without_frame(game: Game, variable: Variable) -> Node:
     bits = game.symbols.bits(variable.name, primed=True)
     other_bits = [bit for bit in game.next_outputs if bit not in bits]
     join = Product(manager, nodes_of(game.guarantees), other_bits)
-    states = manager.true
-    for value in values(variable.domain):
-        code = manager.cube(game.symbols.code(variable.name, value, primed=True))
-        states = states & manager.exist(bits, join(code))
-    return states
+    codes = (
+        game.symbols.encode({variable.name: value}, primed=True)
+        for value in values(variable.domain)
+    )
+    return manager.conjoin(manager.exist(bits, join(code)) for code in codes)
 
 
 def _describe_state(game: Game, states: Node) -> str:
