@@ -121,6 +121,17 @@ def test_other_words_are_no_units_of_time(word):
     assert not is_formal("", f"Whenever p, the Gate shall within 3 {word} satisfy q.")
 
 
+@pytest.mark.parametrize("symbol", ["H", "S", "MS"])
+def test_a_quantity_has_the_exact_unit_and_a_word_any_letter_case(symbol):
+    assert Tags({"tag.duration": f"3 {symbol}"}).integer("duration") is not None
+    assert Tags({"tag.duration": "3"}, {"duration": symbol}).integer("duration") is None
+    text = f"""package Plant {{ part def Gate {{ exhibit state run {{ entry; then a; state a;
+        transition first a accept after 3 [SI::{symbol}] then b; state b; }} }} }}"""
+    graph = Graph()
+    sysml_reader.FRONTEND.read([Source("m.sysml", text.encode())], graph, Sink(), Coverage())
+    assert isinstance(count_steps(graph, 1.0), str)
+
+
 # -- numbers without a unit, relative and absolute times -------------------------------------------
 
 

@@ -190,9 +190,7 @@ def convert(number: Fraction, unit: str, target: str) -> Fraction | None:
     """Return the number in the unit *target*; None for units of other quantities or without."""
     if unit == target:
         return number
-    goal = find_unit(target)
-    is_time = goal is not None and goal.quantity == "time"
-    source = find_time_unit(unit) if is_time else find_unit(unit)
+    source, goal = find_unit(unit), find_unit(target)
     if source is None or goal is None or source.quantity != goal.quantity:
         return None
     if source.symbol == goal.symbol:
@@ -212,7 +210,10 @@ _PARENTHESES = re.compile(r"\(([^()]*)\)")
 
 
 def find_time_unit(word: str) -> Unit | None:
-    """Return the unit of time or the step that a word means in any letter case."""
+    """Return the unit of time or the step that a word in prose or a tag means in any letter case.
+
+    A quantity of a model is exact: ``SI::H`` is the henry, not the hour.
+    """
     if word.lower() in _STEP_WORDS:
         return STEP
     unit = find_unit(word) or find_unit(word.lower())

@@ -132,6 +132,8 @@ Package p "Plant"
   DataType length "Length" role="value type"
     -> references length.u
     Unit length.u "millimetre" symbol="mm" external=true library=true
+  DataType width "Width" role="value type"
+    -> specializes length
   DataType strange "Strangeness" role="value type"
     -> references strange.u
     Unit strange.u "quark" symbol="qk" external=true library=true
@@ -152,6 +154,8 @@ def test_quantities_have_types_of_isq_and_units_of_si():
     assert "attribute length : Length default = 1.5 [SI::mm];" in lines
     assert "part 'belt 1' : Belt {" in lines
     assert ":>> length = 2.5 [SI::mm];" in lines
+    # The general states the unit.
+    assert "attribute def Width :> Length;" in lines
     annotation = '@Unit { name = "quark"; symbol = "qk"; }'
     assert f"attribute def Strangeness {{ {annotation} }}" in lines
 

@@ -6,13 +6,13 @@ from fractions import Fraction
 from msgspec import Struct
 from msgspec.structs import replace
 
-from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, query
 from sysmlc.ir.query.classifiers import name_value_unit, unit_of
 from sysmlc.passes.classify import vocabulary
 from sysmlc.passes.classify.lineage import Profiles
 from sysmlc.passes.classify.vocabulary import Family
 from sysmlc.recipe.model import Range
-from sysmlc.support.units import convert, split_quantity
+from sysmlc.support.units import convert, find_time_unit, split_quantity
 
 NAMESPACE = "urn:sysmlc:profile:1"
 """Namespace of the shipped profile, metamodels/sysmlc.profile.uml."""
@@ -165,7 +165,10 @@ class Tags(Struct, frozen=True):
     def unit(self, name: str) -> str:
         """Return the unit in which the model states the number of a tag, or the empty string."""
         quantity = split_quantity(self.text(name))
-        return self.units.get(name, "") if quantity is None else quantity[1]
+        if quantity is None:
+            return self.units.get(name, "")
+        word = find_time_unit(quantity[1]) if self.target_unit(name) == "ms" else None
+        return word.symbol if word and word.factor else quantity[1]
 
     def target_unit(self, name: str) -> str:
         """Return the unit in which the recipe has the number of a tag, or the empty string."""
@@ -224,30 +227,26 @@ def read_tags(graph: Graph, application: Element | None) -> Tags:
     tags = [feature for classifier in family for feature in query.features(graph, classifier)]
     stated = ((tag.name, unit_of(graph, tag)) for tag in reversed(tags))
     units = {name: str(unit.attrs.get("symbol") or unit.name) for name, unit in stated if unit}
-    return Tags({**application.attrs, **_find_constants(graph, application)}, units)
-
-
-def _find_constants(graph: Graph, application: Element) -> dict[str, str]:
-    """Return the values of the numeric tags that refer to attributes, by the key of the tag.
-
-    An attribute without a constant number is represented by its name.
-    """
-    constants: dict[str, str] = {}
-    for key in (f"tag.{name}" for name in _NUMERIC_TAGS):
-        element = graph.get(str(application.attrs.get(key, "")))
+    constants: dict[str, AttrValue] = {}
+    for name in _NUMERIC_TAGS:
+        element = graph.get(str(application.attrs.get(f"tag.{name}", "")))
         if element is not None:
-            attribute = "value" if element.kind is Kind.INSTANCE else "default"
-            constants[key] = _format_constant(graph, element, attribute) or element.name
-    return constants
+            constants[f"tag.{name}"], unit_name = _read_constant(graph, element)
+            units[name] = unit_name or units.get(name, "")
+    return Tags({**application.attrs, **constants}, units)
 
 
-def _format_constant(graph: Graph, element: Element, attribute: str) -> str:
-    """Return the constant number of an element with its unit, or the empty string."""
-    number = element.attrs.get(attribute)
+def _read_constant(graph: Graph, element: Element) -> tuple[str, str]:
+    """Return the constant number of an attribute and its unit, or else the name of the attribute.
+
+    The unit is empty if the attribute does not state it.
+    """
+    key = "value" if element.kind is Kind.INSTANCE else "default"
+    number = element.attrs.get(key)
     is_number = isinstance(number, int | float) and not isinstance(number, bool)
-    if not is_number or element.attrs.get(f"{attribute}_kind") == "initial":
-        return ""
-    return f"{number} {name_value_unit(graph, element, attribute)}".rstrip()
+    if not is_number or element.attrs.get(f"{key}_kind") == "initial":
+        return element.name, ""
+    return str(number), name_value_unit(graph, element, key)
 
 
 def shorten(number: Fraction) -> int | float:

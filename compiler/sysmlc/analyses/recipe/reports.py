@@ -15,7 +15,7 @@ from sysmlc.analyses.recipe.tasks import find_material, list_steps
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.recipe.model import Model
-from sysmlc.support.units import convert, find_unit
+from sysmlc.support.units import convert, find_unit, split_quantity
 
 UNREADABLE_TAG = rule(
     "SM622",
@@ -144,7 +144,7 @@ def _check_tag(
         "tag": name,
         "stereotype": str(application.attrs.get("stereotype", "")),
         "element": context.name(owner),
-        "value": value if unit in value else f"{value} {unit}",
+        "value": value if split_quantity(value) else f"{value} {unit}".rstrip(),
     }
     expected, read_value = expectation
     is_misfit = bool(unit) and convert(Fraction(1), unit, target) is None

@@ -44,8 +44,6 @@ def _format_time(writer: Writer, scope: Member, trigger: Element) -> str:
     )
     unit = None if time.duration is None else name_unit(time.duration.unit.symbol)
     if time.duration is not None and unit is not None:
-        if time.text == time.duration.digits:
-            writer.record_approximation(trigger, "a time without a unit", "seconds")
         return f"{word} {time.duration.digits} [{writer.refer_to_library(scope, unit)}]"
     expression = format_expression(writer, scope, time.text)
     return f"{word} {expression or _declare(writer, scope, trigger, time.text, type_)}"

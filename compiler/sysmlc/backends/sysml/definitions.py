@@ -172,7 +172,11 @@ def write_value_type(writer: Writer, member: Member) -> list[Line]:
         if not any(find_quantity(writer.graph, general) is not None for general in generals):
             subsets.append(writer.refer_to_library(member.parent, f"ISQ::{quantity}"))
         head.subsets = subsets
-        unit_name = find_unit_name(unit)
+        is_inherited = unit not in writer.graph.targets(element, Edge.REFERENCES) and any(
+            unit_of(writer.graph, general) is unit and writer.plan.find(general) is not None
+            for general in generals
+        )
+        unit_name = None if is_inherited else find_unit_name(unit)
         if unit_name is not None:
             reference = writer.refer_to_library(member, unit_name)
             body.insert(0, Line(f"attribute :>> mRef = {reference}"))

@@ -9,7 +9,7 @@ from sysmlc.frontends.sysml.expressions import write_expression
 from sysmlc.frontends.sysml.quantities import read_unit
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.language.tree import Node
-from sysmlc.support.units import find_time_unit
+from sysmlc.support.units import find_unit
 
 if TYPE_CHECKING:
     from sysmlc.frontends.sysml.lowering import Lowering
@@ -52,7 +52,8 @@ def _write_time(lowering: "Lowering", expression: Node) -> str:
     """Return a point in time or a duration as text: ``5 s``."""
     unit, factor = read_unit(lowering, expression)
     number = values.constant_of(expression)
-    if isinstance(number, int | float) and find_time_unit(unit) is not None:
+    known_unit = find_unit(unit)
+    if isinstance(number, int | float) and known_unit and known_unit.quantity == "time":
         return f"{number if factor == 1 else float(Fraction(str(number)) * factor)} {unit}"
     return values.expression_text(expression, lowering)
 
