@@ -16,7 +16,6 @@ from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.compare import What
 from sysmlc.ir.expressions import ExpressionError, print_expression
 from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
-from sysmlc.support.units import read_time
 
 # -- texts -----------------------------------------------------------------------------------------
 
@@ -611,7 +610,7 @@ REASONS: list[Reason] = [
     ),
     Reason(
         "a time without a unit is in seconds",
-        lambda d: d.is_about("trigger") and f"{read_time(d.change.before)}" == str(d.change.after),
+        lambda d: d.is_about("trigger") and d.change.after == f"{d.change.before} s",
     ),
     Reason(
         "a binding that has no name for one of its ends is omitted",
