@@ -15,6 +15,7 @@ from sysmlc.driver.ownership import is_output_folder
 from sysmlc.frontends.base import Frontend
 from sysmlc.sources import Roots, Source, is_model_entry
 from sysmlc.sources.files import is_special, list_archive_entries
+from sysmlc.support.counts import list_first
 from sysmlc.support.escapes import escape_undecodable
 from sysmlc.support.suggestions import find_similar
 
@@ -154,9 +155,8 @@ def _report_models_inside(path: Path, name: str, sink: Sink) -> None:
     """Report a zip archive that holds models; it may be a copy of models in the folder."""
     entries = [entry for entry in list_archive_entries(path) if is_model_entry(entry)]
     if entries:
-        shown = ", ".join(f"'{entry}'" for entry in sorted(entries)[:_MAX_ENTRIES])
-        more = f" and {len(entries) - _MAX_ENTRIES} more" if len(entries) > _MAX_ENTRIES else ""
-        sink.report(faults.NOT_OPENED, faults.about_file(name), path=name, entries=shown + more)
+        shown = list_first([f"'{entry}'" for entry in sorted(entries)], _MAX_ENTRIES)
+        sink.report(faults.NOT_OPENED, faults.about_file(name), path=name, entries=shown)
 
 
 def find_model_files(

@@ -6,8 +6,8 @@ The back end ``uml`` writes the comment, and the pass ``kept`` restores the fact
 import json
 from typing import Any, NamedTuple
 
-from msgspec import Struct
-from msgspec.structs import asdict
+from msgspec import Struct, convert
+from msgspec.structs import asdict, replace
 
 from sysmlc.ir.element import AttrValue
 from sysmlc.ir.kinds import Edge, Kind
@@ -39,7 +39,8 @@ class Record(Struct, frozen=True):
     """
 
     elements: list[StoredElement]
-    attributes: dict[str, dict[str, AttrValue]]
+    attributes: dict[str, dict[str, Any]]
+    """Values of attributes (AttrValue) by the id of the element."""
     names: dict[str, str]
     owners: dict[str, str | None]
     edges: list[tuple[Edge, str, str]]
@@ -57,48 +58,12 @@ def decode_record(body: str) -> Record:
 
     Raises ValueError for a text that is not such a record.
     """
-    try:
-        return _read_record(parse_json(body.removeprefix(PREFIX)))
-    except (TypeError, KeyError, AttributeError) as problem:
-        raise ValueError(str(problem)) from problem
-
-
-def _read_record(data: Any) -> Record:  # noqa: ANN401 - JSON
-    """Return the record of the JSON data.
-
-    Raises ValueError, TypeError, KeyError or AttributeError for data of another form.
-    """
-    return Record(
-        elements=[
-            StoredElement(
-                _require_text(id),
-                Kind(kind),
-                _require_text(name),
-                _read_optional_text(owner),
-                _read_optional_text(href),
-            )
-            for id, kind, name, owner, href in data["elements"]
-        ],
-        attributes={
-            id: {_require_text(name): _read_value(value) for name, value in attrs.items()}
-            for id, attrs in data["attributes"].items()
-        },
-        names={id: _require_text(name) for id, name in data["names"].items()},
-        owners={id: _read_optional_text(owner) for id, owner in data["owners"].items()},
-        edges=[(Edge(edge), _require_text(a), _require_text(b)) for edge, a, b in data["edges"]],
-        made=[_require_text(id) for id in data["made"]],
-        applied=[_require_text(id) for id in data["applied"]],
-    )
-
-
-def _require_text(value: object) -> str:
-    if isinstance(value, str):
-        return value
-    raise TypeError(value)
-
-
-def _read_optional_text(value: object) -> str | None:
-    return None if value is None else _require_text(value)
+    record = convert(parse_json(body.removeprefix(PREFIX)), Record)
+    attributes = {
+        id: {name: _read_value(value) for name, value in attrs.items()}
+        for id, attrs in record.attributes.items()
+    }
+    return replace(record, attributes=attributes)
 
 
 def _read_value(value: object) -> AttrValue:
@@ -106,4 +71,4 @@ def _read_value(value: object) -> AttrValue:
         return tuple(_read_value(item) for item in value)
     if value is None or isinstance(value, str | int | float):
         return value
-    raise TypeError(value)
+    raise ValueError(value)

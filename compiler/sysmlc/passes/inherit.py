@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from msgspec import Struct
 
-from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.diagnostics import Rule, Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.algorithms import strongly_connected_components
 from sysmlc.ir.query import CLASSIFIERS, FEATURES, bounds, conforms, generals
@@ -207,16 +207,10 @@ def _check_relation(
         return
     if not _can_relate(graph, edge, feature, other, hierarchy):
         owner, other_owner = _name_owner(graph, feature), _name_owner(graph, other)
-        sink.report(
-            NOT_INHERITED,
-            graph.subject(feature),
-            cause=_describe_missing_generalization(graph.owner(feature), graph.owner(other)),
-            element=graph.qualified_name(feature),
-            relation=_RELATIONS[edge],
-            other=graph.qualified_name(other),
-            owner=owner,
-            other_owner=f"the other '{owner}'" if owner == other_owner else f"'{other_owner}'",
-        )
+        shown = f"the other '{owner}'" if owner == other_owner else f"'{other_owner}'"
+        cause = _describe_missing_generalization(graph.owner(feature), graph.owner(other))
+        facts = {"owner": owner, "other_owner": shown}
+        _report_relation(graph, sink, NOT_INHERITED, edge, (feature, other), cause, **facts)
         return
     _check_types(graph, sink, edge, feature, other)
     _check_multiplicities(graph, sink, edge, feature, other, hierarchy)
@@ -233,16 +227,9 @@ def _check_types(graph: Graph, sink: Sink, edge: Edge, feature: Element, other: 
         return  # In AutomationML a nested attribute replaces the inherited attribute as a whole.
     if type_ is None or general is None or _is_narrower(graph, type_, general):
         return
-    sink.report(
-        TYPE_NOT_NARROWER,
-        graph.subject(feature),
-        cause=_describe_missing_generalization(type_, general),
-        element=graph.qualified_name(feature),
-        relation=_RELATIONS[edge],
-        other=graph.qualified_name(other),
-        type=type_.name,
-        other_type=general.name,
-    )
+    cause = _describe_missing_generalization(type_, general)
+    facts = {"type": type_.name, "other_type": general.name}
+    _report_relation(graph, sink, TYPE_NOT_NARROWER, edge, (feature, other), cause, **facts)
 
 
 def _describe_missing_generalization(specific: Element | None, general: Element | None) -> str:
@@ -259,15 +246,24 @@ def _check_multiplicities(
         return
     if "multiplicity" not in other.attrs and other.source in hierarchy.caex_files:
         return  # An interface of AutomationML without Cardinality may occur any number of times.
-    sink.report(
-        MULTIPLICITY_WIDER,
-        graph.subject(feature),
-        element=graph.qualified_name(feature),
-        relation=_RELATIONS[edge],
-        other=graph.qualified_name(other),
-        multiplicity=feature.attrs.get("multiplicity", "1"),
-        other_multiplicity=other.attrs.get("multiplicity", "1"),
-    )
+    own, others = (str(element.attrs.get("multiplicity", "1")) for element in (feature, other))
+    facts = {"multiplicity": own, "other_multiplicity": others}
+    _report_relation(graph, sink, MULTIPLICITY_WIDER, edge, (feature, other), **facts)
+
+
+def _report_relation(
+    graph: Graph,
+    sink: Sink,
+    rule: Rule,
+    edge: Edge,
+    features: tuple[Element, Element],
+    cause: str = "",
+    **facts: str,
+) -> None:
+    """Report a rule about a feature that redefines or subsets another one."""
+    element, other = map(graph.qualified_name, features)
+    facts |= {"element": element, "relation": _RELATIONS[edge], "other": other}
+    sink.report(rule, graph.subject(features[0]), notes=(), help="", cause=cause, **facts)
 
 
 def _can_relate(

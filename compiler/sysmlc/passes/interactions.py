@@ -120,13 +120,11 @@ def _check_message(
     if problem and not message.attrs.get("unresolved"):
         _report(graph, sink, MESSAGE_WITHOUT_LIFELINE, interaction, message, problem=problem)
     ends = (graph.target(message, Edge.SEND_EVENT), graph.target(message, Edge.RECEIVE_EVENT))
-    positions = [positions_by_id.get(end.id) for end in ends if end is not None]
-    if len(positions) == 2 and positions[0] is not None and positions[1] is not None:
-        (sent_in, sent_at), (received_in, received_at) = positions[0], positions[1]
-        if sent_in != received_in:
-            _report(graph, sink, ACROSS_OPERANDS, interaction, message)
-        elif received_at < sent_at:
-            _report(graph, sink, RECEIVED_FIRST, interaction, message)
+    sent, received = (positions_by_id.get(end.id) if end else None for end in ends)
+    if sent and received and sent[0] != received[0]:
+        _report(graph, sink, ACROSS_OPERANDS, interaction, message)
+    elif sent and received and received[1] < sent[1]:
+        _report(graph, sink, RECEIVED_FIRST, interaction, message)
     _check_operation(graph, sink, interaction, message)
 
 
@@ -215,17 +213,15 @@ def _check_execution(
     positions_by_id: dict[str, _Position],
 ) -> None:
     ends = (graph.target(execution, Edge.START), graph.target(execution, Edge.FINISH))
-    positions = [positions_by_id.get(end.id) for end in ends if end is not None]
-    if len(positions) == 2 and positions[0] is not None and positions[1] is not None:
-        is_same = positions[0][0] == positions[1][0]
-        # In different operands, the order depends on the operator of the fragment.
-        if is_same and positions[1][1] < positions[0][1]:
-            sink.report(
-                EXECUTION_BACKWARDS,
-                graph.subject(execution),
-                execution=execution.name or "without name",
-                interaction=graph.qualified_name(interaction),
-            )
+    start, finish = (positions_by_id.get(end.id) if end else None for end in ends)
+    # In different operands, the order depends on the operator of the fragment.
+    if start and finish and start[0] == finish[0] and finish[1] < start[1]:
+        sink.report(
+            EXECUTION_BACKWARDS,
+            graph.subject(execution),
+            execution=execution.name or "without name",
+            interaction=graph.qualified_name(interaction),
+        )
 
 
 def _check_destructions(graph: Graph, sink: Sink, interaction: Element) -> None:
@@ -236,7 +232,12 @@ def _check_destructions(graph: Graph, sink: Sink, interaction: Element) -> None:
                 continue
             for lifeline in interactions.covered_lifelines(graph, item):
                 if lifeline.id in destroyed:
-                    _report_destroyed(graph, sink, interaction, item, lifeline)
+                    sink.report(
+                        AFTER_DESTRUCTION,
+                        graph.subject(item),
+                        lifeline=lifeline.name or "without name",
+                        interaction=graph.qualified_name(interaction),
+                    )
                 elif item.subkind == "destruction":
                     destroyed[lifeline.id] = lifeline
 
@@ -253,17 +254,6 @@ def _check_creations(graph: Graph, sink: Sink, interaction: Element) -> None:
                 name = lifeline.name or "without name"
                 _report(graph, sink, CREATED_LATE, interaction, message, lifeline=name)
             started.add(lifeline.id)
-
-
-def _report_destroyed(
-    graph: Graph, sink: Sink, interaction: Element, item: Element, lifeline: Element
-) -> None:
-    sink.report(
-        AFTER_DESTRUCTION,
-        graph.subject(item),
-        lifeline=lifeline.name or "without name",
-        interaction=graph.qualified_name(interaction),
-    )
 
 
 def _report(

@@ -31,7 +31,7 @@ from sysmlc.ir.query import (
     tag,
     type_of,
 )
-from sysmlc.support.counts import count
+from sysmlc.support.counts import count, list_first
 
 UNDIRECTED_PORTS = rule(
     "SM300",
@@ -302,13 +302,12 @@ def _report_undirected(graph: Graph, sink: Sink, ports: list[Element]) -> None:
             blocks.setdefault(port.owner, []).append(port)
     for id, undirected in blocks.items():
         names = [f"'{member.name or member.id}'" for member in undirected]
-        more = f" and {len(names) - _MAX_LISTED} more" if len(names) > _MAX_LISTED else ""
         sink.report(
             UNDIRECTED_PORTS,
             graph.subject(graph[id]),
             block=graph.qualified_name(graph[id]),
             count=len(names),
-            ports=", ".join(names[:_MAX_LISTED]) + more,
+            ports=list_first(names, _MAX_LISTED),
         )
 
 
@@ -389,13 +388,12 @@ def _report_by_file(
     for port in faulty:
         by_file.setdefault(port.source, []).append(port)
     for file, reported in by_file.items():
-        names = [f"'{graph.qualified_name(port)}'" for port in reported[:_MAX_LISTED]]
-        more = f" and {len(reported) - _MAX_LISTED} more" if len(reported) > _MAX_LISTED else ""
+        names = [f"'{graph.qualified_name(port)}'" for port in reported]
         sink.report(
             rule,
             graph.subject(reported[0]),
             count=len(reported),
             all=count(totals[file], "port"),
             file=file,
-            ports=", ".join(names) + more,
+            ports=list_first(names, _MAX_LISTED),
         )

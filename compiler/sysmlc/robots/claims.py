@@ -24,8 +24,6 @@ from sysmlc.synthesis.bdd.manager import Manager, ManagerFactory
 from sysmlc.synthesis.decision import Options
 from sysmlc.synthesis.witnesses import describe_run, manager_factory
 
-"""Creates a manager with the limits of the options."""
-
 
 class Claim(Struct, frozen=True):
     """A claim and its result."""
@@ -41,6 +39,7 @@ class Claim(Struct, frozen=True):
 MISSION_CLAIM = "C_S refines C_M"
 _NONE: Mapping[str, Claim] = {}
 _Procedure = Callable[[str, ManagerFactory], Claim]
+_Search = Callable[[JointProof], Counterexample | None]
 
 
 def decide_claims(
@@ -65,6 +64,7 @@ def _claim_procedures(study: Study, travel: TravelTimes) -> dict[str, _Procedure
     """Return the decision procedure of each claim; contracts are built on demand."""
     robot = study.robots[0]
     literal, once = Sharing.LITERAL, Sharing.ARBITRATED
+    safety, liveness = JointProof.find_safety_failure, JointProof.find_liveness_failure
     return {
         "C_S refines C_R": partial(_decide_refinement, study, lambda: robot_contract(study, robot)),
         "C_S refines C_R among others": partial(
@@ -80,11 +80,13 @@ def _claim_procedures(study: Study, travel: TravelTimes) -> dict[str, _Procedure
             _decide_discharge, study, once, False
         ),
         "C_R, C_E and C_M together keep what C_S promises of each step": partial(
-            _decide_steps, study
+            _decide_jointly, study, (safety,)
         ),
-        "C_R, C_E and C_M together refine C_S": partial(_decide_whole, study),
+        "C_R, C_E and C_M together refine C_S": partial(
+            _decide_jointly, study, (safety, liveness, JointProof.find_offer_failure)
+        ),
         "C_R, C_E and C_M together keep C_S where ways that lead nearer are offered": partial(
-            _decide_with_offers, study
+            _decide_jointly, study, (safety, liveness)
         ),
         "C_R and C_E bring robots to their targets in a known time, as C_M assumes": partial(
             _decide_travel_time, study
@@ -186,23 +188,18 @@ def _find_undischarged(
     return None
 
 
-def _decide_steps(study: Study, claim: str, new_manager: ManagerFactory) -> Claim:
-    counterexample = JointProof(study, new_manager).find_safety_failure()
-    return Claim(claim, True) if counterexample is None else _failed_claim(claim, counterexample)
-
-
-def _decide_with_offers(study: Study, claim: str, new_manager: ManagerFactory) -> Claim:
+def _decide_jointly(
+    study: Study, searches: tuple[_Search, ...], claim: str, new_manager: ManagerFactory
+) -> Claim:
+    """Decide a claim that holds if none of the searches of a joint proof finds a failure."""
     proof = JointProof(study, new_manager)
-    counterexample = proof.find_safety_failure() or proof.find_liveness_failure()
-    return Claim(claim, True) if counterexample is None else _failed_claim(claim, counterexample)
-
-
-def _decide_whole(study: Study, claim: str, new_manager: ManagerFactory) -> Claim:
-    proof = JointProof(study, new_manager)
-    counterexample = (
-        proof.find_safety_failure() or proof.find_liveness_failure() or proof.find_offer_failure()
-    )
-    return Claim(claim, True) if counterexample is None else _failed_claim(claim, counterexample)
+    failure = next(filter(None, (search(proof) for search in searches)), None)
+    if failure is None:
+        return Claim(claim, True)
+    if failure.run is None:
+        return Claim(claim, None, f"no run was found that breaks: {failure.conjunct.text}")
+    reason = f"nothing promises: {failure.conjunct.text}"
+    return Claim(claim, False, reason, _describe_trace(failure.run, failure.conjunct))
 
 
 def _decide_travel_time(study: Study, claim: str, new_manager: ManagerFactory) -> Claim:
@@ -211,13 +208,6 @@ def _decide_travel_time(study: Study, claim: str, new_manager: ManagerFactory) -
         return Claim(claim, True)
     reason = f"'{study.robots[0].name}' may go on like that for any time"
     return Claim(claim, False, reason, tuple(describe_run(run)))
-
-
-def _failed_claim(claim: str, counterexample: Counterexample) -> Claim:
-    if counterexample.run is None:
-        return Claim(claim, None, f"no run was found that breaks: {counterexample.conjunct.text}")
-    reason = f"nothing promises: {counterexample.conjunct.text}"
-    return Claim(claim, False, reason, _describe_trace(counterexample.run, counterexample.conjunct))
 
 
 def _describe_trace(trace: Trace | None, broken: Conjunct) -> tuple[str, ...]:

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 from math import isqrt
-from typing import Protocol
 
 from msgspec import Struct
 from msgspec.structs import replace
@@ -321,21 +320,8 @@ def _parse_whole_number(value: object) -> int | None:
     return value if isinstance(value, int) else None
 
 
-class Reader(Protocol):
-    """The part of ``_FloorReader`` that reading orders needs."""
-
-    graph: Graph
-    sink: Sink
-
-    def fail(self, rule: Rule, element: Element, **facts: str | int) -> None:
-        """Report an error of an element."""
-
-    def is_typed(self, part: Element, kind: str) -> bool:
-        """Whether a part is typed by the library's definition *kind*."""
-
-
 def _read_orders(
-    reader: Reader, missions: Sequence[Element], targets: Sequence[Element]
+    reader: _FloorReader, missions: Sequence[Element], targets: Sequence[Element]
 ) -> Iterator[Order]:
     """Return the orders between targets of the missions.
 
@@ -347,7 +333,9 @@ def _read_orders(
     return iter(orders)
 
 
-def _iter_orders(reader: Reader, mission: Element, targets: Sequence[Element]) -> Iterator[Order]:
+def _iter_orders(
+    reader: _FloorReader, mission: Element, targets: Sequence[Element]
+) -> Iterator[Order]:
     graph = reader.graph
     numbers = {target.id: number for number, target in enumerate(targets)}
     block = query.type_of(graph, mission)
@@ -362,7 +350,9 @@ def _iter_orders(reader: Reader, mission: Element, targets: Sequence[Element]) -
             yield Order(ends[0], ends[1], is_carried, connector.id)
 
 
-def _check_circles(reader: Reader, orders: Sequence[Order], targets: Sequence[Element]) -> None:
+def _check_circles(
+    reader: _FloorReader, orders: Sequence[Order], targets: Sequence[Element]
+) -> None:
     """Report the first target that has to be reached before itself."""
     for start in range(len(targets)):
         circle = _find_order_path(orders, start, start)
@@ -392,7 +382,9 @@ def _find_order_path(orders: Sequence[Order], start: int, end: int) -> list[int]
     return path
 
 
-def _check_carrying(reader: Reader, orders: Sequence[Order], targets: Sequence[Element]) -> None:
+def _check_carrying(
+    reader: _FloorReader, orders: Sequence[Order], targets: Sequence[Element]
+) -> None:
     """Report targets that are carried to, or from, several others."""
     for side, other, prepositions in (
         ("earlier", "later", ("from", "to")),

@@ -5,6 +5,8 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 from functools import lru_cache
 
+from sysmlc.support.counts import list_first
+
 _MAX_LISTED = 12
 _CACHE_SIZE = 64
 _MAX_EDITS = 3
@@ -36,8 +38,7 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
         return f"did you mean '{similar}'?"
     if not names:
         return "there is none"
-    rest = f" and {len(names) - _MAX_LISTED} more" if len(names) > _MAX_LISTED else ""
-    return f"known: {', '.join(names[:_MAX_LISTED])}{rest}"
+    return f"known: {list_first(names, _MAX_LISTED)}"
 
 
 @lru_cache(_CACHE_SIZE)

@@ -22,6 +22,7 @@ from sysmlc.logic.activities.token_nodes import (
     TokenNode,
 )
 from sysmlc.logic.formula import Formula, variable_names, variables
+from sysmlc.support.counts import list_first
 
 _MAX_VALUATIONS = 20_000
 """Limit of enumeration: above it, guards count as neither exclusive nor exhaustive."""
@@ -60,9 +61,7 @@ class _Checker:
         implied = [self.tokens.node(e.target) for e in starts if self._is_implied(e)]
         # A single action without incoming flows is the only possible start.
         if len(implied) == len(starts) > 1:
-            labels = [node.label for node in implied]
-            more = f" and {len(labels) - _MAX_LISTED} more" if len(labels) > _MAX_LISTED else ""
-            actions = ", ".join(labels[:_MAX_LISTED]) + more
+            actions = list_first([node.label for node in implied], _MAX_LISTED)
             subject = self.graph.subject(self.activity)
             self.sink.report(rules.STARTED_BY_ACTIONS, subject, activity=name, actions=actions)
 

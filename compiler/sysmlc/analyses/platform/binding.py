@@ -9,6 +9,7 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.recipe.model import Machine, Model, Service
 from sysmlc.recipe.plant import Binding, Plant, PlantElement, is_in_plant
+from sysmlc.support.counts import list_first
 from sysmlc.support.suggestions import did_you_mean
 
 NOT_IN_PLANT = rule(
@@ -295,14 +296,13 @@ def _report_misplaced(
 
 
 def _report_several(context: Context, machine: Machine, elements: list[PlantElement]) -> None:
-    names = [f"'{_name_of(context, element)}'" for element in elements[:_MAX_LISTED]]
-    more = f" and {len(elements) - _MAX_LISTED} more" if len(elements) > _MAX_LISTED else ""
+    names = [f"'{_name_of(context, element)}'" for element in elements]
     context.sink.report(
         SEVERAL_ELEMENTS,
         context.graph.subject(context.graph[machine.element]),
         machine=machine.id,
         number=len(elements),
-        elements=", ".join(names) + more,
+        elements=list_first(names, _MAX_LISTED),
     )
 
 

@@ -22,6 +22,7 @@ from sysmlc.logic.requirements.statements import (
 )
 from sysmlc.logic.simplification import rebuild
 from sysmlc.logic.syntax import FormulaError
+from sysmlc.support.counts import list_first
 from sysmlc.support.suggestions import find_similar
 
 _NAME = re.compile(
@@ -109,9 +110,8 @@ class Scope(Struct, frozen=True):
 
     def describe_names(self) -> str:
         """Return the list of names for a message, shortened if there are many."""
-        names = self.list_names()
-        further = f" and {len(names) - _MAX_NAMES} more" if len(names) > _MAX_NAMES else ""
-        return (", ".join(names[:_MAX_NAMES]) + further) or "none: the subject has no features"
+        names = list_first(self.list_names(), _MAX_NAMES)
+        return names or "none: the subject has no features"
 
     def _describe_unknown(self, name: str) -> str:
         """Return the message about a dotted name, or one of an action, that denotes nothing."""

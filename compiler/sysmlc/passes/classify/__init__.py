@@ -33,6 +33,7 @@ from sysmlc.passes.classify.tags import (
 )
 from sysmlc.passes.classify.units import link_units
 from sysmlc.passes.classify.vocabulary import LEVELS, Family, is_known, mangle
+from sysmlc.support.counts import list_first
 
 LOOK_ALIKE = rule(
     "SM210",
@@ -182,9 +183,8 @@ def _full_name(application: Element) -> str:
 
 def _list_stereotypes(namespace: str, applications: list[Element]) -> str:
     names = list(dict.fromkeys(str(a.attrs.get("stereotype", "")) for a in applications))
-    more = f" and {len(names) - _MAX_LISTED} more" if len(names) > _MAX_LISTED else ""
     noun = "stereotype" if len(names) == 1 else "the stereotypes"
-    return f"{noun} {', '.join(names[:_MAX_LISTED])}{more} ({namespace})"
+    return f"{noun} {list_first(names, _MAX_LISTED)} ({namespace})"
 
 
 def _find_subject(graph: Graph, applications: list[Element]) -> Subject:

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from msgspec import Struct
 
-from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.diagnostics import Rule, Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, list_items
 from sysmlc.ir.query import (
     conforms,
@@ -159,15 +159,21 @@ def _check_flow(graph: Graph, sink: Sink, flow: Element) -> None:
     unresolved = list_items(flow.attrs.get("unresolved"))
     for edge, name in ((Edge.FLOW_SOURCE, "source"), (Edge.FLOW_TARGET, "target")):
         if graph.target(flow, edge) is None and edge.value not in unresolved:
-            subject = graph.subject(flow)
-            sink.report(FLOW_WITHOUT_END, subject, flow=_title(graph, flow), end=name)
+            _report_flow(graph, sink, FLOW_WITHOUT_END, flow, end=name)
     if not graph.targets(flow, Edge.CONVEYS) and Edge.CONVEYS.value not in unresolved:
-        sink.report(FLOW_OF_NOTHING, graph.subject(flow), flow=_title(graph, flow))
+        _report_flow(graph, sink, FLOW_OF_NOTHING, flow)
     for port, along, way in _list_port_ends(graph, flow):
-        _check_direction(graph, sink, flow, port, along, way)
+        if _runs_against(port, along):
+            facts = {"port": graph.qualified_name(port), "direction": opposite(along)}
+            _report_flow(graph, sink, FLOW_AGAINST_PORT, flow, way=way, **facts)
         _check_items(graph, sink, flow, port)
     _check_flow_properties(graph, sink, flow)
     _check_realizing(graph, sink, flow)
+
+
+def _report_flow(graph: Graph, sink: Sink, rule: Rule, flow: Element, **facts: str | None) -> None:
+    title, subject = _title(graph, flow), graph.subject(flow)
+    sink.report(rule, subject, notes=(), help="", cause="", flow=title, **facts)
 
 
 def _title(graph: Graph, relation: Element) -> str:
@@ -212,21 +218,6 @@ def _runs_inside(graph: Graph, flow: Element, port: Element) -> bool:
     return False
 
 
-def _check_direction(
-    graph: Graph, sink: Sink, flow: Element, port: Element, along: str, way: str
-) -> None:
-    if not _runs_against(port, along):
-        return
-    sink.report(
-        FLOW_AGAINST_PORT,
-        graph.subject(flow),
-        flow=_title(graph, flow),
-        way=way,
-        port=graph.qualified_name(port),
-        direction=port.attrs["direction"],
-    )
-
-
 def _runs_against(port: Element, along: str) -> bool:
     return bool(port.attrs.get("direction") == opposite(along))
 
@@ -235,13 +226,8 @@ def _check_items(graph: Graph, sink: Sink, flow: Element, port: Element) -> None
     item_types = _list_item_types(graph, port)
     for item in graph.targets(flow, Edge.CONVEYS):
         if item_types and not any(_conform(graph, item, item_type) for item_type in item_types):
-            sink.report(
-                FLOW_ITEM,
-                graph.subject(flow),
-                flow=_title(graph, flow),
-                item=item.name,
-                port=graph.qualified_name(port),
-            )
+            port_name = graph.qualified_name(port)
+            _report_flow(graph, sink, FLOW_ITEM, flow, item=item.name, port=port_name)
 
 
 def _check_flow_properties(graph: Graph, sink: Sink, flow: Element) -> None:
@@ -252,14 +238,8 @@ def _check_flow_properties(graph: Graph, sink: Sink, flow: Element) -> None:
             continue
         for item in graph.targets(flow, Edge.CONVEYS):
             if not _are_related(graph, item, type_):
-                sink.report(
-                    FLOW_PROPERTY_TYPE,
-                    graph.subject(flow),
-                    flow=_title(graph, flow),
-                    item=item.name,
-                    feature=graph.qualified_name(feature),
-                    type=type_.name,
-                )
+                facts = {"feature": graph.qualified_name(feature), "type": type_.name}
+                _report_flow(graph, sink, FLOW_PROPERTY_TYPE, flow, item=item.name, **facts)
 
 
 def _list_item_types(graph: Graph, port: Element) -> list[Element]:
@@ -289,13 +269,8 @@ def _check_realizing(graph: Graph, sink: Sink, flow: Element) -> None:
         attached = _find_attached(graph, connector)
         for end in (flow_source(graph, flow), flow_target(graph, flow)):
             if end is not None and attached and end.id not in attached:
-                sink.report(
-                    FLOW_BESIDE_CONNECTOR,
-                    graph.subject(flow),
-                    flow=_title(graph, flow),
-                    connector=_title(graph, connector),
-                    end=graph.qualified_name(end),
-                )
+                facts = {"connector": _title(graph, connector), "end": graph.qualified_name(end)}
+                _report_flow(graph, sink, FLOW_BESIDE_CONNECTOR, flow, **facts)
 
 
 def _find_attached(graph: Graph, connector: Element) -> set[str]:
@@ -349,19 +324,24 @@ def _check_connector(graph: Graph, sink: Sink, connector: Element) -> None:
     types = [type_ for type_ in (type_of(graph, port) for port in ports) if type_ is not None]
     are_compatible = len(types) < 2 or _are_compatible(graph, *types)
     if not are_compatible:
-        _report_types(graph, sink, connector, connector_ends, types)
+        names = {"type": types[0].name, "other_type": types[1].name}
+        _report_connector(graph, sink, CONNECTOR_TYPES, connector, **names)
     if not has_sides or is_reported:
         return
     if not _has_matching_directions(graph, connector_ends):
-        _report_directions(graph, sink, connector, connector_ends)
+        first, second = (end_direction(graph, end) for end in connector_ends)
+        _report_connector(graph, sink, CONNECTOR_DIRECTIONS, connector, first=first, second=second)
     elif are_compatible and not _can_exchange_items(graph, connector_ends, types):
-        sink.report(
-            CONNECTOR_WITHOUT_FLOW,
-            graph.subject(connector),
-            connector=_title(graph, connector),
-            one=_name_end(graph, connector, connector_ends[0]),
-            other=_name_end(graph, connector, connector_ends[1]),
-        )
+        _report_connector(graph, sink, CONNECTOR_WITHOUT_FLOW, connector)
+
+
+def _report_connector(
+    graph: Graph, sink: Sink, rule: Rule, connector: Element, **facts: str | None
+) -> None:
+    """Report a rule about a connector and its two ends."""
+    one, other = (_name_end(graph, connector, end) for end in ends(graph, connector))
+    facts |= {"connector": _title(graph, connector), "one": one, "other": other}
+    sink.report(rule, graph.subject(connector), notes=(), help="", cause="", **facts)
 
 
 def _has_matching_directions(graph: Graph, connector_ends: list[Element]) -> bool:
@@ -371,20 +351,6 @@ def _has_matching_directions(graph: Graph, connector_ends: list[Element]) -> boo
     # A delegation connector continues the direction of the outer port; others join opposites.
     delegates = is_boundary(graph, connector_ends[0]) != is_boundary(graph, connector_ends[1])
     return (first == second) is delegates
-
-
-def _report_directions(
-    graph: Graph, sink: Sink, connector: Element, attached: list[Element]
-) -> None:
-    sink.report(
-        CONNECTOR_DIRECTIONS,
-        graph.subject(connector),
-        connector=_title(graph, connector),
-        first=end_direction(graph, attached[0]),
-        one=_name_end(graph, connector, attached[0]),
-        second=end_direction(graph, attached[1]),
-        other=_name_end(graph, connector, attached[1]),
-    )
 
 
 def _name_end(graph: Graph, connector: Element, end: Element) -> str:
@@ -433,20 +399,6 @@ def _may_equal_types(graph: Graph, left: Element, right: Element) -> bool:
     return first is None or second is None or _are_related(graph, first, second)
 
 
-def _report_types(
-    graph: Graph, sink: Sink, connector: Element, attached: list[Element], types: list[Element]
-) -> None:
-    sink.report(
-        CONNECTOR_TYPES,
-        graph.subject(connector),
-        connector=_title(graph, connector),
-        one=_name_end(graph, connector, attached[0]),
-        type=types[0].name,
-        other=_name_end(graph, connector, attached[1]),
-        other_type=types[1].name,
-    )
-
-
 def _are_compatible(graph: Graph, first: Element, second: Element) -> bool:
     families = [[classifier, *generals(graph, classifier)] for classifier in (first, second)]
     # The generals and features of an external stub are unknown, so that nothing is reported.
@@ -487,18 +439,9 @@ def _check_association(graph: Graph, sink: Sink, connector: Element) -> None:
     first, second = ([_may_be(graph, end, type_) for type_ in types] for end in attached)
     if (first[0] and second[1]) or (first[1] and second[0]):
         return
-    names = [_name_end(graph, connector, end) for end in attached]
-    type_names = [type_.name for type_ in types if type_ is not None]
-    sink.report(
-        CONNECTOR_ASSOCIATION,
-        graph.subject(connector),
-        connector=_title(graph, connector),
-        one=names[0],
-        other=names[1],
-        association=association.name,
-        type=type_names[0],
-        other_type=type_names[1],
-    )
+    names = [type_.name for type_ in types if type_ is not None]
+    facts = {"association": association.name, "type": names[0], "other_type": names[1]}
+    _report_connector(graph, sink, CONNECTOR_ASSOCIATION, connector, **facts)
 
 
 def _may_be(graph: Graph, end: Element, type_: Element | None) -> bool:

@@ -7,7 +7,7 @@ from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, derived_id
 from sysmlc.ir.query import domain_of, generals, parameters
 from sysmlc.overlay.model import BlockEntry, ItemEntry, Key, OperationEntry, Term, ValueEntry
 from sysmlc.passes.overlay import rules
-from sysmlc.passes.overlay.finder import BLOCK, PACKAGE, TYPE, Finder
+from sysmlc.passes.overlay.finder import BLOCK, PACKAGE, TYPE, Finder, Sort
 
 _Signature = list[tuple[str, AttrValue]]
 
@@ -18,10 +18,7 @@ def refine_block(finder: Finder, entry: BlockEntry) -> None:
     if block is None:
         return
     for general in entry.specializes:
-        general_block = finder.find_term(general, BLOCK)
-        if general_block is not None and general_block is not block:
-            finder.graph.connect(Edge.SPECIALIZES, block, general_block)
-            finder.record_change(block, f"the general '{general_block.name}'", general)
+        _specialize(finder, block, general, BLOCK)
     for value in entry.values:
         _add_value(finder, block, value)
     for operation in entry.operations:
@@ -31,20 +28,14 @@ def refine_block(finder: Finder, entry: BlockEntry) -> None:
 def _add_value(finder: Finder, block: Element, entry: ValueEntry) -> None:
     graph = finder.graph
     id = derived_id(block.id, f"value of an overlay:{entry.name.text}")
-    holder = next(
-        (
-            candidate
-            for candidate in _with_generals(finder, block)
-            if _has_other_feature(finder, candidate, entry, id)
-        ),
-        None,
-    )
-    if holder is not None:
-        name = graph.qualified_name(block)
-        where = "" if holder is block else f", inherited from '{graph.qualified_name(holder)}'"
-        facts = {"feature": entry.name.text, "block": name, "where": where}
-        finder.report(rules.FEATURE_TWICE, entry.name, **facts)
-        return
+    for holder in (block, *generals(graph, block)):
+        # A feature with the id was added by an earlier run of the pass.
+        if any(f.name == entry.name.text and f.id != id for f in graph.owned(holder)):
+            name = graph.qualified_name(block)
+            where = "" if holder is block else f", inherited from '{graph.qualified_name(holder)}'"
+            facts = {"feature": entry.name.text, "block": name, "where": where}
+            finder.report(rules.FEATURE_TWICE, entry.name, **facts)
+            return
     type_ = None if entry.type is None else finder.find_term(entry.type, TYPE)
     value = finder.ensure_element(
         id,
@@ -61,16 +52,6 @@ def _add_value(finder: Finder, block: Element, entry: ValueEntry) -> None:
         if entry.default is not None and not _fits_type(graph, entry.default, type_):
             facts = {"value": str(entry.default), "feature": entry.name.text, "type": type_.name}
             finder.report(rules.INVALID_VALUE, entry.name, **facts)
-
-
-def _with_generals(finder: Finder, block: Element) -> list[Element]:
-    return [block, *generals(finder.graph, block)]
-
-
-def _has_other_feature(finder: Finder, block: Element, entry: ValueEntry, id: str) -> bool:
-    """Whether a block owns a feature of the entry's name that this overlay did not add."""
-    owned = finder.graph.owned(block)
-    return any(feature.name == entry.name.text and feature.id != id for feature in owned)
 
 
 def _add_operation(finder: Finder, block: Element, entry: OperationEntry) -> None:
@@ -189,7 +170,7 @@ def add_items(finder: Finder) -> None:
     for entry in entries:
         if entry.key.text in finder.items:
             for general in entry.specializes:
-                _specialize(finder, finder.items[entry.key.text], general)
+                _specialize(finder, finder.items[entry.key.text], general, TYPE)
 
 
 def check_domains(finder: Finder) -> None:
@@ -269,8 +250,8 @@ def add_description(finder: Finder, element: Element, text: str, term: Term | Ke
         finder.graph.connect(Edge.REFERENCES, comment, element)
 
 
-def _specialize(finder: Finder, item: Element, general: Term) -> None:
-    general_item = finder.find_term(general, TYPE)
-    if general_item is not None and general_item is not item:
-        finder.graph.connect(Edge.SPECIALIZES, item, general_item)
-        finder.record_change(item, f"the general '{general_item.name}'", general)
+def _specialize(finder: Finder, special: Element, term: Term, sort: Sort) -> None:
+    general = finder.find_term(term, sort)
+    if general is not None and general is not special:
+        finder.graph.connect(Edge.SPECIALIZES, special, general)
+        finder.record_change(special, f"the general '{general.name}'", term)

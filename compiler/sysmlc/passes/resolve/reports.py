@@ -5,6 +5,7 @@ from sysmlc.ir import Graph, Kind
 from sysmlc.ir.element import is_generated
 from sysmlc.passes.resolve.libraries import PRIMITIVES, has_primitives_only, is_standard, split_href
 from sysmlc.passes.resolve.resolver import Use, UseGroup, stub_id
+from sysmlc.support.counts import list_first
 
 BROKEN_REFERENCE = rule(
     "SM150",
@@ -168,5 +169,4 @@ def _subject_of_first(graph: Graph, first: Use, place: Place | None) -> Subject:
 def _describe_loss(graph: Graph, href: str, uses: list[Use]) -> str:
     stub = graph[stub_id(href)]
     users = sorted({graph.qualified_name(use.holder) for use in uses})
-    more = f" and {len(users) - 2} more" if len(users) > 2 else ""
-    return f"{stub.kind} '{stub.name}', used by {', '.join(users[:2])}{more}"
+    return f"{stub.kind} '{stub.name}', used by {list_first(users, 2)}"
