@@ -35,7 +35,6 @@ WIDE_OBJECTS = {
     "sysmlc.frontends.caex.component.Component": 15,
     "sysmlc.frontends.caex.context.Context": 18,
     "sysmlc.frontends.caex.document.Document": 15,
-    "sysmlc.frontends.sysml.lowering.Lowering": 24,
     "sysmlc.frontends.xmi.document.Document": 18,
     "sysmlc.ir.pending.Drawing": 13,
     "sysmlc.language.names.model.Model": 16,
@@ -78,7 +77,6 @@ SLOW_TO_IMPORT = {
 """Third-party packages that may be imported inside a function: each takes over 20 ms."""
 
 CYCLES = [
-    [f"sysmlc.frontends.sysml.{name}" for name in ("coverage", "lowering", "nodes")],
     [f"sysmlc.logic.components.{name}" for name in ("component", "names", "signals")],
 ]
 """Modules whose functions take an object whose class imports them, for the type checker only."""

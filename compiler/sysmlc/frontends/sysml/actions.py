@@ -1,19 +1,15 @@
 """Actions and control nodes of activities."""
 
-from typing import TYPE_CHECKING
-
 from sysmlc.frontends.sysml import annotations, expressions, nodes, values
 from sysmlc.frontends.sysml.activities import list_members_beside
 from sysmlc.frontends.sysml.definitions import visibility_attributes
 from sysmlc.frontends.sysml.kinds import ACTIVITIES
+from sysmlc.frontends.sysml.lowering import Lowering
 from sysmlc.frontends.sysml.successions import defer_implied_start, lower_steps
 from sysmlc.frontends.sysml.triggers import connect_links, lower_trigger
 from sysmlc.ir import AttrValue, Edge, Element, Kind, as_items
 from sysmlc.language.metaclasses import is_a
 from sysmlc.language.tree import Node
-
-if TYPE_CHECKING:
-    from sysmlc.frontends.sysml.lowering import Lowering
 
 _STRUCTURED_SUBKINDS = frozenset(
     {"conditional", "loop", "sequence", "expansion", "interruptible", "structured"}
@@ -27,7 +23,7 @@ _CONTROL_SUBKINDS = {
 }
 
 
-def lower_action(lowering: "Lowering", node: Node, owner: Element) -> Element:
+def lower_action(lowering: Lowering, node: Node, owner: Element) -> Element:
     """Lower a step: the call of a behaviour, a group of steps, or an opaque action."""
     subkind = str(annotations.metadata_value(node, "Kind", "name") or "")
     body = nodes.body_of(node)
@@ -65,7 +61,7 @@ def _is_nameless_reference(node: Node) -> bool:
 
 
 def _add_action(
-    lowering: "Lowering", node: Node, owner: Element, subkind: str, **attrs: AttrValue
+    lowering: Lowering, node: Node, owner: Element, subkind: str, **attrs: AttrValue
 ) -> Element:
     attributes = _action_attributes(node) | attrs
     action = lowering.add_element(
@@ -81,7 +77,7 @@ def _action_attributes(node: Node) -> dict[str, AttrValue]:
     return attributes | {"referential": True} if node.attributes.get("isReference") else attributes
 
 
-def _lower_group(lowering: "Lowering", node: Node, owner: Element, subkind: str) -> Element:
+def _lower_group(lowering: Lowering, node: Node, owner: Element, subkind: str) -> Element:
     group = lowering.add_element(
         node,
         Kind.STRUCTURED,
@@ -95,7 +91,7 @@ def _lower_group(lowering: "Lowering", node: Node, owner: Element, subkind: str)
     return group
 
 
-def _lower_call(lowering: "Lowering", node: Node, owner: Element, subkind: str) -> Element:
+def _lower_call(lowering: Lowering, node: Node, owner: Element, subkind: str) -> Element:
     """Lower a call of a behaviour or an operation, or an opaque action if it calls none."""
     called = _find_called(node)
     default_subkind = "opaque" if called is None else "call-behavior"
@@ -108,7 +104,7 @@ def _lower_call(lowering: "Lowering", node: Node, owner: Element, subkind: str) 
         else:
             lowering.lower(member, action)
     if called is not None:
-        lowering.defer_until_elements(lambda: _connect_called(lowering, action, called))
+        lowering.queue.defer_until_elements(lambda: _connect_called(lowering, action, called))
     return action
 
 
@@ -118,7 +114,7 @@ def _find_called(node: Node) -> Node | None:
     return nodes.find_target(node, *kinds)
 
 
-def _connect_called(lowering: "Lowering", action: Element, called: Node) -> None:
+def _connect_called(lowering: Lowering, action: Element, called: Node) -> None:
     lowering.connect_node(Edge.CALLS, action, called)
     target = lowering.graph.target(action, Edge.CALLS)
     if target is not None and target.kind is Kind.OPERATION:
@@ -128,7 +124,7 @@ def _connect_called(lowering: "Lowering", action: Element, called: Node) -> None
 # -- partitions --------------------------------------------------------------------------------
 
 
-def _assign_partitions(lowering: "Lowering", node: Node, owner: Element, action: Element) -> None:
+def _assign_partitions(lowering: Lowering, node: Node, owner: Element, action: Element) -> None:
     """Assign an action to the partitions that metadata names."""
     if "Partition" not in nodes.shipped_metadata_of(node):
         return
@@ -140,7 +136,7 @@ def _assign_partitions(lowering: "Lowering", node: Node, owner: Element, action:
 
 
 def _defer_partition(
-    lowering: "Lowering", action: Element, owner: Element, name: str, represented: str
+    lowering: Lowering, action: Element, owner: Element, name: str, represented: str
 ) -> None:
     """Assign an action to the partition or interruptible region *name*; add it if it is new.
 
@@ -155,11 +151,11 @@ def _defer_partition(
         )
         area = next(areas, None) or lowering.add_implied_child(owner, Kind.PARTITION, name)
         lowering.graph.connect(Edge.IN_PARTITION, action, area)
-        element = lowering.graph.get(lowering.id_of(represented)) if represented else None
+        element = lowering.graph.get(lowering.names.id_of(represented)) if represented else None
         if element is not None and area.kind is Kind.PARTITION:
             lowering.graph.connect(Edge.REPRESENTS, area, element)
 
-    lowering.defer_until_elements(assign)
+    lowering.queue.defer_until_elements(assign)
 
 
 def _list_texts(value: AttrValue) -> list[str]:
@@ -169,7 +165,7 @@ def _list_texts(value: AttrValue) -> list[str]:
 # -- sending, accepting, assigning -------------------------------------------------------------
 
 
-def lower_send(lowering: "Lowering", node: Node, owner: Element) -> Element:
+def lower_send(lowering: Lowering, node: Node, owner: Element) -> Element:
     """Lower a send action: its signal, the arguments, and the port of sender or receiver."""
     action = _add_action(lowering, node, owner, "send")
     payload, sender, receiver = [*expressions.list_inputs(node), None, None, None][:3]
@@ -182,7 +178,7 @@ def lower_send(lowering: "Lowering", node: Node, owner: Element) -> Element:
     return action
 
 
-def _lower_payload(lowering: "Lowering", action: Element, payload: Node) -> None:
+def _lower_payload(lowering: Lowering, action: Element, payload: Node) -> None:
     """Lower a payload: a new signal with its arguments, or one argument."""
     signal = nodes.find_reference(payload, "Membership", "FeatureTyping")
     is_new = payload.kind in ("ConstructorExpression", "InvocationExpression")
@@ -194,25 +190,25 @@ def _lower_payload(lowering: "Lowering", action: Element, payload: Node) -> None
         _add_argument(lowering, action, argument)
 
 
-def _add_argument(lowering: "Lowering", action: Element, argument: Node) -> None:
+def _add_argument(lowering: Lowering, action: Element, argument: Node) -> None:
     name = nodes.name_of(argument)
     pin = lowering.add_derived(argument, Kind.PIN, name, action, direction="in", subkind="argument")
     values.set_value(lowering, pin, "value", nodes.value_of(argument) or argument)
 
 
-def _defer_port(lowering: "Lowering", action: Element, end: Node) -> None:
+def _defer_port(lowering: Lowering, action: Element, end: Node) -> None:
     def set_port() -> None:
         path = nodes.path_of_expression(end)
-        *links, port = map(lowering.element_of, path)
+        *links, port = map(lowering.elements.find, path)
         if port is not None and port.kind is Kind.PORT:
             text = expressions.write_expression(end) if None in path else None
             lowering.graph.set(action, on_port=port.id, port_path=text)
-            connect_links(lowering, action, links)
+            connect_links(lowering.graph, action, links)
 
-    lowering.defer_until_elements(set_port)
+    lowering.queue.defer_until_elements(set_port)
 
 
-def lower_accept(lowering: "Lowering", node: Node, owner: Element) -> Element:
+def lower_accept(lowering: Lowering, node: Node, owner: Element) -> Element:
     """Lower an accept action with its trigger."""
     subkind = str(annotations.metadata_value(node, "Kind", "name") or "accept")
     action = _add_action(lowering, node, owner, subkind)
@@ -224,10 +220,10 @@ def lower_accept(lowering: "Lowering", node: Node, owner: Element) -> Element:
     return action
 
 
-def lower_assignment(lowering: "Lowering", node: Node, owner: Element) -> Element:
+def lower_assignment(lowering: Lowering, node: Node, owner: Element) -> Element:
     """Lower an assignment to an opaque action whose body is its text."""
     action = _add_action(lowering, node, owner, "opaque")
-    document = lowering.document_of(node)
+    document = lowering.trees.document_of(node)
     if expressions.read_statement(node) is not None:
         values.set_effect(lowering, action, [node])
     elif document is not None and node.end > node.start >= 0:
@@ -236,7 +232,7 @@ def lower_assignment(lowering: "Lowering", node: Node, owner: Element) -> Elemen
     return action
 
 
-def _lower_members(lowering: "Lowering", node: Node, action: Element) -> None:
+def _lower_members(lowering: Lowering, node: Node, action: Element) -> None:
     """Lower the members of an action, without its parameters."""
     for member in nodes.body_of(node):
         if member.membership != "ParameterMembership":
@@ -246,7 +242,7 @@ def _lower_members(lowering: "Lowering", node: Node, action: Element) -> None:
 # -- control nodes -----------------------------------------------------------------------------
 
 
-def lower_control_node(lowering: "Lowering", node: Node, owner: Element) -> Element:
+def lower_control_node(lowering: Lowering, node: Node, owner: Element) -> Element:
     """Lower a decision, merge, fork or join."""
     subkind, attributes = _CONTROL_SUBKINDS[node.kind], visibility_attributes(node)
     control_node = lowering.add_element(
@@ -257,11 +253,11 @@ def lower_control_node(lowering: "Lowering", node: Node, owner: Element) -> Elem
     return control_node
 
 
-def lower_termination(lowering: "Lowering", node: Node, owner: Element) -> Element:
+def lower_termination(lowering: Lowering, node: Node, owner: Element) -> Element:
     """Lower a terminate action: the end of the behaviour, or an action for another occurrence."""
     if any(expression is not None for expression in expressions.list_inputs(node)):
         construct = "a terminate action for another occurrence"
-        lowering.mark_approximated(node, construct, "an action of its own")
+        lowering.verdicts.mark_approximated(node, construct, "an action of its own")
         return _add_action(lowering, node, owner, "destroy")
     name = nodes.name_of(node)
     end = lowering.add_element(node, Kind.CONTROL, name, owner, subkind="final")

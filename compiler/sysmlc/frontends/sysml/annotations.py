@@ -6,15 +6,13 @@ SysML v2 has no construct; the back end ``sysml`` writes it.
 
 from collections.abc import Callable, Collection, Iterator
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import nodes, preserved_facts, quantities, values
+from sysmlc.frontends.sysml.elements import NodeElements
 from sysmlc.frontends.sysml.libraries import PROFILE, RECIPES
-from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.frontends.sysml.lowering import Lowering, QualifiedNames
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.language.tree import Node
-
-if TYPE_CHECKING:
-    from sysmlc.frontends.sysml.lowering import Lowering
 
 _STUB_PACKAGE = "Stereotypes"
 """Package in which the back end writes stubs for stereotypes of profiles that are not there."""
@@ -30,7 +28,7 @@ _KINDS_BY_NAME = {str(kind): kind for kind in Kind}
 
 
 def lower_only_annotations(
-    lowering: "Lowering",
+    lowering: Lowering,
     node: Node,
     element: Element,
     description: str,
@@ -48,17 +46,17 @@ def lower_only_annotations(
             and member not in read
             and member.kind not in _READ_WITH_OWNER
         ):
-            lowering.mark_approximated(member, f"a member of {description}", "nothing")
+            lowering.verdicts.mark_approximated(member, f"a member of {description}", "nothing")
 
 
-def lower_documentation(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+def lower_documentation(lowering: Lowering, node: Node, owner: Element | None) -> None:
     """Lower a documentation to a comment about its owner."""
     comment = _add_comment(lowering, node, owner)
     if owner is not None:
         lowering.graph.connect(Edge.REFERENCES, comment, owner)
 
 
-def lower_comment(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+def lower_comment(lowering: Lowering, node: Node, owner: Element | None) -> None:
     """Lower a comment about the elements it names, else about its owner (KerML 1.0, 8.3.2.3.2)."""
     comment = _add_comment(lowering, node, owner)
     about = nodes.list_references(node, "Annotation")
@@ -68,17 +66,17 @@ def lower_comment(lowering: "Lowering", node: Node, owner: Element | None) -> No
         lowering.graph.connect(Edge.REFERENCES, comment, owner)
 
 
-def _add_comment(lowering: "Lowering", node: Node, owner: Element | None) -> Element:
+def _add_comment(lowering: Lowering, node: Node, owner: Element | None) -> Element:
     body = str(node.attributes.get("body", "")).strip()
     locale = node.attributes.get("locale", "")
     name = node.name or ""
     return lowering.add_element(node, Kind.COMMENT, name, owner, body=body, locale=locale)
 
 
-def lower_textual_representation(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+def lower_textual_representation(lowering: Lowering, node: Node, owner: Element | None) -> None:
     """Lower a text in another language to a body of its owner, which becomes opaque."""
     if owner is None:
-        lowering.mark_unsupported(node)
+        lowering.verdicts.mark_unsupported(node)
         return
     body = str(node.attributes.get("body", "")).strip()
     language = str(node.attributes.get("language", ""))
@@ -99,7 +97,7 @@ def lower_textual_representation(lowering: "Lowering", node: Node, owner: Elemen
 # -- metadata ----------------------------------------------------------------------------------
 
 
-def lower_metadata(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+def lower_metadata(lowering: Lowering, node: Node, owner: Element | None) -> None:
     """Lower metadata to an applied stereotype; metadata of our library describes its owner."""
     shipped_name = nodes.shipped_metadata_name(node)
     if shipped_name:
@@ -115,25 +113,25 @@ def lower_metadata(lowering: "Lowering", node: Node, owner: Element | None) -> N
         lowering.graph.connect(Edge.SUBJECT, application, owner)
     for reference in about:
         lowering.connect_reference(Edge.SUBJECT, application, reference)
-    if definition is not None and lowering.document_of(definition) is not None:
-        lowering.defer_until_elements(
-            lambda: _connect_stereotype(lowering, application, definition)
+    if definition is not None and lowering.trees.document_of(definition) is not None:
+        lowering.queue.defer_until_elements(
+            lambda: _connect_stereotype(lowering.graph, lowering.elements, application, definition)
         )
     for key, value in _iter_values(node):
         _defer_tag(lowering, application, key, value)
 
 
-def _rename_owner(lowering: "Lowering", node: Node, owner: Element) -> None:
+def _rename_owner(lowering: Lowering, node: Node, owner: Element) -> None:
     """Restore the name in the source; it is empty if only the text needs a name."""
     lowering.graph.rename(owner, str(dict(iter_constants(node)).get("name", "")))
 
 
-def _restore_facts(lowering: "Lowering", node: Node, owner: Element) -> None:
+def _restore_facts(lowering: Lowering, node: Node, owner: Element) -> None:
     """Restore facts that no construct of SysML v2 expresses."""
     preserved_facts.restore_facts(lowering, dict(iter_constants(node)), owner)
 
 
-def _restore_element(lowering: "Lowering", node: Node, owner: Element) -> None:
+def _restore_element(lowering: Lowering, node: Node, owner: Element) -> None:
     """Restore an element that no construct of SysML v2 expresses."""
     facts = dict(iter_constants(node))
     kind = _KINDS_BY_NAME.get(str(facts.get("kind")))
@@ -142,7 +140,7 @@ def _restore_element(lowering: "Lowering", node: Node, owner: Element) -> None:
         preserved_facts.restore_facts(lowering, facts, element)
 
 
-_SHIPPED_HANDLERS: dict[str, Callable[["Lowering", Node, Element], None]] = {
+_SHIPPED_HANDLERS: dict[str, Callable[[Lowering, Node, Element], None]] = {
     "Named": _rename_owner,
     "Kept": _restore_facts,
     "Element": _restore_element,
@@ -183,27 +181,31 @@ def is_external_stub(node: Node) -> bool:
     return owner is not None and owner.name == _STUB_PACKAGE and owner.kind == "Package"
 
 
-def _connect_stereotype(lowering: "Lowering", application: Element, definition: Node) -> None:
-    stereotype = lowering.element_of(definition)
+def _connect_stereotype(
+    graph: Graph, elements: NodeElements, application: Element, definition: Node
+) -> None:
+    stereotype = elements.find(definition)
     if stereotype is not None:
-        lowering.graph.connect(Edge.INSTANCE_OF, application, stereotype)
+        graph.connect(Edge.INSTANCE_OF, application, stereotype)
 
 
 # -- values of metadata ------------------------------------------------------------------------
 
 
-def _defer_tag(lowering: "Lowering", application: Element, key: str, value: Node) -> None:
+def _defer_tag(lowering: Lowering, application: Element, key: str, value: Node) -> None:
     """Set a tagged value of an applied stereotype, once all elements exist."""
-    lowering.defer_until_elements(lambda: _set_tag(lowering, application, f"tag.{key}", value))
+    lowering.queue.defer_until_elements(
+        lambda: _set_tag(lowering, application, f"tag.{key}", value)
+    )
 
 
-def _set_tag(lowering: "Lowering", application: Element, attribute: str, value: Node) -> None:
+def _set_tag(lowering: Lowering, application: Element, attribute: str, value: Node) -> None:
     constant = values.constant_of(value)
-    element = lowering.element_of(nodes.find_target(value, "Membership"))
+    element = lowering.elements.find(nodes.find_target(value, "Membership"))
     tagged: AttrValue
     if constant is not None:
-        unit, factor = quantities.read_unit(lowering, value)
-        tagged = _write_tag(lowering, constant, f" {unit}" if unit else "", factor)
+        unit, factor = quantities.read_unit(lowering.trees, value)
+        tagged = _write_tag(lowering.names, constant, f" {unit}" if unit else "", factor)
     elif element is not None:
         tagged = element.id
     else:
@@ -212,7 +214,7 @@ def _set_tag(lowering: "Lowering", application: Element, attribute: str, value: 
 
 
 def _write_tag(
-    lowering: "Lowering", value: AttrValue, unit: str = "", factor: Fraction = Fraction(1)
+    names: QualifiedNames, value: AttrValue, unit: str = "", factor: Fraction = Fraction(1)
 ) -> AttrValue:
     """Return a tagged value as text; the qualified name of an element becomes its id.
 
@@ -220,14 +222,14 @@ def _write_tag(
     converts the number to the unit.
     """
     if isinstance(value, tuple):
-        return tuple(_write_tag(lowering, item, unit, factor) for item in value)
+        return tuple(_write_tag(names, item, unit, factor) for item in value)
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, int | float) and factor != 1:
         number = Fraction(str(value)) * factor
         value = number.numerator if number.denominator == 1 else float(number)
     text = f"{value}{unit}"
-    return lowering.id_of(text) or text if "::" in text else text
+    return names.id_of(text) or text if "::" in text else text
 
 
 def _iter_values(node: Node) -> Iterator[tuple[str, Node]]:
@@ -256,7 +258,7 @@ def metadata_value(node: Node, name: str, key: str) -> AttrValue:
 # -- recipe levels -----------------------------------------------------------------------------
 
 
-def apply_levels(lowering: "Lowering", node: Node, element: Element) -> None:
+def apply_levels(lowering: Lowering, node: Node, element: Element) -> None:
     """Apply the stereotype of each recipe level that a definition specialises.
 
     It does so directly, or redefines an attribute of the level. The members that redefine
@@ -269,7 +271,7 @@ def apply_levels(lowering: "Lowering", node: Node, element: Element) -> None:
         _apply_level(lowering, node, element, level, values)
 
 
-def apply_task_values(lowering: "Lowering", node: Node, action: Element) -> None:
+def apply_task_values(lowering: Lowering, node: Node, action: Element) -> None:
     """Apply the stereotype of a task to a usage that redefines attributes of a task."""
     values = [value for value in _iter_level_values(node) if value[0] == "Task"]
     if values:
@@ -281,7 +283,7 @@ _LevelValue = tuple[str, str, Node]
 
 
 def _apply_level(
-    lowering: "Lowering", node: Node, element: Element, level: str, values: list[_LevelValue]
+    lowering: Lowering, node: Node, element: Element, level: str, values: list[_LevelValue]
 ) -> None:
     application = lowering.add_derived(
         node, Kind.APPLICATION, level, element, stereotype=level, namespace=PROFILE
@@ -290,7 +292,7 @@ def _apply_level(
     for owner, key, member in values:
         value = nodes.value_of(member)
         if owner == level:
-            lowering.skipped.add(id(member))
+            lowering.verdicts.skipped.add(id(member))
         if owner == level and value is not None:
             _defer_tag(lowering, application, key, value)
 

@@ -1,17 +1,14 @@
 """Connectors, bindings and flows between the features of a classifier; associations."""
 
-from typing import TYPE_CHECKING
-
 from sysmlc.frontends.sysml import annotations, nodes, values
 from sysmlc.frontends.sysml.definitions import lower_definition, visibility_attributes
+from sysmlc.frontends.sysml.elements import NodeElements
 from sysmlc.frontends.sysml.features import lower_property
 from sysmlc.frontends.sysml.kinds import CLASSIFIERS
+from sysmlc.frontends.sysml.lowering import Lowering
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.ir.query import BEHAVIORS, generals, type_of
 from sysmlc.language.tree import Node
-
-if TYPE_CHECKING:
-    from sysmlc.frontends.sysml.lowering import Lowering
 
 _FLOWS = frozenset({"FlowUsage", "SuccessionFlowUsage"})
 _PAYLOADS = frozenset({"PayloadFeature", "ReferenceUsage", "Feature"})
@@ -29,7 +26,7 @@ def list_linked_ends(node: Node) -> list[Node]:
     return nodes.ends_of(node) or (named if len(named) > 1 else [])
 
 
-def lower_connector(lowering: "Lowering", node: Node, owner: Element, role: str = "") -> Element:
+def lower_connector(lowering: Lowering, node: Node, owner: Element, role: str = "") -> Element:
     """Lower a connection, an interface or a binding between features of a classifier."""
     attributes = visibility_attributes(node)
     connector = lowering.add_element(
@@ -38,8 +35,8 @@ def lower_connector(lowering: "Lowering", node: Node, owner: Element, role: str 
     ends = list_linked_ends(node)
     for end in ends:
         _lower_end(lowering, end, connector)
-    for type_ in nodes.types_of(lowering, node):
-        if lowering.document_of(type_) is not None:
+    for type_ in lowering.trees.types_of(node):
+        if lowering.trees.document_of(type_) is not None:
             _defer_type(lowering, connector, type_)
     for member in nodes.body_of(node):
         if member in ends:
@@ -49,36 +46,38 @@ def lower_connector(lowering: "Lowering", node: Node, owner: Element, role: str 
         elif member.kind in _FLOWS:
             lowering.lower(member, owner)
         else:
-            lowering.mark_approximated(member, "a feature of a connection", "nothing")
+            lowering.verdicts.mark_approximated(member, "a feature of a connection", "nothing")
     return connector
 
 
-def _defer_type(lowering: "Lowering", connector: Element, type_: Node) -> None:
-    lowering.defer_until_elements(lambda: lowering.connect_node(Edge.TYPED_BY, connector, type_))
+def _defer_type(lowering: Lowering, connector: Element, type_: Node) -> None:
+    lowering.queue.defer_until_elements(
+        lambda: lowering.connect_node(Edge.TYPED_BY, connector, type_)
+    )
 
 
-def _lower_end(lowering: "Lowering", node: Node, connector: Element) -> None:
-    multiplicity = values.multiplicity_of(lowering, node)
+def _lower_end(lowering: Lowering, node: Node, connector: Element) -> None:
+    multiplicity = values.multiplicity_of(lowering.trees, node)
     end = lowering.add_element(
         node, Kind.CONNECTOR_END, node.name or "", connector, multiplicity=multiplicity
     )
     lowering.graph.connect(Edge.END, connector, end)
-    lowering.defer_until_elements(lambda: _connect_role(lowering, node, end))
+    lowering.queue.defer_until_elements(lambda: _connect_role(lowering, node, end))
 
 
-def _connect_role(lowering: "Lowering", node: Node, end: Element) -> None:
+def _connect_role(lowering: Lowering, node: Node, end: Element) -> None:
     """Connect an end to the feature at it, and to the features that lead to that feature."""
     *path, role = nodes.path_of_end(node) or [None]
     lowering.connect_node(Edge.ROLE, end, role)
     for feature in path:
-        lowering.connect_node(Edge.PATH, end, _part_of_instance_part(lowering, feature))
+        lowering.connect_node(Edge.PATH, end, _part_of_instance_part(lowering.elements, feature))
 
 
-def _part_of_instance_part(lowering: "Lowering", feature: Node | None) -> Node | None:
+def _part_of_instance_part(elements: NodeElements, feature: Node | None) -> Node | None:
     """Return the part that an instance redefines with values, else the feature itself."""
     part = feature
     while part is not None:
-        element = lowering.element_of(part)
+        element = elements.find(part)
         if element is None or element.kind is not Kind.INSTANCE or element.subkind != "part":
             return part
         part = nodes.find_target(part, "Redefinition")
@@ -88,7 +87,7 @@ def _part_of_instance_part(lowering: "Lowering", feature: Node | None) -> Node |
 # -- flows -------------------------------------------------------------------------------------
 
 
-def lower_item_flow(lowering: "Lowering", node: Node, owner: Element | None) -> Element:
+def lower_item_flow(lowering: Lowering, node: Node, owner: Element | None) -> Element:
     """Lower a flow between features of a classifier; a connector may realise it."""
     flow = lowering.add_element(node, Kind.ITEM_FLOW, node.name or "", owner, role="item flow")
     lowering.set_attributes(flow, **visibility_attributes(node))
@@ -97,7 +96,7 @@ def lower_item_flow(lowering: "Lowering", node: Node, owner: Element | None) -> 
         for type_ in nodes.list_references(payload, "FeatureTyping"):
             lowering.connect_reference(Edge.CONVEYS, flow, type_)
     annotations.lower_only_annotations(lowering, node, flow, "a flow", payloads)
-    lowering.defer_until_edges(lambda: _connect_flow(lowering, node, flow))
+    lowering.queue.defer_until_edges(lambda: _connect_flow(lowering, node, flow))
     return flow
 
 
@@ -107,7 +106,7 @@ def list_payloads(node: Node) -> list[Node]:
     return [member for member in members if not nodes.is_annotation(member)]
 
 
-def _connect_flow(lowering: "Lowering", node: Node, flow: Element) -> None:
+def _connect_flow(lowering: Lowering, node: Node, flow: Element) -> None:
     """Connect a flow to its ends and to the connector between them; remove one without ends."""
     ends = (nodes.ends_of(node) or nodes.events_of(node))[:2]
     paths = [_find_path_to_port(lowering, end) for end in ends]
@@ -116,8 +115,8 @@ def _connect_flow(lowering: "Lowering", node: Node, flow: Element) -> None:
             lowering.graph.connect(edge, flow, path[-1])
     if len(paths) < 2 or not all(paths):
         lowering.graph.remove(flow)
-        lowering.elements.pop(id(node), None)
-        lowering.mark_unsupported(node)
+        lowering.elements.own.pop(id(node), None)
+        lowering.verdicts.mark_unsupported(node)
         return
     owner = lowering.graph.owner(flow)
     if owner is None:
@@ -130,15 +129,15 @@ def _connect_flow(lowering: "Lowering", node: Node, flow: Element) -> None:
     _set_ambiguous_paths(lowering, flow, owner, paths)
 
 
-def _find_path_to_port(lowering: "Lowering", end: Node) -> list[Element]:
+def _find_path_to_port(lowering: Lowering, end: Node) -> list[Element]:
     """Return the features that lead to the end of a flow, up to the last port among them."""
-    elements = (lowering.element_of(feature) for feature in nodes.path_of_end(end))
+    elements = (lowering.elements.find(feature) for feature in nodes.path_of_end(end))
     path = [element for element in elements if element is not None]
     ports = [index for index, feature in enumerate(path) if feature.kind is Kind.PORT]
     return path[: ports[-1] + 1] if ports else path
 
 
-def _connector_paths(lowering: "Lowering", connector: Element) -> set[tuple[str, ...]]:
+def _connector_paths(lowering: Lowering, connector: Element) -> set[tuple[str, ...]]:
     """Return the ids of the features that lead to each end of a connector."""
     graph, paths = lowering.graph, set()
     for end in graph.targets(connector, Edge.END):
@@ -148,7 +147,7 @@ def _connector_paths(lowering: "Lowering", connector: Element) -> set[tuple[str,
 
 
 def _set_ambiguous_paths(
-    lowering: "Lowering", flow: Element, owner: Element, paths: list[list[Element]]
+    lowering: Lowering, flow: Element, owner: Element, paths: list[list[Element]]
 ) -> None:
     """Set through which parts the ends of a flow are, unless the features at the ends tell."""
     for key, (*parts, _) in zip(("source_path", "target_path"), paths, strict=True):
@@ -156,7 +155,7 @@ def _set_ambiguous_paths(
             lowering.set_attributes(flow, **{key: tuple(part.id for part in parts)})
 
 
-def _has_similar_part(lowering: "Lowering", owner: Element, part: Element) -> bool:
+def _has_similar_part(lowering: Lowering, owner: Element, part: Element) -> bool:
     """Whether a second part has the same type, or a type related to it by generalization."""
     graph, type_ = lowering.graph, type_of(lowering.graph, part)
     for classifier in (owner, *generals(graph, owner)):
@@ -171,12 +170,12 @@ def _has_similar_part(lowering: "Lowering", owner: Element, part: Element) -> bo
     return False
 
 
-def lower_flow_definition(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+def lower_flow_definition(lowering: Lowering, node: Node, owner: Element | None) -> None:
     """Lower a flow between classifiers (UML 2.5.1 clause 20.1)."""
     ends = [member for member in node.members if nodes.is_end(member)]
     has_types = all(nodes.find_reference(end, "FeatureTyping") for end in ends[:2])
     if len(ends) < 2 or not has_types:
-        lowering.mark_unsupported(node)
+        lowering.verdicts.mark_unsupported(node)
         return
     flow = lowering.add_element(node, Kind.ITEM_FLOW, nodes.name_of(node), owner, role="item flow")
     edges = iter(_FLOW_EDGES)
@@ -196,32 +195,32 @@ def lower_flow_definition(lowering: "Lowering", node: Node, owner: Element | Non
 # -- associations ------------------------------------------------------------------------------
 
 
-def lower_association(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+def lower_association(lowering: Lowering, node: Node, owner: Element | None) -> None:
     """Lower a connection definition to an association.
 
     An end with the name and type of a feature of the other end's type is that feature.
     """
     kind, role = CLASSIFIERS[node.kind]
     ends = [member for member in node.members if nodes.is_end(member)]
-    lowering.skipped.update(id(end) for end in ends)
+    lowering.verdicts.skipped.update(id(end) for end in ends)
     association = lower_definition(lowering, node, owner, kind, role)
-    lowering.defer_until_edges(lambda: _connect_association(lowering, ends, association))
+    lowering.queue.defer_until_edges(lambda: _connect_association(lowering, ends, association))
 
 
-def _connect_association(lowering: "Lowering", ends: list[Node], association: Element) -> None:
+def _connect_association(lowering: Lowering, ends: list[Node], association: Element) -> None:
     for end in ends:
         feature = _find_opposite_feature(lowering, end, ends)
         if feature is None:
-            lowering.skipped.discard(id(end))
+            lowering.verdicts.skipped.discard(id(end))
             feature = lower_property(lowering, end, association)
             # Connect its types before the next end is compared with features.
-            lowering.run_deferred()
+            lowering.queue.run_until_edges()
         else:
-            lowering.elements[id(end)] = feature
+            lowering.elements.own[id(end)] = feature
         lowering.graph.connect(Edge.END, association, feature)
 
 
-def _find_opposite_feature(lowering: "Lowering", end: Node, ends: list[Node]) -> Element | None:
+def _find_opposite_feature(lowering: Lowering, end: Node, ends: list[Node]) -> Element | None:
     """Return the feature of the opposite end's type that has the name and type of an end.
 
     The names are those of the text: metadata may have restored another one in the graph. A feature
@@ -229,15 +228,15 @@ def _find_opposite_feature(lowering: "Lowering", end: Node, ends: list[Node]) ->
     """
     if len(ends) != 2:
         return None
-    end_types = [lowering.element_of(type_) for type_ in nodes.types_of(lowering, end)]
+    end_types = [lowering.elements.find(type_) for type_ in lowering.trees.types_of(end)]
     opposite = ends[1] if end is ends[0] else ends[0]
     subsetted = [reference.target for reference in nodes.list_references(opposite, "Subsetting")]
     usages = [usage for usage in subsetted if usage is not None]
-    for type_ in nodes.types_of(lowering, opposite) or usages:
+    for type_ in lowering.trees.types_of(opposite) or usages:
         for member in type_.members:
             if nodes.name_of(member) != nodes.name_of(end):
                 continue
-            feature = lowering.element_of(member)
+            feature = lowering.elements.find(member)
             if feature is None or feature.kind not in _FEATURES:
                 continue
             if type_of(lowering.graph, feature) in end_types:
@@ -247,8 +246,8 @@ def _find_opposite_feature(lowering: "Lowering", end: Node, ends: list[Node]) ->
     return None
 
 
-def _subsets_behaviour(lowering: "Lowering", usage: Node) -> bool:
+def _subsets_behaviour(lowering: Lowering, usage: Node) -> bool:
     """Whether a usage subsets a behaviour, which is then its type; edges may not exist yet."""
     references = nodes.list_references(usage, "Subsetting")
-    elements = [lowering.element_of(reference.target) for reference in references]
+    elements = [lowering.elements.find(reference.target) for reference in references]
     return any(element is not None and element.kind in BEHAVIORS for element in elements)

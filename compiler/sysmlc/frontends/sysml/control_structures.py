@@ -1,20 +1,17 @@
 """If, while and for actions: control nodes with guards, and regions that repeat for elements."""
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import nodes, values
+from sysmlc.frontends.sysml.lowering import Lowering
 from sysmlc.frontends.sysml.successions import SUCCESSIONS, defer_implied_start, lower_steps
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.language.tree import Node
 
-if TYPE_CHECKING:
-    from sysmlc.frontends.sysml.lowering import Lowering
-
 _FLOW_NODES = (Kind.ACTION, Kind.STRUCTURED, Kind.CONTROL)
 
 
-def lower_if(lowering: "Lowering", node: Node, owner: Element) -> None:
+def lower_if(lowering: Lowering, node: Node, owner: Element) -> None:
     """Lower an if action to ``decision -> branch -> merge`` for each of its two branches.
 
     A branch without an action leads from the decision to the merge.
@@ -24,8 +21,8 @@ def lower_if(lowering: "Lowering", node: Node, owner: Element) -> None:
     actions = [parameter for parameter in parameters if _is_action(parameter)]
     decision = _add_control_node(lowering, node, owner, "decision", node.name or "")
     merge = _add_control_node(lowering, node, owner, "merge")
-    lowering.elements[id(node)] = decision
-    lowering.spans[id(node)] = (decision, merge)
+    lowering.elements.own[id(node)] = decision
+    lowering.elements.spans[id(node)] = (decision, merge)
     defer_implied_start(lowering, node, owner, decision)
     guards: list[Node | str] = [conditions[0] if conditions else "true", "else"]
     for number, guard in enumerate(guards):
@@ -38,7 +35,7 @@ def lower_if(lowering: "Lowering", node: Node, owner: Element) -> None:
             _add_flow(lowering, node, block[1], merge)
 
 
-def lower_while(lowering: "Lowering", node: Node, owner: Element) -> None:
+def lower_while(lowering: Lowering, node: Node, owner: Element) -> None:
     """Lower a loop to ``entry -> while decision -> body -> until decision -> entry``.
 
     The condition of ``while`` is tested before the body, the condition of ``until`` after it. A
@@ -50,8 +47,8 @@ def lower_while(lowering: "Lowering", node: Node, owner: Element) -> None:
     until_condition = next(filter(_is_expression, parameters[body_at + 1 :]), None)
     entry = _add_control_node(lowering, node, owner, "merge", node.name or "")
     exit_ = _add_control_node(lowering, node, owner, "merge")
-    lowering.elements[id(node)] = entry
-    lowering.spans[id(node)] = (entry, exit_)
+    lowering.elements.own[id(node)] = entry
+    lowering.elements.spans[id(node)] = (entry, exit_)
     defer_implied_start(lowering, node, owner, entry)
     # The next flow leaves `source`; its guard is the while condition until it has been tested.
     source, guard = entry, while_condition
@@ -75,7 +72,7 @@ def lower_while(lowering: "Lowering", node: Node, owner: Element) -> None:
     _add_flow(lowering, node, decision, entry, "else")
 
 
-def lower_for(lowering: "Lowering", node: Node, owner: Element) -> None:
+def lower_for(lowering: Lowering, node: Node, owner: Element) -> None:
     """Lower a for loop to an expansion region that takes the elements one after the other."""
     region = lowering.add_element(
         node, Kind.STRUCTURED, node.name or "", owner, subkind="expansion", mode="iterative"
@@ -83,17 +80,17 @@ def lower_for(lowering: "Lowering", node: Node, owner: Element) -> None:
     _lower_range(lowering, node, region)
     for member in node.members:
         if member.membership.endswith("Membership") and _is_action(member):
-            lowering.elements.setdefault(id(member), region)
+            lowering.elements.own.setdefault(id(member), region)
             steps = [member] if member.name else nodes.body_of(member)
             lower_steps(lowering, steps, region)
 
 
-def _lower_range(lowering: "Lowering", node: Node, region: Element) -> None:
+def _lower_range(lowering: Lowering, node: Node, region: Element) -> None:
     """Lower the collection of a loop to a text, and its variable with the type of the elements."""
     parameter_values = map(nodes.value_of, _list_parameters(node))
     collection = next((value for value in parameter_values if value is not None), None)
     if collection is not None:
-        lowering.defer_until_elements(
+        lowering.queue.defer_until_elements(
             lambda: values.set_expression(lowering, region, "collection", collection)
         )
     variable = next(nodes.iter_by_metaclass(node, "ReferenceUsage"), None)
@@ -104,17 +101,19 @@ def _lower_range(lowering: "Lowering", node: Node, region: Element) -> None:
     )
     path = [] if collection is None else nodes.path_of_expression(collection)
     feature = path[-1] if path else None
-    types = nodes.types_of(lowering, variable)
+    types = lowering.trees.types_of(variable)
     if not types and feature is not None:
-        types = nodes.types_of(lowering, feature)
-    lowering.defer_until_elements(lambda: lowering.connect_nodes(Edge.TYPED_BY, element, types))
+        types = lowering.trees.types_of(feature)
+    lowering.queue.defer_until_elements(
+        lambda: lowering.connect_nodes(Edge.TYPED_BY, element, types)
+    )
 
 
 # -- blocks ------------------------------------------------------------------------------------
 
 
 def _lower_block(
-    lowering: "Lowering", action: Node, owner: Element
+    lowering: Lowering, action: Node, owner: Element
 ) -> tuple[Element, Element] | None:
     """Lower the action of a branch or a loop; return its entry and exit, None if it is empty.
 
@@ -123,8 +122,8 @@ def _lower_block(
     """
     if action.kind != "ActionUsage" or action.name:
         lowering.lower(action, owner)
-        entry = lowering.flow_node_of(action, is_target=True)
-        exit_ = lowering.flow_node_of(action, is_target=False)
+        entry = lowering.elements.flow_node_of(action, is_target=True)
+        exit_ = lowering.elements.flow_node_of(action, is_target=False)
         return None if entry is None or exit_ is None else (entry, exit_)
     body = nodes.body_of(action)
     if not body:
@@ -139,26 +138,26 @@ def _lower_block(
     entry = _add_control_node(lowering, action, owner, "merge")
     exit_ = _add_control_node(lowering, action, owner, "merge")
     entry_and_exit += (entry, exit_)
-    lowering.defer_until_edges(lambda: _connect_block(lowering, action, steps, entry, exit_))
+    lowering.queue.defer_until_edges(lambda: _connect_block(lowering, action, steps, entry, exit_))
     _defer_removal(lowering, exit_)
     return entry, exit_
 
 
 def _connect_block(
-    lowering: "Lowering", action: Node, steps: Iterable[Element], entry: Element, exit_: Element
+    lowering: Lowering, action: Node, steps: Iterable[Element], entry: Element, exit_: Element
 ) -> None:
     """Connect the entry to the steps that nothing precedes, and the last steps to the exit.
 
     Flows back to the entry of a loop do not precede it. Nothing leads to the exit of a loop without
     conditions.
     """
-    spans = list(lowering.spans.values())
+    spans = list(lowering.elements.spans.values())
     entries, exits = ({ends[index].id for ends in spans} for index in (0, 1))
     for step in steps:
         flows = lowering.graph.sources(step, Edge.FLOW_TARGET)
         if step.id in entries:
-            node = lowering.origin_of(step)
-            flows = [flow for flow in flows if lowering.origin_of(flow) is not node]
+            node = lowering.elements.origins.get(step.id)
+            flows = [flow for flow in flows if lowering.elements.origins.get(flow.id) is not node]
         if not flows and step.id not in exits:
             _add_flow(lowering, action, entry, step)
         is_end = step.subkind != "final" and (flows or step.id not in exits)
@@ -166,7 +165,7 @@ def _connect_block(
             _add_flow(lowering, action, step, exit_)
 
 
-def _defer_removal(lowering: "Lowering", exit_: Element) -> None:
+def _defer_removal(lowering: Lowering, exit_: Element) -> None:
     """Remove the exit of an endless loop, or of a block that ends with one.
 
     A step that the model states after the loop keeps the exit, from which it waits for a token.
@@ -174,13 +173,13 @@ def _defer_removal(lowering: "Lowering", exit_: Element) -> None:
 
     def remove_exit() -> None:
         flows = lowering.graph.sources(exit_, Edge.FLOW_SOURCE)
-        origins = [lowering.origin_of(flow) for flow in flows]
+        origins = [lowering.elements.origins.get(flow.id) for flow in flows]
         is_stated = any(node is not None and node.kind in SUCCESSIONS for node in origins)
         if not lowering.graph.sources(exit_, Edge.FLOW_TARGET) and not is_stated:
             for element in (*flows, exit_):
                 lowering.graph.remove(element)
 
-    lowering.defer_until_edges(lambda: lowering.defer_until_edges(remove_exit))
+    lowering.queue.defer_until_edges(lambda: lowering.queue.defer_until_edges(remove_exit))
 
 
 # -- nodes and flows ---------------------------------------------------------------------------
@@ -199,13 +198,13 @@ def _is_action(node: Node) -> bool:
 
 
 def _add_control_node(
-    lowering: "Lowering", node: Node, owner: Element, subkind: str, name: str = ""
+    lowering: Lowering, node: Node, owner: Element, subkind: str, name: str = ""
 ) -> Element:
     return lowering.add_derived(node, Kind.CONTROL, name, owner, subkind=subkind)
 
 
 def _add_flow(
-    lowering: "Lowering",
+    lowering: Lowering,
     node: Node,
     source: Element,
     target: Element,
@@ -218,4 +217,6 @@ def _add_flow(
     if isinstance(guard, str):
         lowering.set_attributes(flow, guard=guard)
     elif guard is not None:
-        lowering.defer_until_elements(lambda: values.set_expression(lowering, flow, "guard", guard))
+        lowering.queue.defer_until_elements(
+            lambda: values.set_expression(lowering, flow, "guard", guard)
+        )

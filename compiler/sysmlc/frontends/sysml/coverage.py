@@ -2,15 +2,13 @@
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from sysmlc.diagnostics import Coverage, Rule, Verdict
 from sysmlc.diagnostics.coverage import Loss
 from sysmlc.frontends.sysml.rules import APPROXIMATED, UNSUPPORTED
+from sysmlc.ir import Element
 from sysmlc.language.tree import Document, Node
-
-if TYPE_CHECKING:
-    from sysmlc.frontends.sysml.lowering import Lowering
 
 _REASONS: dict[Verdict, tuple[Rule | None, str]] = {
     Verdict.UNSUPPORTED: (UNSUPPORTED, "not read"),
@@ -22,13 +20,14 @@ _UNSUPPORTED = "unsupported"
 
 
 class Verdicts:
-    """Verdicts of nodes that the graph does not represent completely.
+    """Which nodes were read, and verdicts of those that the graph represents in part or not at all.
 
-    A node without a verdict of its own shares the verdict of its owner.
+    A node without a verdict of its own shares the verdict of its owner. Integers are identities of
+    nodes.
     """
 
     def __init__(self) -> None:
-        self.verdicts: dict[int, Verdict] = {}
+        self.by_node: dict[int, Verdict] = {}
         self.paths_to_verdicts: set[int] = set()
         """Identities of nodes with a verdict, and of all nodes that contain one."""
         self.dropped: set[int] = set()
@@ -38,6 +37,10 @@ class Verdicts:
 
         For an unsupported node these are ``unsupported`` and its metaclass.
         """
+        self.lowered: set[int] = set()
+        """Nodes that were lowered, or for which an element was added."""
+        self.skipped: set[int] = set()
+        """Members that a handler reads together with their owner."""
 
     def mark_unsupported(self, node: Node) -> None:
         """Record that the graph represents neither the node nor its members."""
@@ -68,7 +71,7 @@ class Verdicts:
             yield "" if construct == _UNSUPPORTED else construct, approximation, nodes
 
     def _set_verdict(self, node: Node, verdict: Verdict) -> None:
-        self.verdicts[id(node)] = verdict
+        self.by_node[id(node)] = verdict
         container: Node | None = node
         while container is not None and id(container) not in self.paths_to_verdicts:
             self.paths_to_verdicts.add(id(container))
@@ -90,7 +93,8 @@ class _Judged(NamedTuple):
 
 
 def count_verdicts(
-    lowering: "Lowering",
+    verdicts: Verdicts,
+    elements: Mapping[int, Element],
     document: Document,
     nodes_by_kind: Mapping[str, Sequence[Node]],
     coverage: Coverage,
@@ -99,7 +103,7 @@ def count_verdicts(
     counts = coverage.file(document.path)
     judged = [
         entry
-        for entry in _iter_judged(lowering, document.root)
+        for entry in _iter_judged(verdicts, document.root)
         if entry.verdict is not Verdict.MAPPED
     ]
     numbers = Counter((entry.node.kind, entry.verdict) for entry in judged)
@@ -110,16 +114,16 @@ def count_verdicts(
         if len(nodes) > unmapped[kind]:
             counts.count(kind, Verdict.MAPPED, len(nodes) - unmapped[kind])
     if coverage.is_detailed:
-        counts.losses.extend(_iter_losses(lowering, document, judged))
+        counts.losses.extend(_iter_losses(verdicts, elements, document, judged))
 
 
-def _iter_judged(lowering: "Lowering", root: Node) -> Iterator[_Judged]:
+def _iter_judged(verdicts: Verdicts, root: Node) -> Iterator[_Judged]:
     """Yield nodes in the order of the text, without subtrees that are mapped completely.
 
     Members of an approximated node are mapped unless the node was dropped.
     """
     stack = [_Judged(root, Verdict.MAPPED, False)]
-    dropped = set(lowering.dropped)
+    dropped = set(verdicts.dropped)
     while stack:
         entry = stack.pop()
         yield entry
@@ -128,18 +132,20 @@ def _iter_judged(lowering: "Lowering", root: Node) -> Iterator[_Judged]:
         is_represented = verdict is Verdict.APPROXIMATED and not is_dropped
         shared = Verdict.MAPPED if is_represented else verdict
         for member in reversed(node.members):
-            own_verdict = lowering.verdicts.get(id(member))
+            own_verdict = verdicts.by_node.get(id(member))
             if own_verdict is None and is_dropped:
                 dropped.add(id(member))
-            if shared is not Verdict.MAPPED or id(member) in lowering.paths_to_verdicts:
+            if shared is not Verdict.MAPPED or id(member) in verdicts.paths_to_verdicts:
                 stack.append(_Judged(member, own_verdict or shared, own_verdict is None))
 
 
-def _iter_losses(lowering: "Lowering", document: Document, judged: list[_Judged]) -> Iterator[Loss]:
+def _iter_losses(
+    verdicts: Verdicts, elements: Mapping[int, Element], document: Document, judged: list[_Judged]
+) -> Iterator[Loss]:
     """Yield one loss for each node with a verdict, with the number of nodes that share it."""
     reasons = {
         id(node): (APPROXIMATED, describe_loss(construct, approximation))
-        for construct, approximation, nodes in lowering.iter_losses()
+        for construct, approximation, nodes in verdicts.iter_losses()
         for node in nodes
         if construct
     }
@@ -157,16 +163,16 @@ def _iter_losses(lowering: "Lowering", document: Document, judged: list[_Judged]
             verdict,
             document.ordinal_of(node),
             number,
-            _find_element_id(lowering, node),
-            "" if id(node) in lowering.elements else node.name or "",
+            _find_element_id(elements, node),
+            "" if id(node) in elements else node.name or "",
             rule,
             reason,
         )
 
 
-def _find_element_id(lowering: "Lowering", node: Node) -> str:
+def _find_element_id(elements: Mapping[int, Element], node: Node) -> str:
     """Return the id of the element of the node, or of the nearest node that contains it."""
     container: Node | None = node
-    while container is not None and id(container) not in lowering.elements:
+    while container is not None and id(container) not in elements:
         container = container.owner
-    return "" if container is None else lowering.elements[id(container)].id
+    return "" if container is None else elements[id(container)].id

@@ -8,17 +8,15 @@ tree, so that layout and alternative spellings (``:>`` and ``subsets``) make no 
 
 from collections.abc import Iterator
 from functools import partial
-from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import nodes, values
-from sysmlc.ir import Element, Kind
+from sysmlc.frontends.sysml.elements import NodeElements
+from sysmlc.frontends.sysml.lowering import Lowering
+from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.pending import Declarations, Statement
 from sysmlc.language.library import SHIPPED
 from sysmlc.language.tree import AttributeValue, Node, Reference, Relation
 from sysmlc.support.interpreter import allow_recursion
-
-if TYPE_CHECKING:
-    from sysmlc.frontends.sysml.lowering import Lowering
 
 _Words = tuple[str, ...]
 _SYMBOLS = {
@@ -77,39 +75,36 @@ _LATER_ATTRIBUTES = frozenset({"isPortion", "body"})
 """The attribute that follows from ``portionKind``, and the one behind the name."""
 
 
-def store_declarations(lowering: "Lowering", depth: int) -> None:
-    """Store the statements in the graph; they are collected only if a comparison needs them.
-
-    ``depth`` is the number of levels of the syntax trees.
-    """
-    declarations = Declarations(partial(_list_statements, lowering, depth))
+def store_declarations(lowering: Lowering) -> None:
+    """Store the statements in the graph; they are collected only if a comparison needs them."""
+    declarations = Declarations(partial(_list_statements, lowering))
     lowering.graph.store(Declarations, [*lowering.graph.derived(Declarations), declarations])
 
 
-def _list_statements(lowering: "Lowering", depth: int) -> list[Statement]:
-    with allow_recursion(depth):
+def _list_statements(lowering: Lowering) -> list[Statement]:
+    with allow_recursion(lowering.trees.depth):
         return [
             statement
-            for document in lowering.documents
+            for document in lowering.trees.documents
             if not document.path.startswith(SHIPPED)
             for statement in _iter_statements(lowering, document.root)
         ]
 
 
-def _iter_statements(lowering: "Lowering", root: Node) -> Iterator[Statement]:
+def _iter_statements(lowering: Lowering, root: Node) -> Iterator[Statement]:
     """Yield the statements about the elements of a file.
 
     A declaration that is no element belongs to the element of the nearest declaration around it. In
     the root namespace, this is the first element.
     """
-    elements = (_find_element(lowering, member) for member in root.members)
+    elements = (_find_element(lowering.graph, lowering.elements, member) for member in root.members)
     first = next((element for element in elements if element is not None), None)
     if first is None:
         return
     stack = [(member, first, False) for member in reversed(root.members)]
     while stack:
         node, host, is_stated = stack.pop()
-        element = _find_element(lowering, node)
+        element = _find_element(lowering.graph, lowering.elements, node)
         if element is not None:
             for aspect, words in _iter_parts(lowering, node, element):
                 yield Statement(element.id, aspect, words)
@@ -123,12 +118,12 @@ def _iter_statements(lowering: "Lowering", root: Node) -> Iterator[Statement]:
         stack += [(member, host, True) for member in reversed(node.members)]
 
 
-def _find_element(lowering: "Lowering", node: Node) -> Element | None:
+def _find_element(graph: Graph, elements: NodeElements, node: Node) -> Element | None:
     """Return the element that was added for exactly this node, if the graph still has it."""
-    element = lowering.elements.get(id(node))
-    if element is None or element.id not in lowering.graph or element.kind in _STATED_WHOLE:
+    element = elements.own.get(id(node))
+    if element is None or element.id not in graph or element.kind in _STATED_WHOLE:
         return None
-    return element if lowering.origin_of(element) is node else None
+    return element if elements.origins.get(element.id) is node else None
 
 
 def _is_part_of_owner(node: Node) -> bool:
@@ -148,7 +143,7 @@ def _name_member(node: Node) -> str:
 
 
 def _iter_parts(
-    lowering: "Lowering", node: Node, element: Element | None = None
+    lowering: Lowering, node: Node, element: Element | None = None
 ) -> Iterator[tuple[str, _Words]]:
     """Yield the aspect and the words of each part of a declaration, without members.
 
@@ -161,7 +156,7 @@ def _iter_parts(
     yield from _iter_words(node, "" if element is None else element.name)
     for relation in node.relations:
         yield "specialization", _describe_relation(lowering, relation)
-    multiplicity = values.multiplicity_of(lowering, node)
+    multiplicity = values.multiplicity_of(lowering.trees, node)
     if multiplicity:
         yield "multiplicity", (f"[{multiplicity}]",)
     expression = nodes.value_of(node)
@@ -220,13 +215,13 @@ def _describe_attribute(name: str, value: AttributeValue) -> str:
     return " ".join(str(value).split())
 
 
-def _describe_relation(lowering: "Lowering", relation: Relation) -> _Words:
+def _describe_relation(lowering: Lowering, relation: Relation) -> _Words:
     symbol = _SYMBOLS.get(relation.kind, nodes.spell_metaclass(relation.kind))
     names = _describe_reference(lowering, relation.reference)
     return (symbol, *names, "::*") if relation.kind == "importedNamespace" else (symbol, *names)
 
 
-def _describe_reference(lowering: "Lowering", reference: Reference) -> _Words:
+def _describe_reference(lowering: Lowering, reference: Reference) -> _Words:
     """Return the ids of the elements that a reference names, else their names."""
     targets = reference.targets or ()
     if len(targets) < len(reference.chain):
@@ -235,18 +230,18 @@ def _describe_reference(lowering: "Lowering", reference: Reference) -> _Words:
     return tuple(words[1:])
 
 
-def _describe_target(lowering: "Lowering", target: Node) -> str:
-    element = _find_element(lowering, target)
+def _describe_target(lowering: Lowering, target: Node) -> str:
+    element = _find_element(lowering.graph, lowering.elements, target)
     if element is not None:
         return element.id
-    is_own = lowering.document_of(target) is not None
+    is_own = lowering.trees.document_of(target) is not None
     return nodes.name_of(target) if is_own else nodes.qualified_name_of(target)
 
 
 # -- expressions -------------------------------------------------------------------------------
 
 
-def _describe_expression(lowering: "Lowering", node: Node) -> _Words:
+def _describe_expression(lowering: Lowering, node: Node) -> _Words:
     """Return the words of an expression; names are those of the elements that they refer to."""
     references = [
         word
@@ -270,7 +265,7 @@ def _describe_expression(lowering: "Lowering", node: Node) -> _Words:
     return (keyword, *attributes, *references, "(", *inner, ")")
 
 
-def _describe_operand(lowering: "Lowering", node: Node) -> _Words:
+def _describe_operand(lowering: Lowering, node: Node) -> _Words:
     if node.kind not in nodes.EXPRESSIONS:
         return _describe_member(lowering, node)
     words = _describe_expression(lowering, node)
@@ -280,7 +275,7 @@ def _describe_operand(lowering: "Lowering", node: Node) -> _Words:
 # -- members that are no elements --------------------------------------------------------------
 
 
-def _describe_member(lowering: "Lowering", node: Node) -> _Words:
+def _describe_member(lowering: Lowering, node: Node) -> _Words:
     """Return the words of a declaration and of its members, which stand in braces."""
     # `in x` is `in ref x`; the parser adds unnamed parameters and ends that the text omits.
     parts = [part for part in _iter_parts(lowering, node) if part != ("keyword", ("ref",))]
@@ -291,13 +286,14 @@ def _describe_member(lowering: "Lowering", node: Node) -> _Words:
     return () if head == ["end"] else tuple(head)
 
 
-def _list_members(lowering: "Lowering", node: Node) -> list[_Words]:
+def _list_members(lowering: Lowering, node: Node) -> list[_Words]:
     """Return the words of the members of a declaration that are no elements."""
     if node.kind in nodes.EXPRESSIONS:
         return []
     members = [
         _describe_member(lowering, member)
         for member in node.members
-        if not _is_part_of_owner(member) and _find_element(lowering, member) is None
+        if not _is_part_of_owner(member)
+        and _find_element(lowering.graph, lowering.elements, member) is None
     ]
     return [words for words in members if words]

@@ -1,18 +1,15 @@
 """Packages and definitions with their generals, and quantities and units of value types."""
 
 import re
-from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import annotations, nodes
 from sysmlc.frontends.sysml.annotations import apply_levels, is_recipe_level
 from sysmlc.frontends.sysml.kinds import CLASSIFIERS, KINDS_BY_METADATA
 from sysmlc.frontends.sysml.libraries import FILES, LOWERED
+from sysmlc.frontends.sysml.lowering import Lowering
 from sysmlc.ir import AttrValue, Edge, Element, Kind
 from sysmlc.ir.query.names import CAEX_ID
 from sysmlc.language.tree import Node, Reference
-
-if TYPE_CHECKING:
-    from sysmlc.frontends.sysml.lowering import Lowering
 
 _GENERALS = ("Subclassification", "Specialization", "Subsetting", "FeatureTyping", "Redefinition")
 _QUANTITY = re.compile(r"(?P<name>\w+)Value")
@@ -37,18 +34,18 @@ _AML_ATTRIBUTES = {
 # -- packages and definitions ------------------------------------------------------------------
 
 
-def lower_package(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+def lower_package(lowering: Lowering, node: Node, owner: Element | None) -> None:
     """Lower a package with its members.
 
     Shipped libraries without contracts and packages of stubs are not part of the model.
     """
     is_shipped = node.name in FILES and node.kind == "LibraryPackage"
     if owner is None and is_shipped and node.name not in LOWERED:
-        lowering.mark_external(node)
+        lowering.verdicts.mark_external(node)
         return
     members = [member for member in node.members if not member.kind.endswith("Import")]
     if owner is None and members and all(map(_is_stereotype_stub, members)):
-        lowering.mark_external(node)
+        lowering.verdicts.mark_external(node)
         return
     kind, subkind = read_kind(node, Kind.PACKAGE)
     if node.kind == "LibraryPackage" and kind is Kind.PACKAGE:
@@ -65,20 +62,20 @@ def _is_stereotype_stub(node: Node) -> bool:
     return annotations.is_external_stub(node) and node.kind == "MetadataDefinition"
 
 
-def lower_classifier(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+def lower_classifier(lowering: Lowering, node: Node, owner: Element | None) -> None:
     """Lower a definition whose members are features."""
     kind, role = CLASSIFIERS[node.kind]
     lower_definition(lowering, node, owner, kind, role)
 
 
-def lower_item(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+def lower_item(lowering: Lowering, node: Node, owner: Element | None) -> None:
     """Lower an item definition to a signal or a block."""
-    is_signal = id(node) in lowering.signals
+    is_signal = id(node) in lowering.trees.signals
     kind, role = (Kind.SIGNAL, "") if is_signal else (Kind.CLASS, "block")
     lower_definition(lowering, node, owner, kind, role)
 
 
-def lower_occurrence(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+def lower_occurrence(lowering: Lowering, node: Node, owner: Element | None) -> None:
     """Lower an occurrence definition: an interaction if it has messages or events, else a class."""
     is_interaction = any(
         nodes.is_message(member) or member.kind == "EventOccurrenceUsage" for member in node.members
@@ -88,7 +85,7 @@ def lower_occurrence(lowering: "Lowering", node: Node, owner: Element | None) ->
 
 
 def lower_definition(
-    lowering: "Lowering",
+    lowering: Lowering,
     node: Node,
     owner: Element | None,
     kind: Kind,
@@ -112,7 +109,7 @@ def lower_definition(
     return element
 
 
-def connect_generals(lowering: "Lowering", node: Node, element: Element) -> None:
+def connect_generals(lowering: Lowering, node: Node, element: Element) -> None:
     """Connect a definition to its generals; recipe levels become applied stereotypes instead.
 
     The quantities that a value type specialises become elements of their own.
@@ -127,14 +124,14 @@ def connect_generals(lowering: "Lowering", node: Node, element: Element) -> None
             _defer_general(lowering, element, reference)
 
 
-def _defer_general(lowering: "Lowering", element: Element, reference: Reference) -> None:
+def _defer_general(lowering: Lowering, element: Element, reference: Reference) -> None:
     def connect() -> None:
         target = reference.target
         # Several nodes may be one element (a requirement and its subject): no loop results.
-        if target is None or lowering.element_of(target) is not element:
+        if target is None or lowering.elements.find(target) is not element:
             lowering.connect_node(Edge.SPECIALIZES, element, target)
 
-    lowering.defer_until_elements(connect)
+    lowering.queue.defer_until_elements(connect)
 
 
 # -- attributes of declarations ----------------------------------------------------------------
@@ -218,7 +215,7 @@ def _is_quantity(reference: Reference) -> bool:
     return is_isq and bool(_QUANTITY.fullmatch(target.name or ""))
 
 
-def _set_quantity_and_unit(lowering: "Lowering", node: Node, type_: Element) -> None:
+def _set_quantity_and_unit(lowering: Lowering, node: Node, type_: Element) -> None:
     """Connect a value type to the quantity kind and the unit that its declaration states.
 
     Quantities are real numbers unless the declaration states another type.
@@ -228,20 +225,18 @@ def _set_quantity_and_unit(lowering: "Lowering", node: Node, type_: Element) -> 
     for reference in quantities:
         _defer_quantity_kind(lowering, node, type_, _quantity_kind_name(nodes.last_name(reference)))
     if quantities and len(generals) == len(quantities):
-        lowering.connect_library_element(
-            Edge.SPECIALIZES, type_, "ScalarValues::Real", Kind.DATA_TYPE
-        )
+        lowering.library.connect(Edge.SPECIALIZES, type_, "ScalarValues::Real", Kind.DATA_TYPE)
     _add_unit_of_metadata(lowering, node, type_)
     for member in node.members:
         value = nodes.value_of(member)
         if nodes.name_of(member) == "mRef" and value is not None:
-            lowering.skipped.add(id(member))
+            lowering.verdicts.skipped.add(id(member))
             unit = nodes.find_reference(value, "Membership")
             if unit is not None:
                 _defer_unit(lowering, member, type_, unit)
 
 
-def _add_unit_of_metadata(lowering: "Lowering", node: Node, type_: Element) -> None:
+def _add_unit_of_metadata(lowering: Lowering, node: Node, type_: Element) -> None:
     """Add the unit and quantity kind that metadata states because the library has no such unit."""
     metadata = nodes.shipped_metadata_of(node).get("Unit")
     if metadata is None:
@@ -257,12 +252,12 @@ def _add_unit_of_metadata(lowering: "Lowering", node: Node, type_: Element) -> N
         lowering.graph.connect(Edge.REFERENCES, unit, quantity)
 
 
-def _defer_unit(lowering: "Lowering", node: Node, type_: Element, reference: Reference) -> None:
+def _defer_unit(lowering: Lowering, node: Node, type_: Element, reference: Reference) -> None:
     """Connect a value type to a unit that the model defines, else to one of the library."""
 
     def connect() -> None:
         name, symbol = _unit_name_and_symbol(reference)
-        unit = lowering.element_of(reference.target)
+        unit = lowering.elements.find(reference.target)
         if unit is None:
             for instance in lowering.graph.of_kind(Kind.INSTANCE):
                 is_same = instance.attrs.get("symbol") == symbol or instance.name == name
@@ -273,10 +268,10 @@ def _defer_unit(lowering: "Lowering", node: Node, type_: Element, reference: Ref
             unit = lowering.add_derived(node, Kind.UNIT, name, type_, symbol=symbol, **_LIBRARY)
         lowering.graph.connect(Edge.REFERENCES, type_, unit)
 
-    lowering.defer_until_elements(connect)
+    lowering.queue.defer_until_elements(connect)
 
 
-def _defer_quantity_kind(lowering: "Lowering", node: Node, type_: Element, name: str) -> None:
+def _defer_quantity_kind(lowering: Lowering, node: Node, type_: Element, name: str) -> None:
     """Add the quantity kind of a value type, unless a unit that the model defines states it."""
 
     def connect() -> None:
@@ -289,7 +284,7 @@ def _defer_quantity_kind(lowering: "Lowering", node: Node, type_: Element, name:
             if unit.kind is Kind.UNIT and unit.owner == type_.id:
                 lowering.graph.connect(Edge.REFERENCES, unit, quantity)
 
-    lowering.defer_until_edges(connect)
+    lowering.queue.defer_until_edges(connect)
 
 
 def _quantity_kind_name(value_type: str) -> str:

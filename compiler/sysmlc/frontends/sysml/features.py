@@ -1,7 +1,5 @@
 """Features of classifiers: properties, ports, enumeration literals."""
 
-from typing import TYPE_CHECKING
-
 from sysmlc.frontends.sysml import annotations, nodes, values
 from sysmlc.frontends.sysml.definitions import (
     foreign_attributes,
@@ -9,12 +7,11 @@ from sysmlc.frontends.sysml.definitions import (
     variation_attributes,
     visibility_attributes,
 )
-from sysmlc.ir import AttrValue, Edge, Element, Kind, list_items
+from sysmlc.frontends.sysml.elements import NodeElements
+from sysmlc.frontends.sysml.lowering import Lowering
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, list_items
 from sysmlc.ir.query import BEHAVIORS, generals
 from sysmlc.language.tree import Node, Relation
-
-if TYPE_CHECKING:
-    from sysmlc.frontends.sysml.lowering import Lowering
 
 _COMPOSITE = frozenset({"PartUsage", "ItemUsage", "OccurrenceUsage", "ConstraintUsage"})
 _CLASS_ROLES = {"PortUsage": "interface block", "AttributeUsage": "value type"}
@@ -33,7 +30,7 @@ _PART_PORTS = {"FullPort": "full port", "BlockPort": "port"}
 """Roles of ports of SysML v1 that a block types, by the keyword of the part in SysML v2."""
 
 
-def lower_classifier_feature(lowering: "Lowering", node: Node, owner: Element) -> Element:
+def lower_classifier_feature(lowering: Lowering, node: Node, owner: Element) -> Element:
     """Lower a feature of a classifier by its metaclass."""
     if owner.kind is Kind.ENUMERATION and node.kind in ("EnumerationUsage", "AttributeUsage"):
         return _lower_literal(lowering, node, owner)
@@ -45,7 +42,7 @@ def lower_classifier_feature(lowering: "Lowering", node: Node, owner: Element) -
     return lower_property(lowering, node, owner)
 
 
-def lower_property(lowering: "Lowering", node: Node, owner: Element) -> Element:
+def lower_property(lowering: Lowering, node: Node, owner: Element) -> Element:
     """Lower a feature; if it has members of its own, a class that is added for it types it."""
     kind, subkind = read_kind(node, Kind.PROPERTY)
     attributes = _feature_attributes(node, owner)
@@ -57,7 +54,7 @@ def lower_property(lowering: "Lowering", node: Node, owner: Element) -> Element:
     return property_
 
 
-def _lower_literal(lowering: "Lowering", node: Node, owner: Element) -> Element:
+def _lower_literal(lowering: Lowering, node: Node, owner: Element) -> Element:
     literal = lowering.add_element(node, Kind.ENUMERATION_LITERAL, nodes.name_of(node), owner)
     value = nodes.value_of(node)
     if value is not None:
@@ -92,9 +89,9 @@ def _set_aggregation(node: Node, property_: Element) -> None:
 # -- declarations of features ------------------------------------------------------------------
 
 
-def describe_feature(lowering: "Lowering", node: Node, feature: Element) -> None:
+def describe_feature(lowering: Lowering, node: Node, feature: Element) -> None:
     """Add what a declaration states: flags, multiplicity, types, generals, value, members."""
-    multiplicity = values.multiplicity_of(lowering, node)
+    multiplicity = values.multiplicity_of(lowering.trees, node)
     # A cross feature has the flags of an end, like its multiplicity.
     holders = [holder for holder in (node, nodes.cross_feature_of(node)) if holder is not None]
     for holder in holders:
@@ -115,7 +112,7 @@ def _flags_of(node: Node) -> dict[str, AttrValue]:
     return {flag: bool(node.attributes.get(attribute)) for attribute, flag in _FLAGS.items()}
 
 
-def _connect_relations(lowering: "Lowering", node: Node, feature: Element) -> None:
+def _connect_relations(lowering: Lowering, node: Node, feature: Element) -> None:
     """Connect a feature to its types and to the features that it redefines or subsets."""
     for relation in node.relations:
         _connect_relation(lowering, feature, relation)
@@ -123,41 +120,45 @@ def _connect_relations(lowering: "Lowering", node: Node, feature: Element) -> No
     if class_ is not None:
         lowering.graph.connect(Edge.TYPED_BY, feature, class_)
         return
-    lowering.defer_until_elements(lambda: connect_types(lowering, node, feature))
+    lowering.queue.defer_until_elements(lambda: connect_types(lowering, node, feature))
 
 
-def _connect_relation(lowering: "Lowering", feature: Element, relation: Relation) -> None:
+def _connect_relation(lowering: Lowering, feature: Element, relation: Relation) -> None:
     """Connect a redefined or subsetted feature; features of the library only give types."""
     if relation.kind == "ConjugatedPortTyping":
         lowering.set_attributes(feature, conjugated=True)
     if relation.kind not in _RELATIONS_TO_FEATURES:
         return
     reference = relation.reference
-    if reference.target is not None and lowering.document_of(reference.target) is None:
+    if reference.target is not None and lowering.trees.document_of(reference.target) is None:
         return
     if relation.kind == "Redefinition":
         lowering.connect_reference(Edge.REDEFINES, feature, reference)
     else:
-        lowering.defer_until_elements(
-            lambda: _connect_behaviour(lowering, feature, reference.target)
+        lowering.queue.defer_until_elements(
+            lambda: _connect_behaviour(lowering.graph, lowering.elements, feature, reference.target)
         )
-        lowering.defer_until_edges(lambda: _connect_subsetted(lowering, feature, reference.target))
+        lowering.queue.defer_until_edges(
+            lambda: _connect_subsetted(lowering, feature, reference.target)
+        )
 
 
-def _connect_behaviour(lowering: "Lowering", feature: Element, target: Node | None) -> None:
+def _connect_behaviour(
+    graph: Graph, elements: NodeElements, feature: Element, target: Node | None
+) -> None:
     """Connect a subsetted behaviour as type: a behaviour of UML is no feature."""
-    behaviour = lowering.element_of(target)
+    behaviour = elements.find(target)
     if behaviour is not None and _is_typed_by(feature, behaviour):
-        lowering.graph.connect(Edge.TYPED_BY, feature, behaviour)
+        graph.connect(Edge.TYPED_BY, feature, behaviour)
 
 
 def _is_typed_by(feature: Element, subsetted: Element) -> bool:
     return subsetted.kind in BEHAVIORS and feature.kind is Kind.PROPERTY
 
 
-def _connect_subsetted(lowering: "Lowering", feature: Element, target: Node | None) -> None:
+def _connect_subsetted(lowering: Lowering, feature: Element, target: Node | None) -> None:
     """Connect a feature of the owner, or an inherited one, as subsetted; another as referenced."""
-    subsetted = lowering.element_of(target)
+    subsetted = lowering.elements.find(target)
     if subsetted is not None and _is_typed_by(feature, subsetted):
         return
     classifier = lowering.graph.owner(feature)
@@ -170,26 +171,26 @@ def _connect_subsetted(lowering: "Lowering", feature: Element, target: Node | No
     lowering.graph.connect(edge, feature, subsetted)
 
 
-def connect_types(lowering: "Lowering", node: Node, feature: Element) -> None:
+def connect_types(lowering: Lowering, node: Node, feature: Element) -> None:
     """Connect a feature to its types, stated or inherited; their elements must exist."""
     typings = nodes.list_references(node, "FeatureTyping", "ConjugatedPortTyping")
     for reference in typings:
         lowering.connect_node(Edge.TYPED_BY, feature, reference.target)
     if not typings:
-        lowering.connect_nodes(Edge.TYPED_BY, feature, nodes.types_of(lowering, node))
+        lowering.connect_nodes(Edge.TYPED_BY, feature, lowering.trees.types_of(node))
 
 
-def _lower_members(lowering: "Lowering", node: Node, feature: Element) -> None:
+def _lower_members(lowering: Lowering, node: Node, feature: Element) -> None:
     """Lower annotations as members of the feature, and other members as those of its class."""
-    class_ = lowering.usage_classes.get(id(node))
+    class_ = lowering.elements.usage_classes.get(id(node))
     for member in nodes.body_of(node):
         if _describes_feature(member, node):
             lowering.lower(member, feature)
-        elif class_ is not None and id(member) not in lowering.redundant:
+        elif class_ is not None and id(member) not in lowering.elements.redundant:
             lowering.lower(member, class_)
 
 
-def _add_usage_class(lowering: "Lowering", node: Node, feature: Element) -> Element | None:
+def _add_usage_class(lowering: Lowering, node: Node, feature: Element) -> Element | None:
     """Add a property-specific type for the members of a usage (SysML 1.6 clause 8.3.2.10)."""
     members = [
         member
@@ -209,12 +210,12 @@ def _add_usage_class(lowering: "Lowering", node: Node, feature: Element) -> Elem
     )
     if feature.attrs.pop("variation", False):
         lowering.set_attributes(class_, variation=True)
-    lowering.usage_classes[id(node)] = class_
-    lowering.defer_until_elements(
-        lambda: lowering.connect_nodes(Edge.SPECIALIZES, class_, nodes.types_of(lowering, node))
+    lowering.elements.usage_classes[id(node)] = class_
+    lowering.queue.defer_until_elements(
+        lambda: lowering.connect_nodes(Edge.SPECIALIZES, class_, lowering.trees.types_of(node))
     )
     # Metadata may give the feature another name than the text has.
-    lowering.defer_until_edges(lambda: lowering.graph.rename(class_, feature.name))
+    lowering.queue.defer_until_edges(lambda: lowering.graph.rename(class_, feature.name))
     return class_
 
 
@@ -228,7 +229,7 @@ def _describes_feature(member: Node, feature: Node) -> bool:
     return is_realization and not member.name and nodes.find_target(member, "client") is feature
 
 
-def read_interface_id(lowering: "Lowering", node: Node, element: Element) -> bool:
+def read_interface_id(lowering: Lowering, node: Node, element: Element) -> bool:
     """Read a redefined port that only states its id in AutomationML; return whether it is one.
 
     The id becomes part of the attribute ``interface_ids`` of *element*, the usage with the port.
@@ -241,27 +242,27 @@ def read_interface_id(lowering: "Lowering", node: Node, element: Element) -> boo
     interface_id = annotations.metadata_value(node, "AutomationML", "id")
     if interface_id is None:
         return False
-    lowering.redundant.add(id(node))
-    lowering.skipped.update(map(id, nodes.body_of(node)))
-    lowering.defer_until_elements(
-        lambda: _add_interface_id(lowering, element, target, interface_id)
+    lowering.elements.redundant.add(id(node))
+    lowering.verdicts.skipped.update(map(id, nodes.body_of(node)))
+    lowering.queue.defer_until_elements(
+        lambda: _add_interface_id(lowering.graph, lowering.elements, element, target, interface_id)
     )
     return True
 
 
 def _add_interface_id(
-    lowering: "Lowering", element: Element, target: Node, interface_id: AttrValue
+    graph: Graph, elements: NodeElements, element: Element, target: Node, interface_id: AttrValue
 ) -> None:
-    port = lowering.element_of(target)
+    port = elements.find(target)
     if port is not None and element.kind is not Kind.CLASS:
         pairs = list_items(element.attrs.get("interface_ids"))
-        lowering.graph.set(element, interface_ids=(*pairs, (port.id, interface_id)))
+        graph.set(element, interface_ids=(*pairs, (port.id, interface_id)))
 
 
 # -- ports -------------------------------------------------------------------------------------
 
 
-def _lower_port(lowering: "Lowering", node: Node, owner: Element) -> Element:
+def _lower_port(lowering: Lowering, node: Node, owner: Element) -> Element:
     """Lower a port; a port that only has a flow without a name is a flow port of SysML 1.2."""
     keywords = nodes.shipped_metadata_of(node)
     kind_name = annotations.metadata_value(node, "Kind", "name")
@@ -281,11 +282,11 @@ def _lower_port(lowering: "Lowering", node: Node, owner: Element) -> Element:
         port,
         role="port" if kind_name == "port" else "flow port",
         direction=flow.attributes.get("direction"),
-        multiplicity=values.multiplicity_of(lowering, node),
+        multiplicity=values.multiplicity_of(lowering.trees, node),
     )
     for reference in nodes.list_references(flow, "FeatureTyping"):
         lowering.connect_reference(Edge.TYPED_BY, port, reference)
-    lowering.lowered.add(id(flow))
+    lowering.verdicts.lowered.add(id(flow))
     lowering.lower_annotations(node, port)
     lowering.lower_annotations(flow, port)
     return port
@@ -300,7 +301,7 @@ def _find_only_flow(port: Node) -> Node | None:
     return members[0] if is_flow else None
 
 
-def _lower_part_port(lowering: "Lowering", node: Node, owner: Element, role: str) -> Element:
+def _lower_part_port(lowering: Lowering, node: Node, owner: Element, role: str) -> Element:
     """Lower a part whose keyword makes it a port of SysML v1 that a block types."""
     attributes = visibility_attributes(node)
     port = lowering.add_element(

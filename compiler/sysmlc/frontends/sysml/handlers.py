@@ -57,7 +57,7 @@ def _lower_feature(lowering: Lowering, node: Node, owner: Element | None) -> Non
     elif owner.kind is Kind.INTERACTION:
         object_nodes.lower_behaviour_feature(lowering, node, owner)
     else:
-        lowering.mark_unsupported(node)
+        lowering.verdicts.mark_unsupported(node)
 
 
 def _is_property(node: Node) -> bool:
@@ -89,7 +89,7 @@ def _lower_action(lowering: Lowering, node: Node, owner: Element | None) -> None
     elif owner.kind in _BEHAVIOURS_WITHOUT_STEPS:
         activities.lower_activity(lowering, node, owner)
     else:
-        lowering.mark_unsupported(node)
+        lowering.verdicts.mark_unsupported(node)
 
 
 def _as_step(handler: _MemberHandler) -> Handler:
@@ -120,12 +120,12 @@ def _lower_connection(lowering: Lowering, node: Node, owner: Element | None) -> 
     elif owner is not None and owner.kind in STRUCTURAL:
         features.lower_classifier_feature(lowering, node, owner)
     else:
-        lowering.mark_unsupported(node)
+        lowering.verdicts.mark_unsupported(node)
 
 
 def _lower_binding(lowering: Lowering, node: Node, owner: Element | None) -> None:
     if owner is None:
-        lowering.mark_unsupported(node)
+        lowering.verdicts.mark_unsupported(node)
     elif owner.kind in ACTIVITIES:
         object_nodes.lower_binding(lowering, node, owner)
     else:
@@ -138,7 +138,7 @@ def _lower_flow(lowering: Lowering, node: Node, owner: Element | None) -> None:
     elif owner is not None and owner.kind in ACTIVITIES:
         object_nodes.lower_object_flow(lowering, node, owner)
     elif nodes.is_message(node) and (owner is None or not nodes.events_of(node)):
-        lowering.mark_unsupported(node)
+        lowering.verdicts.mark_unsupported(node)
     else:
         connections.lower_item_flow(lowering, node, owner)
 
@@ -149,7 +149,7 @@ def _lower_event(lowering: Lowering, node: Node, owner: Element | None) -> None:
     elif owner is not None and owner.kind is Kind.USE_CASE:
         use_cases.lower_extension_point(lowering, node, owner)
     else:
-        lowering.mark_unsupported(node)
+        lowering.verdicts.mark_unsupported(node)
 
 
 def _lower_succession(lowering: Lowering, node: Node, owner: Element | None) -> None:
@@ -157,7 +157,7 @@ def _lower_succession(lowering: Lowering, node: Node, owner: Element | None) -> 
     if owner is not None and owner.kind in _INTERACTIONS:
         interactions.lower_event_order(lowering, node, owner)
     else:
-        lowering.mark_unsupported(node)
+        lowering.verdicts.mark_unsupported(node)
 
 
 def _lower_state(lowering: Lowering, node: Node, owner: Element | None) -> None:
@@ -207,7 +207,7 @@ def _lower_expression(lowering: Lowering, node: Node, owner: Element | None) -> 
 
 
 def _ignore(lowering: Lowering, node: Node, owner: Element | None) -> None:
-    lowering.mark_ignored(node)
+    lowering.verdicts.mark_ignored(node)
 
 
 _FEATURES = """

@@ -3,18 +3,16 @@
 from contextlib import suppress
 from graphlib import CycleError
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import annotations, nodes
 from sysmlc.frontends.sysml.connections import list_payloads
+from sysmlc.frontends.sysml.elements import NodeElements
 from sysmlc.frontends.sysml.features import lower_property
+from sysmlc.frontends.sysml.lowering import Lowering, QualifiedNames
 from sysmlc.ir import Edge, Element, Graph, Kind, list_items
 from sysmlc.ir.algorithms import sort_topologically
 from sysmlc.ir.query.interactions import covered_lifelines, interaction_fragments
 from sysmlc.language.tree import Node
-
-if TYPE_CHECKING:
-    from sysmlc.frontends.sysml.lowering import Lowering
 
 _MESSAGE_EDGES = (
     (Edge.FLOW_SOURCE, Edge.SEND_EVENT),
@@ -23,7 +21,7 @@ _MESSAGE_EDGES = (
 """Edges of a message to a lifeline and to the occurrence on it, for each end."""
 
 
-def lower_interaction_member(lowering: "Lowering", node: Node, owner: Element) -> None:
+def lower_interaction_member(lowering: Lowering, node: Node, owner: Element) -> None:
     """Lower a feature of an interaction: a fragment, a lifeline, or a property.
 
     In a text of the back end ``sysml``, referential parts, ports and features that metadata marks
@@ -49,7 +47,7 @@ def _is_from_backend(interaction: Node | None) -> bool:
     return annotations.metadata_value(interaction, "Kind", "name") == "interaction"
 
 
-def _lower_fragment(lowering: "Lowering", node: Node, owner: Element) -> None:
+def _lower_fragment(lowering: Lowering, node: Node, owner: Element) -> None:
     """Lower a combined fragment or an operand; metadata of our library states which it is."""
     name = str(annotations.metadata_value(node, "Kind", "name") or "seq")
     kind, subkind = (Kind.OPERAND, "") if name == "operand" else (Kind.FRAGMENT, name)
@@ -60,19 +58,19 @@ def _lower_fragment(lowering: "Lowering", node: Node, owner: Element) -> None:
 # -- lifelines ---------------------------------------------------------------------------------
 
 
-def _lower_lifeline(lowering: "Lowering", node: Node, owner: Element) -> None:
+def _lower_lifeline(lowering: Lowering, node: Node, owner: Element) -> None:
     lifeline = lowering.add_element(node, Kind.LIFELINE, nodes.name_of(node), owner)
-    lowering.defer_until_elements(lambda: _connect_represented(lowering, node, lifeline))
+    lowering.queue.defer_until_elements(lambda: _connect_represented(lowering, node, lifeline))
     for member in nodes.body_of(node):
         if member.kind == "EventOccurrenceUsage":
             lower_event(lowering, member, lifeline)
         elif nodes.is_annotation(member):
             lowering.lower(member, lifeline)
         else:
-            lowering.mark_approximated(member, "a feature of a lifeline", "nothing")
+            lowering.verdicts.mark_approximated(member, "a feature of a lifeline", "nothing")
 
 
-def _connect_represented(lowering: "Lowering", node: Node, lifeline: Element) -> None:
+def _connect_represented(lowering: Lowering, node: Node, lifeline: Element) -> None:
     """Connect a lifeline to the feature it names, or to the only part of its type.
 
     If several parts have the type, the one with the name of the lifeline counts. The back end
@@ -85,8 +83,8 @@ def _connect_represented(lowering: "Lowering", node: Node, lifeline: Element) ->
     if reference is not None:
         lowering.connect_node(Edge.REPRESENTS, lifeline, reference.target)
         return
-    for type_ in nodes.types_of(lowering, node):
-        classifier = lowering.element_of(type_)
+    for type_ in lowering.trees.types_of(node):
+        classifier = lowering.elements.find(type_)
         if classifier is None:
             continue
         typed = lowering.graph.sources(classifier, Edge.TYPED_BY)
@@ -99,7 +97,7 @@ def _connect_represented(lowering: "Lowering", node: Node, lifeline: Element) ->
 # -- messages ----------------------------------------------------------------------------------
 
 
-def lower_message(lowering: "Lowering", node: Node, owner: Element) -> None:
+def lower_message(lowering: Lowering, node: Node, owner: Element) -> None:
     """Lower a message from one lifeline to another."""
     sort = annotations.metadata_value(node, "Kind", "name") or "asynch-signal"
     message = lowering.add_element(
@@ -108,34 +106,40 @@ def lower_message(lowering: "Lowering", node: Node, owner: Element) -> None:
     operation = annotations.metadata_value(node, "Kind", "calls")
     payloads = list_payloads(node)
     if operation:
-        lowering.defer_until_edges(lambda: _connect_operation(lowering, message, str(operation)))
+        lowering.queue.defer_until_edges(
+            lambda: _connect_operation(lowering.graph, lowering.names, message, str(operation))
+        )
     else:
         for payload in payloads:
             for reference in nodes.list_references(payload, "FeatureTyping"):
                 lowering.connect_reference(Edge.CALLS, message, reference)
-    lowering.defer_until_edges(lambda: _connect_message(lowering, node, message))
+    lowering.queue.defer_until_edges(lambda: _connect_message(lowering, node, message))
     messages = [member for member in lowering.graph.owned(owner) if member.kind is Kind.MESSAGE]
     if messages == [message]:
         # Deferred twice: after the connection of all messages and orderings.
-        lowering.defer_until_edges(
-            lambda: lowering.defer_until_edges(lambda: _order_occurrences(lowering.graph, owner))
+        lowering.queue.defer_until_edges(
+            lambda: lowering.queue.defer_until_edges(
+                lambda: _order_occurrences(lowering.graph, owner)
+            )
         )
     annotations.lower_only_annotations(lowering, node, message, "a message", payloads)
 
 
-def _connect_operation(lowering: "Lowering", message: Element, qualified_name: str) -> None:
+def _connect_operation(
+    graph: Graph, names: QualifiedNames, message: Element, qualified_name: str
+) -> None:
     """Connect a message to the operation whose qualified name metadata states."""
-    operation = lowering.graph.get(lowering.id_of(qualified_name))
+    operation = graph.get(names.id_of(qualified_name))
     if operation is not None:
-        lowering.graph.connect(Edge.CALLS, message, operation)
+        graph.connect(Edge.CALLS, message, operation)
 
 
-def _connect_message(lowering: "Lowering", node: Node, message: Element) -> None:
+def _connect_message(lowering: Lowering, node: Node, message: Element) -> None:
     """Connect a message to the lifelines at its ends and to the occurrences on them."""
     owner = lowering.graph.owner(message)
     ends = nodes.ends_of(node) or nodes.events_of(node)
     for (flow_edge, event_edge), end in zip(_MESSAGE_EDGES, ends, strict=False):
-        elements = map(lowering.element_of, nodes.path_of_end(end))
+        elements = map(lowering.elements.find, nodes.path_of_end(end))
         path = [element for element in elements if element is not None]
         lifeline = next((element for element in path if element.kind is Kind.LIFELINE), None)
         if lifeline is None or owner is None:
@@ -147,7 +151,7 @@ def _connect_message(lowering: "Lowering", node: Node, message: Element) -> None
         lowering.graph.connect(event_edge, message, occurrence)
 
 
-def _ensure_occurrence(lowering: "Lowering", owner: Element, event: Element | None) -> Element:
+def _ensure_occurrence(lowering: Lowering, owner: Element, event: Element | None) -> Element:
     """Return the event that the model names as end of a message, else add an occurrence."""
     if event is not None and event.kind is Kind.OCCURRENCE:
         return event
@@ -201,13 +205,15 @@ def _list_ordered_pairs(graph: Graph, member: Element) -> list[tuple[Element, El
 # -- events ------------------------------------------------------------------------------------
 
 
-def lower_event(lowering: "Lowering", node: Node, owner: Element) -> None:
+def lower_event(lowering: Lowering, node: Node, owner: Element) -> None:
     """Lower an event of a lifeline or of the interaction; it may be another event's name."""
     is_on_lifeline = owner.kind is Kind.LIFELINE
     interaction = lowering.graph.owner(owner) if is_on_lifeline else owner
     reference = nodes.find_reference(node, "ReferenceSubsetting")
     if reference is not None and not node.name:
-        lowering.defer_until_elements(lambda: _share_element(lowering, node, reference.target))
+        lowering.queue.defer_until_elements(
+            lambda: _share_element(lowering.elements, node, reference.target)
+        )
         return
     occurrence = lowering.add_element(
         node, Kind.OCCURRENCE, nodes.name_of(node), interaction, subkind="message"
@@ -216,26 +222,30 @@ def lower_event(lowering: "Lowering", node: Node, owner: Element) -> None:
         lowering.graph.connect(Edge.COVERS, occurrence, owner)
 
 
-def _share_element(lowering: "Lowering", node: Node, target: Node | None) -> None:
+def _share_element(elements: NodeElements, node: Node, target: Node | None) -> None:
     """Register the element of a referenced event as the element of the node, too."""
-    element = lowering.element_of(target)
+    element = elements.find(target)
     if element is not None:
-        lowering.elements[id(node)] = element
+        elements.own[id(node)] = element
 
 
-def lower_event_order(lowering: "Lowering", node: Node, owner: Element) -> None:
+def lower_event_order(lowering: Lowering, node: Node, owner: Element) -> None:
     """Lower a succession between events to a general ordering."""
     ends = nodes.ends_of(node)
     if len(ends) < 2:
-        lowering.mark_approximated(node, "an order of messages without ends", "nothing")
+        lowering.verdicts.mark_approximated(node, "an order of messages without ends", "nothing")
         return
     ordering = lowering.add_element(node, Kind.GENERAL_ORDERING, node.name or "", owner)
-    lowering.defer_until_edges(lambda: _connect_ordering(lowering, ordering, ends))
+    lowering.queue.defer_until_edges(
+        lambda: _connect_ordering(lowering.graph, lowering.elements, ordering, ends)
+    )
 
 
-def _connect_ordering(lowering: "Lowering", ordering: Element, ends: list[Node]) -> None:
+def _connect_ordering(
+    graph: Graph, elements: NodeElements, ordering: Element, ends: list[Node]
+) -> None:
     for edge, end in zip((Edge.FLOW_SOURCE, Edge.FLOW_TARGET), ends, strict=False):
         path = nodes.path_of_end(end)
-        event = lowering.element_of(path[-1]) if path else None
+        event = elements.find(path[-1]) if path else None
         if event is not None:
-            lowering.graph.connect(edge, ordering, event)
+            graph.connect(edge, ordering, event)

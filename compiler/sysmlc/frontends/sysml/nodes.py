@@ -2,14 +2,10 @@
 
 import re
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml.libraries import OUR_LIBRARY
 from sysmlc.language.text.lexer import join_tokens
 from sysmlc.language.tree import Node, Reference
-
-if TYPE_CHECKING:
-    from sysmlc.frontends.sysml.lowering import Lowering
 
 _EXPRESSIONS = """
     OperatorExpression IndexExpression SelectExpression CollectExpression FeatureChainExpression
@@ -28,8 +24,6 @@ _ARGUMENT_MEMBERSHIPS = frozenset(
 _HEAD_MEMBERSHIPS = frozenset({"FeatureValue", "EndFeatureMembership"})
 _MULTIPLICITIES = frozenset({"MultiplicityRange", "Multiplicity"})
 _QUOTED_OR_PARENTHESIS = re.compile(r"\"(?:[^\"\\]|\\.)*\"|'(?:[^'\\]|\\.)*'|[()]")
-_TYPINGS = frozenset({"FeatureTyping", "ConjugatedPortTyping"})
-_TYPE_SOURCES = frozenset({"Redefinition", "Subsetting", "ReferenceSubsetting"})
 
 
 # -- relations ---------------------------------------------------------------------------------
@@ -62,35 +56,6 @@ def list_subsettings(node: Node) -> list[Reference]:
 def last_name(reference: Reference) -> str:
     """Return the last segment of the name in a reference."""
     return reference.chain[-1][-1] if reference.chain and reference.chain[-1] else ""
-
-
-def types_of(lowering: "Lowering", node: Node) -> list[Node]:
-    """Return the definitions that type a feature (KerML 1.0, 8.3.3.3.4).
-
-    A feature without types of its own has those of the features that it redefines or subsets. The
-    search is depth-first and follows a chain of redefinitions of any length.
-    """
-    types: dict[int, Node] = {}
-    visited: set[int] = set()
-    pending = [node]
-    while pending:
-        feature = pending.pop()
-        if id(feature) in visited:
-            continue
-        visited.add(id(feature))
-        typings = [relation for relation in feature.relations if relation.kind in _TYPINGS]
-        for relation in typings:
-            type_ = lowering.resolve(feature, relation)
-            if type_ is not None:
-                types.setdefault(id(type_), type_)
-        if not typings:
-            targets = [
-                lowering.resolve(feature, relation)
-                for relation in feature.relations
-                if relation.kind in _TYPE_SOURCES
-            ]
-            pending += [target for target in reversed(targets) if target is not None]
-    return list(types.values())
 
 
 # -- members -----------------------------------------------------------------------------------

@@ -1,15 +1,14 @@
 """Features of behaviours: parameters, pins and buffers, and the object flows between them."""
 
-from typing import TYPE_CHECKING
-
 from sysmlc.frontends.sysml import nodes, quantities, values
 from sysmlc.frontends.sysml.definitions import read_kind, visibility_attributes
+from sysmlc.frontends.sysml.elements import NodeElements
 from sysmlc.frontends.sysml.features import connect_types, describe_feature, lower_property
-from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.frontends.sysml.implied_nodes import ensure_parameter_node
+from sysmlc.frontends.sysml.lowering import Lowering
+from sysmlc.frontends.sysml.trees import Trees
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.language.tree import Node
-
-if TYPE_CHECKING:
-    from sysmlc.frontends.sysml.lowering import Lowering
 
 _STEPS = frozenset({Kind.ACTION, Kind.STRUCTURED})
 _BUFFERS = (Kind.OBJECT_NODE, Kind.DATA_STORE)
@@ -27,13 +26,13 @@ _PIN_SUBKINDS = {
 _FLOW_EDGES = (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)
 
 
-def lower_behaviour_feature(lowering: "Lowering", node: Node, owner: Element) -> Element:
+def lower_behaviour_feature(lowering: Lowering, node: Node, owner: Element) -> Element:
     """Lower a feature of an activity, a step, a state machine or an operation."""
     if "direction" in node.attributes or node.membership == "ReturnParameterMembership":
         if owner.kind in _STEPS:
             return _lower_pin(lowering, node, owner)
         return _lower_parameter(lowering, node, owner)
-    kind, subkind = read_kind(node, _default_kind(lowering, node, owner))
+    kind, subkind = read_kind(node, _default_kind(lowering.trees, node, owner))
     if kind not in _BUFFERS and subkind != "expansion":
         return lower_property(lowering, node, owner)
     buffer = lowering.add_element(
@@ -48,16 +47,16 @@ def lower_behaviour_feature(lowering: "Lowering", node: Node, owner: Element) ->
     return buffer
 
 
-def _default_kind(lowering: "Lowering", node: Node, owner: Element) -> Kind:
+def _default_kind(trees: Trees, node: Node, owner: Element) -> Kind:
     """Return object node for items of an activity, and for features at which flows end there."""
     if owner.kind not in (Kind.ACTIVITY, Kind.STRUCTURED):
         return Kind.PROPERTY
     is_item = node.kind == "ItemUsage" and not node.attributes.get("isReference")
-    is_object_node = is_item or id(node) in lowering.flow_features
+    is_object_node = is_item or id(node) in trees.flow_features
     return Kind.OBJECT_NODE if is_object_node else Kind.PROPERTY
 
 
-def _lower_parameter(lowering: "Lowering", node: Node, owner: Element) -> Element:
+def _lower_parameter(lowering: Lowering, node: Node, owner: Element) -> Element:
     direction = _direction_of(node)
     parameter = lowering.add_element(
         node,
@@ -80,23 +79,23 @@ def _direction_of(node: Node) -> str:
 # -- pins of actions ---------------------------------------------------------------------------
 
 
-def _lower_pin(lowering: "Lowering", node: Node, action: Element) -> Element:
+def _lower_pin(lowering: Lowering, node: Node, action: Element) -> Element:
     """Lower a parameter of an action to a pin, with the value bound to it."""
     direction = _pin_direction(_direction_of(node))
     attributes: dict[str, AttrValue] = {
         "direction": direction,
         "subkind": _pin_subkind(action, direction),
-        "multiplicity": values.multiplicity_of(lowering, node),
+        "multiplicity": values.multiplicity_of(lowering.trees, node),
         "ordered": bool(node.attributes.get("isOrdered")),
     }
     pin = lowering.add_element(node, Kind.PIN, nodes.name_of(node), action, **attributes)
     if node.attributes.get("isUnique") is False:
         lowering.graph.set(pin, unique=False)
-    lowering.defer_until_elements(lambda: connect_types(lowering, node, pin))
+    lowering.queue.defer_until_elements(lambda: connect_types(lowering, node, pin))
     value = nodes.value_of(node)
     if value is not None and direction == "out" and action.subkind not in _CALLS:
-        quantities.set_kind(lowering, pin, "value", value)
-        lowering.defer_until_elements(lambda: _set_output(lowering, action, value))
+        quantities.set_kind(lowering.graph, pin, "value", value)
+        lowering.queue.defer_until_elements(lambda: _set_output(lowering, action, value))
     elif value is not None:
         values.set_value(lowering, pin, "value", value)
     lowering.lower_annotations(node, pin)
@@ -113,18 +112,18 @@ def _pin_subkind(action: Element, direction: str) -> str:
     return _PIN_SUBKINDS.get((action.subkind, direction), "")
 
 
-def _set_output(lowering: "Lowering", action: Element, value: Node) -> None:
+def _set_output(lowering: Lowering, action: Element, value: Node) -> None:
     """Set the subkind of an action whose output is bound: a value action or a read action."""
     if action.subkind in _CALLS or action.kind is not Kind.ACTION:
         return
     constant = values.constant_of(value)
     is_reference = value.kind == "FeatureReferenceExpression"
     target = nodes.find_target(value, "Membership") if is_reference else None
-    feature = lowering.element_of(target)
+    feature = lowering.elements.find(target)
     if constant is not None:
         lowering.graph.set(action, subkind="value", value=constant)
         if quantities.has_unit(value):
-            lowering.defer_until_edges(
+            lowering.queue.defer_until_edges(
                 lambda: quantities.set_unit(lowering, action, "value", value)
             )
     elif feature is not None and _is_instance(feature):
@@ -148,7 +147,7 @@ def _is_instance(feature: Element) -> bool:
 # -- object nodes that flows need --------------------------------------------------------------
 
 
-def ensure_pin(lowering: "Lowering", action: Element, parameter: Element) -> Element:
+def ensure_pin(lowering: Lowering, action: Element, parameter: Element) -> Element:
     """Return the pin of a call for a parameter of the called behaviour; add it if it is new."""
     for member in lowering.graph.owned(action):
         if member.kind is Kind.PIN and member.name == parameter.name:
@@ -161,11 +160,11 @@ def ensure_pin(lowering: "Lowering", action: Element, parameter: Element) -> Ele
         subkind=_pin_subkind(action, direction),
         multiplicity=parameter.attrs.get("multiplicity"),
     )
-    lowering.copy_types(parameter, pin)
+    lowering.library.copy_types(parameter, pin)
     return pin
 
 
-def _ensure_own_parameter(lowering: "Lowering", parameter: Element, activity: Element) -> Element:
+def _ensure_own_parameter(lowering: Lowering, parameter: Element, activity: Element) -> Element:
     """Return the parameter of an activity; add a redefinition of an inherited one if needed."""
     if lowering.graph.owner(parameter) is activity:
         return parameter
@@ -176,37 +175,37 @@ def _ensure_own_parameter(lowering: "Lowering", parameter: Element, activity: El
     lowering.set_attributes(redefinition, direction=parameter.attrs.get("direction"))
     lowering.set_attributes(redefinition, multiplicity=parameter.attrs.get("multiplicity"))
     lowering.graph.connect(Edge.REDEFINES, redefinition, parameter)
-    lowering.copy_types(parameter, redefinition)
+    lowering.library.copy_types(parameter, redefinition)
     return redefinition
 
 
 # -- object flows ------------------------------------------------------------------------------
 
 
-def lower_object_flow(lowering: "Lowering", node: Node, owner: Element) -> None:
+def lower_object_flow(lowering: Lowering, node: Node, owner: Element) -> None:
     """Lower a flow among steps; a succession flow also becomes a control flow."""
     flow = _add_object_flow(lowering, node, owner)
     if flow is None:
         return
-    lowering.defer_until_edges(
+    lowering.queue.defer_until_edges(
         lambda: _connect_ends(lowering, flow, *_find_end_nodes(lowering, node, flow))
     )
     if node.kind == "SuccessionFlowUsage":
         control_flow = lowering.add_derived(node, Kind.CONTROL_FLOW, "", owner)
-        lowering.defer_until_edges(lambda: _order_steps(lowering, flow, control_flow))
+        lowering.queue.defer_until_edges(lambda: _order_steps(lowering.graph, flow, control_flow))
 
 
-def lower_binding(lowering: "Lowering", node: Node, owner: Element) -> None:
+def lower_binding(lowering: Lowering, node: Node, owner: Element) -> None:
     """Lower a binding among steps to an object flow from the end that has a value."""
     flow = _add_object_flow(lowering, node, owner)
     if flow is not None:
-        lowering.defer_until_edges(lambda: _connect_binding(lowering, node, flow))
+        lowering.queue.defer_until_edges(lambda: _connect_binding(lowering, node, flow))
 
 
-def _add_object_flow(lowering: "Lowering", node: Node, owner: Element) -> Element | None:
+def _add_object_flow(lowering: Lowering, node: Node, owner: Element) -> Element | None:
     """Add the object flow of a flow or binding, unless metadata marks it as implied by others."""
     if "Through" in nodes.shipped_metadata_of(node):
-        lowering.skipped.update(id(member) for member in node.members)
+        lowering.verdicts.skipped.update(id(member) for member in node.members)
         return None
     attributes = visibility_attributes(node)
     flow = lowering.add_element(node, Kind.OBJECT_FLOW, node.name or "", owner, **attributes)
@@ -214,17 +213,17 @@ def _add_object_flow(lowering: "Lowering", node: Node, owner: Element) -> Elemen
     return flow
 
 
-def _order_steps(lowering: "Lowering", object_flow: Element, control_flow: Element) -> None:
+def _order_steps(graph: Graph, object_flow: Element, control_flow: Element) -> None:
     """Connect a control flow to the steps that own the pins at the ends of an object flow."""
     for edge in _FLOW_EDGES:
-        end = lowering.graph.target(object_flow, edge)
-        step = lowering.graph.owner(end) if end is not None and end.kind is Kind.PIN else end
+        end = graph.target(object_flow, edge)
+        step = graph.owner(end) if end is not None and end.kind is Kind.PIN else end
         if step is not None:
-            lowering.graph.connect(edge, control_flow, step)
+            graph.connect(edge, control_flow, step)
 
 
 def _find_end_nodes(
-    lowering: "Lowering", node: Node, flow: Element
+    lowering: Lowering, node: Node, flow: Element
 ) -> tuple[Element | None, Element | None]:
     """Return the object nodes at the two ends of a flow or a binding."""
     object_nodes = [_find_object_node(lowering, flow, end) for end in nodes.ends_of(node)[:2]]
@@ -233,7 +232,7 @@ def _find_end_nodes(
 
 
 def _connect_ends(
-    lowering: "Lowering", flow: Element, source: Element | None, target: Element | None
+    lowering: Lowering, flow: Element, source: Element | None, target: Element | None
 ) -> None:
     for edge, end in zip(_FLOW_EDGES, (source, target), strict=True):
         if end is None:
@@ -242,18 +241,18 @@ def _connect_ends(
             lowering.graph.connect(edge, flow, end)
 
 
-def _connect_binding(lowering: "Lowering", node: Node, flow: Element) -> None:
+def _connect_binding(lowering: Lowering, node: Node, flow: Element) -> None:
     first, second = _find_end_nodes(lowering, node, flow)
-    if _is_default_value(lowering, node, (first, second)):
+    if _is_default_value(lowering.graph, lowering.elements, node, (first, second)):
         lowering.graph.remove(flow)
-    elif _flows_forward(*(_is_source(lowering, flow, end) for end in (first, second))):
+    elif _flows_forward(*(_is_source(lowering.graph, flow, end) for end in (first, second))):
         _connect_ends(lowering, flow, first, second)
     else:
         _connect_ends(lowering, flow, second, first)
 
 
 def _is_default_value(
-    lowering: "Lowering", node: Node, ends: tuple[Element | None, Element | None]
+    graph: Graph, elements: NodeElements, node: Node, ends: tuple[Element | None, Element | None]
 ) -> bool:
     """Whether a binding leads from a parameter to a property or port; set the default if so.
 
@@ -265,11 +264,11 @@ def _is_default_value(
         if parameter_node is None or parameter_node.kind is not Kind.ACTIVITY_PARAMETER:
             continue
         path = nodes.path_of_end(nodes.ends_of(node)[number])
-        features = [lowering.element_of(step) for step in path]
+        features = [elements.find(step) for step in path]
         text = ".".join(step.name for step in features if step is not None)
-        parameter = lowering.graph.target(parameter_node, Edge.REFERENCES)
+        parameter = graph.target(parameter_node, Edge.REFERENCES)
         if parameter is not None:
-            lowering.graph.set(parameter, default=text, default_language="")
+            graph.set(parameter, default=text, default_language="")
         return True
     return False
 
@@ -284,7 +283,7 @@ def _flows_forward(first_is_source: bool | None, second_is_source: bool | None) 
     return second_is_source is False and first_is_source is not False
 
 
-def _is_source(lowering: "Lowering", flow: Element, end: Element | None) -> bool | None:
+def _is_source(graph: Graph, flow: Element, end: Element | None) -> bool | None:
     """Whether an end of a flow must be its source; None if it may be source or target.
 
     Inside of a structured node, its inputs are sources and its outputs are targets.
@@ -292,7 +291,7 @@ def _is_source(lowering: "Lowering", flow: Element, end: Element | None) -> bool
     if end is None:
         return None
     direction = str(end.attrs.get("direction"))
-    is_inside = any(owner.id == end.owner for owner in lowering.graph.ancestors(flow))
+    is_inside = any(owner.id == end.owner for owner in graph.ancestors(flow))
     if end.kind is Kind.PIN and not is_inside:
         return {"out": True, "in": False}.get(direction)
     if end.kind in (Kind.PIN, Kind.ACTIVITY_PARAMETER):
@@ -300,12 +299,12 @@ def _is_source(lowering: "Lowering", flow: Element, end: Element | None) -> bool
     return None
 
 
-def _find_object_node(lowering: "Lowering", flow: Element, end: Node) -> Element | None:
+def _find_object_node(lowering: Lowering, flow: Element, end: Node) -> Element | None:
     """Return the object node at an end: a pin, an activity parameter node or a buffer.
 
     A feature without object node is returned itself.
     """
-    path = [lowering.element_of(feature) for feature in nodes.path_of_end(end)]
+    path = [lowering.elements.find(feature) for feature in nodes.path_of_end(end)]
     feature = path[-1] if path else None
     if feature is None or feature.kind in _OBJECT_NODES:
         return feature
@@ -320,10 +319,10 @@ def _find_object_node(lowering: "Lowering", flow: Element, end: Node) -> Element
     return feature
 
 
-def _ensure_node_of_activity(lowering: "Lowering", flow: Element, parameter: Element) -> Element:
+def _ensure_node_of_activity(lowering: Lowering, flow: Element, parameter: Element) -> Element:
     """Return the node for a parameter of the activity that owns the flow; it may be inherited."""
     for ancestor in lowering.graph.ancestors(flow):
         if ancestor.kind is Kind.ACTIVITY:
             own_parameter = _ensure_own_parameter(lowering, parameter, ancestor)
-            return lowering.ensure_parameter_node(own_parameter)
-    return lowering.ensure_parameter_node(parameter)
+            return ensure_parameter_node(lowering, own_parameter)
+    return ensure_parameter_node(lowering, parameter)

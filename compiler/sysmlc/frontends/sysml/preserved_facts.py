@@ -5,15 +5,16 @@ The back end ``sysml`` writes such facts as strings where no construct of SysML 
 
 import re
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import nodes
-from sysmlc.ir import AttrValue, Edge, Element, Kind, list_items
+from sysmlc.frontends.sysml.elements import NodeElements
+from sysmlc.frontends.sysml.implied_nodes import ensure_control_node, ensure_parameter_node
+from sysmlc.frontends.sysml.library_edges import LibraryEdges
+from sysmlc.frontends.sysml.lowering import Lowering
+from sysmlc.frontends.sysml.trees import Trees
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, list_items
 from sysmlc.language.tree import Node
 from sysmlc.support.escapes import parse_json
-
-if TYPE_CHECKING:
-    from sysmlc.frontends.sysml.lowering import Lowering
 
 _FACT = re.compile(
     r'(?:(node|region|trigger|start|done)\.)?("(?:[^"\\]|\\.)*"|[^="]*?)(=>|=|->)(.*)', re.DOTALL
@@ -35,7 +36,7 @@ _ATTEMPTS = 3
 """How often a fact waits for a part of its element."""
 
 
-def restore_facts(lowering: "Lowering", facts: Mapping[str, AttrValue], element: Element) -> None:
+def restore_facts(lowering: Lowering, facts: Mapping[str, AttrValue], element: Element) -> None:
     """Apply the facts in ``attributes`` to an element, once all its edges exist."""
     attributes = facts.get("attributes")
     if not isinstance(attributes, tuple):
@@ -44,24 +45,26 @@ def restore_facts(lowering: "Lowering", facts: Mapping[str, AttrValue], element:
         _defer_fact(lowering, element, str(attribute), _ATTEMPTS)
 
 
-def _defer_fact(lowering: "Lowering", element: Element, fact: str, attempts: int) -> None:
-    lowering.defer_until_edges(lambda: _restore_fact(lowering, element, fact, attempts))
+def _defer_fact(lowering: Lowering, element: Element, fact: str, attempts: int) -> None:
+    lowering.queue.defer_until_edges(lambda: _restore_fact(lowering, element, fact, attempts))
 
 
-def _restore_fact(lowering: "Lowering", element: Element, fact: str, attempts: int) -> None:
+def _restore_fact(lowering: Lowering, element: Element, fact: str, attempts: int) -> None:
     """Apply one fact; a start or an end of a behaviour exists only when a flow has needed it."""
     match = _FACT.fullmatch(fact)
     if match is None or element.id not in lowering.graph:
         return
     part, name, operator, text = match.groups()
-    holder = element if part is None else _find_part(lowering, element, part)
+    holder = (
+        element if part is None else _find_part(lowering.graph, lowering.elements, element, part)
+    )
     key = str(parse_fact_value(name)) if name.startswith('"') else name
     if holder is None and attempts:
         _defer_fact(lowering, element, fact, attempts - 1)
         return
     if holder is None and part == "node" and element.kind is Kind.PARAMETER:
         # No flow has needed the node of the parameter.
-        holder = lowering.ensure_parameter_node(element)
+        holder = ensure_parameter_node(lowering, element)
     if holder is None and part == "region":
         # The region is empty.
         holder = lowering.add_implied_child(element, Kind.REGION, "")
@@ -72,19 +75,19 @@ def _restore_fact(lowering: "Lowering", element: Element, fact: str, attempts: i
     elif operator == "=":
         lowering.graph.set(holder, **{key: _parse_value_with_elements(lowering, text)})
     elif operator == "=>":
-        _connect_external(lowering, holder, key, text)
+        _connect_external(lowering.library, holder, key, text)
     else:
         _connect(lowering, holder, key, text)
 
 
-def _connect_external(lowering: "Lowering", holder: Element, key: str, name: str) -> None:
+def _connect_external(library: LibraryEdges, holder: Element, key: str, name: str) -> None:
     edge = _EDGES.get(key)
     if edge is not None:
         kind = _EXTERNAL_KINDS.get(edge, Kind.CLASS)
-        lowering.connect_library_element(edge, holder, name, kind)
+        library.connect(edge, holder, name, kind)
 
 
-def _connect(lowering: "Lowering", holder: Element, key: str, name: str) -> None:
+def _connect(lowering: Lowering, holder: Element, key: str, name: str) -> None:
     """Add an edge, or an attribute whose value is the id of an element, or a list of ids."""
     target = _find_element(lowering, name)
     if target is None:
@@ -99,23 +102,23 @@ def _connect(lowering: "Lowering", holder: Element, key: str, name: str) -> None
         lowering.graph.set(holder, **{key: target.id})
 
 
-def _find_element(lowering: "Lowering", path: str) -> Element | None:
+def _find_element(lowering: Lowering, path: str) -> Element | None:
     """Return the element with a qualified name, or its part if the path ends with a part."""
     match = _PART_PATH.fullmatch(path)
     name, word = (path, "") if match is None else match.groups()
-    element = lowering.element_of(_find_node(lowering, name))
+    element = lowering.elements.find(_find_node(lowering.trees, name))
     if element is None or not word:
         return element
     if word == "node" and element.kind is Kind.PARAMETER:
-        return lowering.ensure_parameter_node(element)
+        return ensure_parameter_node(lowering, element)
     if word in ("start", "done"):
-        return lowering.ensure_control_node(element, word)
-    return _find_part(lowering, element, word)
+        return ensure_control_node(lowering, element, word)
+    return _find_part(lowering.graph, lowering.elements, element, word)
 
 
-def _find_node(lowering: "Lowering", qualified_name: str) -> Node | None:
+def _find_node(trees: Trees, qualified_name: str) -> Node | None:
     """Return the node with a qualified name from the root."""
-    members = [member for root in lowering.roots for member in root.members]
+    members = [member for root in trees.roots for member in root.members]
     node: Node | None = None
     for segment in _NAME_SEGMENT.finditer(qualified_name):
         quoted, plain = segment.groups()
@@ -131,7 +134,7 @@ def _unescape(text: str) -> str:
     return _ESCAPED.sub(lambda match: _ESCAPES.get(match[1], match[1]), text)
 
 
-def _parse_value_with_elements(lowering: "Lowering", text: str) -> AttrValue:
+def _parse_value_with_elements(lowering: Lowering, text: str) -> AttrValue:
     """Return the value of a fact, in which an object ``{"->": name}`` stands for an element."""
     if _REFERENCE not in text:
         return parse_fact_value(text)
@@ -161,9 +164,8 @@ def _freeze(value: object) -> AttrValue:
     return value if isinstance(value, str | int | float | bool) else None
 
 
-def _find_part(lowering: "Lowering", element: Element, word: str) -> Element | None:
+def _find_part(graph: Graph, elements: NodeElements, element: Element, word: str) -> Element | None:
     """Return the part of an element that the prefix of a fact names, if it exists."""
-    graph = lowering.graph
     if word == "node":
         for node in graph.sources(element, Edge.REFERENCES):
             if node.kind is Kind.ACTIVITY_PARAMETER:
@@ -174,4 +176,6 @@ def _find_part(lowering: "Lowering", element: Element, word: str) -> Element | N
         return next((member for member in members if member.kind is Kind.TRIGGER), None)
     regions = [member for member in members if member.kind is Kind.REGION]
     region = regions[0] if len(regions) == 1 else None
-    return region if word == "region" else lowering.find_start_or_done(region or element, word)
+    if word == "region":
+        return region
+    return elements.starts_and_ends.get(((region or element).id, word))

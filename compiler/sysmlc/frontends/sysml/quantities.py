@@ -2,17 +2,16 @@
 
 from collections.abc import Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import expressions, nodes
-from sysmlc.ir import AttrValue, Edge, Element
+from sysmlc.frontends.sysml.elements import NodeElements
+from sysmlc.frontends.sysml.lowering import Lowering
+from sysmlc.frontends.sysml.trees import Trees
+from sysmlc.ir import AttrValue, Edge, Element, Graph
 from sysmlc.ir.query.classifiers import strip_qualifiers, unit_of
 from sysmlc.language.text.lexer import quote_name
 from sysmlc.language.tree import Node
 from sysmlc.support.units import find_unit
-
-if TYPE_CHECKING:
-    from sysmlc.frontends.sysml.lowering import Lowering
 
 _KINDS = {
     "=": "bound",
@@ -29,14 +28,14 @@ _USUAL_KINDS = {"default": "default", "value": "bound"}
 """Kinds of the values of SysML v1, by attribute; they are not stated."""
 
 
-def set_kind(lowering: "Lowering", element: Element, key: str, expression: Node) -> None:
+def set_kind(graph: Graph, element: Element, key: str, expression: Node) -> None:
     """Set ``<key>_kind`` unless the value is of the kind that values of SysML v1 have."""
     kind = _KINDS.get(expression.role, "")
     if kind and kind != _USUAL_KINDS.get(key):
-        lowering.graph.set(element, **{f"{key}_kind": kind})
+        graph.set(element, **{f"{key}_kind": kind})
 
 
-def set_unit(lowering: "Lowering", element: Element, key: str, expression: Node) -> None:
+def set_unit(lowering: Lowering, element: Element, key: str, expression: Node) -> None:
     """Set ``<key>_unit`` to the unit of a constant, or to the unit of each of several numbers.
 
     The unit is omitted if it is that of the type. The unit of a value type must be known.
@@ -44,14 +43,14 @@ def set_unit(lowering: "Lowering", element: Element, key: str, expression: Node)
     units = _list_units(expression)
     if not any(units):
         return
-    names = tuple(_name_unit(lowering, unit) for unit in units)
+    names = tuple(_name_unit(lowering.trees, lowering.elements, unit) for unit in units)
     if len(set(names)) > 1:
         lowering.graph.set(element, **{f"{key}_unit": names})
-    elif not _is_unit_of_type(lowering, element, units[0]):
+    elif not _is_unit_of_type(lowering.graph, lowering.elements, element, units[0]):
         lowering.graph.set(element, **{f"{key}_unit": names[0]})
 
 
-def read_unit(lowering: "Lowering", expression: Node) -> tuple[str, Fraction]:
+def read_unit(trees: Trees, expression: Node) -> tuple[str, Fraction]:
     """Return the symbol of a usual unit of a quantity, and the factor from its own unit to that.
 
     The symbol is empty for a number without a unit. A unit without a usual one stays itself.
@@ -59,14 +58,14 @@ def read_unit(lowering: "Lowering", expression: Node) -> tuple[str, Fraction]:
     unit = next(filter(None, _list_units(expression)), None)
     if unit is None:
         return "", Fraction(1)
-    symbol = own_symbol = strip_qualifiers(_write_unit(lowering, unit))
+    symbol = own_symbol = strip_qualifiers(_write_unit(trees, unit))
     factor = Fraction(1)
     for _ in range(_MAX_CONVERSIONS):
         conversion = None if find_unit(symbol) else _read_conversion(unit)
         if conversion is None:
             break
         factor, unit = factor * conversion[0], conversion[1]
-        symbol = strip_qualifiers(_write_unit(lowering, unit))
+        symbol = strip_qualifiers(_write_unit(trees, unit))
     return (symbol, factor) if find_unit(symbol) else (own_symbol, Fraction(1))
 
 
@@ -119,32 +118,32 @@ def _list_units(constant: Node) -> Sequence[Node | None]:
     return [*units, *_list_units(constant)] if units else (None,)
 
 
-def _name_unit(lowering: "Lowering", unit: Node | None) -> str:
+def _name_unit(trees: Trees, elements: NodeElements, unit: Node | None) -> str:
     """Return the id of a unit of the model, else the qualified name or the expression of it."""
     if unit is None:
         return ""
     target = _unit_element(unit)
-    element = lowering.element_of(target)
-    return _write_unit(lowering, unit) if element is None else element.id
+    element = elements.find(target)
+    return _write_unit(trees, unit) if element is None else element.id
 
 
-def _write_unit(lowering: "Lowering", unit: Node) -> str:
+def _write_unit(trees: Trees, unit: Node) -> str:
     """Return a unit, or a product or power of units, with qualified names."""
     target, arguments = _unit_element(unit), nodes.list_arguments(unit)
     operator = unit.attributes.get("operator")
     if operator in _UNIT_OPERATORS and len(arguments) == 2:
-        left, right = (_write_operand(lowering, argument) for argument in arguments)
+        left, right = (_write_operand(trees, argument) for argument in arguments)
         return f"{left} {operator} {right}"
     if target is None:
-        document = lowering.document_of(unit)
+        document = trees.document_of(unit)
         return expressions.write_expression(unit, "" if document is None else document.text)
     name = quote_name(target.short_name or nodes.name_of(target))
     package = "" if target.owner is None else nodes.qualified_name_of(target.owner)
     return f"{package}::{name}" if package else name
 
 
-def _write_operand(lowering: "Lowering", unit: Node) -> str:
-    text = _write_unit(lowering, unit)
+def _write_operand(trees: Trees, unit: Node) -> str:
+    text = _write_unit(trees, unit)
     return f"({text})" if unit.kind == "OperatorExpression" else text
 
 
@@ -153,14 +152,16 @@ def _unit_element(unit: Node) -> Node | None:
     return nodes.find_target(unit, "Membership") if is_reference else None
 
 
-def _is_unit_of_type(lowering: "Lowering", element: Element, unit: Node | None) -> bool:
+def _is_unit_of_type(
+    graph: Graph, elements: NodeElements, element: Element, unit: Node | None
+) -> bool:
     """Whether the type of the feature already states the unit, as in SysML v1."""
-    feature = lowering.graph.target(element, Edge.INSTANCE_OF) or element
-    unit_of_type = unit_of(lowering.graph, feature)
+    feature = graph.target(element, Edge.INSTANCE_OF) or element
+    unit_of_type = unit_of(graph, feature)
     target = None if unit is None else _unit_element(unit)
     if unit_of_type is None or target is None:
         return False
-    if unit_of_type is lowering.element_of(target):
+    if unit_of_type is elements.find(target):
         return True
     symbol: AttrValue = unit_of_type.attrs.get("symbol", "")
     return target.short_name == symbol or unit_of_type.name in (target.name, target.short_name)

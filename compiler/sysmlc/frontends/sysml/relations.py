@@ -1,14 +1,11 @@
 """Dependencies, derivations, allocations, imports and aliases; filters and exposed elements."""
 
-from typing import TYPE_CHECKING
-
 from sysmlc.frontends.sysml import annotations, nodes, values
 from sysmlc.frontends.sysml.definitions import visibility_attributes
-from sysmlc.ir import AttrValue, Edge, Element, Kind, list_items
+from sysmlc.frontends.sysml.elements import NodeElements
+from sysmlc.frontends.sysml.lowering import Lowering
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, list_items
 from sysmlc.language.tree import Node
-
-if TYPE_CHECKING:
-    from sysmlc.frontends.sysml.lowering import Lowering
 
 _ROLES = {
     "Trace": "trace",
@@ -43,17 +40,17 @@ _DERIVATION: dict[str, AttrValue] = {"role": "derive", "subkind": "abstraction"}
 # -- dependencies ------------------------------------------------------------------------------
 
 
-def lower_dependency(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+def lower_dependency(lowering: Lowering, node: Node, owner: Element | None) -> None:
     """Lower a dependency by its keyword: to an element, or to edges."""
     keywords = _list_keywords(node)
     clients = nodes.list_references(node, "client")
     edge = next((_EDGES[keyword] for keyword in keywords if keyword in _EDGES), None)
-    client = lowering.element_of(clients[0].target) if clients else None
+    client = lowering.elements.find(clients[0].target) if clients else None
     is_from_owner = client is not None and client is owner
     if "Realization" in keywords and not node.name and is_from_owner:
         edge = Edge.REALIZES
     if edge is not None and clients:
-        lowering.defer_until_elements(lambda: _connect_ends(lowering, edge, node))
+        lowering.queue.defer_until_elements(lambda: _connect_ends(lowering, edge, node))
     elif "Extension" in keywords:
         _lower_extension(lowering, node, owner)
     else:
@@ -61,7 +58,7 @@ def lower_dependency(lowering: "Lowering", node: Node, owner: Element | None) ->
 
 
 def _add_dependency(
-    lowering: "Lowering", node: Node, owner: Element | None, keywords: list[str]
+    lowering: Lowering, node: Node, owner: Element | None, keywords: list[str]
 ) -> None:
     attributes = _dependency_attributes(keywords)
     dependency = lowering.add_element(node, Kind.DEPENDENCY, node.name or "", owner, **attributes)
@@ -108,27 +105,27 @@ def _is_keyword(node: Node) -> bool:
     return bool(node.attributes.get("isPrefix"))
 
 
-def _connect_ends(lowering: "Lowering", edge: Edge, node: Node) -> None:
+def _connect_ends(lowering: Lowering, edge: Edge, node: Node) -> None:
     """Connect each client of a dependency to each supplier."""
     for client in nodes.list_references(node, "client"):
-        source = lowering.element_of(client.target)
+        source = lowering.elements.find(client.target)
         if source is None:
             continue
         for supplier in nodes.list_references(node, "supplier"):
             lowering.connect_node(edge, source, supplier.target)
 
 
-def _lower_extension(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+def _lower_extension(lowering: Lowering, node: Node, owner: Element | None) -> None:
     extension = lowering.add_element(node, Kind.EXTEND, node.name or "", owner)
-    lowering.defer_until_elements(lambda: _connect_extended(lowering, node, extension, owner))
+    lowering.queue.defer_until_elements(lambda: _connect_extended(lowering, node, extension, owner))
 
 
 def _connect_extended(
-    lowering: "Lowering", node: Node, extension: Element, owner: Element | None
+    lowering: Lowering, node: Node, extension: Element, owner: Element | None
 ) -> None:
     """Connect an extension to the extended use cases, and to its extension points."""
     for reference in nodes.list_references(node, "supplier"):
-        target = lowering.element_of(reference.target)
+        target = lowering.elements.find(reference.target)
         is_case = target is not None and target.kind is Kind.USE_CASE
         edge = Edge.EXTENDS if is_case else Edge.REFERENCES
         lowering.connect_node(edge, extension, reference.target)
@@ -145,7 +142,7 @@ def is_derivation(node: Node) -> bool:
     return any(keyword.startswith("Derivation") for keyword in _list_keywords(node))
 
 
-def lower_derivation(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+def lower_derivation(lowering: Lowering, node: Node, owner: Element | None) -> None:
     """Lower a derivation: its clients are the derived requirements, its supplier the original."""
     derivation = lowering.add_element(node, Kind.DEPENDENCY, node.name or "", owner, **_DERIVATION)
     ends_in_body = [member for member in node.members if member.attributes.get("isEnd")]
@@ -162,22 +159,22 @@ def lower_derivation(lowering: "Lowering", node: Node, owner: Element | None) ->
 # -- allocations -------------------------------------------------------------------------------
 
 
-def lower_allocation(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+def lower_allocation(lowering: Lowering, node: Node, owner: Element | None) -> None:
     """Lower an allocation between usages; allocations inside it belong to its owner."""
     allocation = lowering.add_element(node, Kind.DEPENDENCY, node.name or "", owner, **_ALLOCATION)
-    lowering.defer_until_elements(lambda: _connect_allocation(lowering, node, allocation))
+    lowering.queue.defer_until_elements(lambda: _connect_allocation(lowering, node, allocation))
     nested = list(nodes.iter_by_metaclass(node, "AllocationUsage"))
     annotations.lower_only_annotations(lowering, node, allocation, "an allocation", nested)
     lowering.lower_all(nested, owner)
 
 
-def _connect_allocation(lowering: "Lowering", node: Node, allocation: Element) -> None:
+def _connect_allocation(lowering: Lowering, node: Node, allocation: Element) -> None:
     for edge, end in zip((Edge.CLIENT, Edge.SUPPLIER), nodes.ends_of(node), strict=False):
         path = nodes.path_of_end(end)
         lowering.connect_node(edge, allocation, path[-1] if path else None)
 
 
-def lower_allocation_definition(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+def lower_allocation_definition(lowering: Lowering, node: Node, owner: Element | None) -> None:
     """Lower an allocation between definitions."""
     allocation = lowering.add_element(
         node, Kind.DEPENDENCY, nodes.name_of(node), owner, **_ALLOCATION
@@ -193,7 +190,7 @@ def lower_allocation_definition(lowering: "Lowering", node: Node, owner: Element
                 lowering.connect_reference(edge, allocation, type_)
 
 
-def allocate_steps(lowering: "Lowering", node: Node, owner: Element) -> None:
+def allocate_steps(lowering: Lowering, node: Node, owner: Element) -> None:
     """Allocate steps of a definition to the actions of the plant that a usage binds to them.
 
     ``action :>> place references cell.place`` states which action performs the step ``place``.
@@ -208,7 +205,7 @@ def allocate_steps(lowering: "Lowering", node: Node, owner: Element) -> None:
             allocation = _add_allocation(lowering, member, owner, step, path)
             lowering.connect_reference(Edge.SUPPLIER, allocation, action)
         elif _has_only_members(member):
-            lowering.redundant.add(id(member))
+            lowering.elements.redundant.add(id(member))
 
 
 def _has_only_members(node: Node) -> bool:
@@ -217,7 +214,7 @@ def _has_only_members(node: Node) -> bool:
     return not is_content and nodes.value_of(node) is None
 
 
-def allocate_arguments(lowering: "Lowering", node: Node, owner: Element) -> None:
+def allocate_arguments(lowering: Lowering, node: Node, owner: Element) -> None:
     """Allocate parameters of a definition to the features of the plant that a usage binds to them.
 
     ``in :>> machine = cell.robot`` states which machine the parameter ``machine`` is.
@@ -237,40 +234,42 @@ def _is_path_of_plant(features: list[Node]) -> bool:
     return bool(features) and all(feature.kind.endswith("Usage") for feature in features)
 
 
-def _defer_supplier(lowering: "Lowering", allocation: Element, feature: Node) -> None:
-    lowering.defer_until_elements(lambda: lowering.connect_node(Edge.SUPPLIER, allocation, feature))
+def _defer_supplier(lowering: Lowering, allocation: Element, feature: Node) -> None:
+    lowering.queue.defer_until_elements(
+        lambda: lowering.connect_node(Edge.SUPPLIER, allocation, feature)
+    )
 
 
 def _add_allocation(
-    lowering: "Lowering", node: Node, owner: Element, client: Node, path: list[Node]
+    lowering: Lowering, node: Node, owner: Element, client: Node, path: list[Node]
 ) -> Element:
     """Add an allocation of a feature to the last feature of a path, in the context of *owner*."""
     allocation = lowering.add_element(node, Kind.DEPENDENCY, "", owner, **_ALLOCATION)
-    lowering.defer_until_elements(
+    lowering.queue.defer_until_elements(
         lambda: lowering.connect_node(
-            Edge.CLIENT, allocation, _find_feature_with_element(lowering, client)
+            Edge.CLIENT, allocation, _find_feature_with_element(lowering.elements, client)
         )
     )
     if len(path) > 1:
-        lowering.defer_until_elements(
+        lowering.queue.defer_until_elements(
             lambda: _set_target_path(lowering, allocation, owner, path[:-1])
         )
     return allocation
 
 
 def _set_target_path(
-    lowering: "Lowering", allocation: Element, owner: Element, path: list[Node]
+    lowering: Lowering, allocation: Element, owner: Element, path: list[Node]
 ) -> None:
     """Set the path of a DirectedRelationshipPropertyPath (SysML 1.6, 8.3.2.4)."""
-    elements = [lowering.element_of(feature) for feature in path]
+    elements = [lowering.elements.find(feature) for feature in path]
     ids = tuple(element.id for element in elements if element is not None)
     lowering.set_attributes(allocation, target_context=owner.id, target_path=ids)
 
 
-def _find_feature_with_element(lowering: "Lowering", feature: Node) -> Node:
+def _find_feature_with_element(elements: NodeElements, feature: Node) -> Node:
     """Return the first feature with an element in a chain of redefinitions."""
     visited = set()
-    while lowering.elements.get(id(feature)) is None and id(feature) not in visited:
+    while elements.own.get(id(feature)) is None and id(feature) not in visited:
         visited.add(id(feature))
         feature = nodes.find_target(feature, "Redefinition") or feature
     return feature
@@ -279,7 +278,7 @@ def _find_feature_with_element(lowering: "Lowering", feature: Node) -> Node:
 # -- imports and aliases -----------------------------------------------------------------------
 
 
-def lower_import(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+def lower_import(lowering: Lowering, node: Node, owner: Element | None) -> None:
     """Lower an import of a package or an element of the unit; imports of libraries are external."""
     # The tree of an import with a filter is a package that contains the import.
     inner = [
@@ -287,8 +286,8 @@ def lower_import(lowering: "Lowering", node: Node, owner: Element | None) -> Non
     ]
     imported = next((member for member in inner if member.kind.endswith("Import")), node)
     target = nodes.find_target(imported, "importedNamespace", "importedMembership")
-    if target is None or lowering.document_of(target) is None or owner is None:
-        lowering.mark_external(node)
+    if target is None or lowering.trees.document_of(target) is None or owner is None:
+        lowering.verdicts.mark_external(node)
         return
     subkind = "package" if imported.kind == "NamespaceImport" else "element"
     import_ = lowering.add_element(node, Kind.IMPORT, "", owner, subkind=subkind)
@@ -300,25 +299,27 @@ def lower_import(lowering: "Lowering", node: Node, owner: Element | None) -> Non
         import_all=bool(node.attributes.get("isImportAll")),
     )
     lowering.lower_annotations(node, import_)
-    lowering.defer_until_elements(lambda: _connect_imported(lowering, import_, target))
+    lowering.queue.defer_until_elements(
+        lambda: _connect_imported(lowering.graph, lowering.elements, import_, target)
+    )
     if imported is not node:
         conditions = [member for member in inner if member.kind in nodes.EXPRESSIONS]
         for condition in conditions:
             lower_filter(lowering, condition, import_)
-        lowering.skipped.update(id(member) for member in node.walk() if member is not node)
+        lowering.verdicts.skipped.update(id(member) for member in node.walk() if member is not node)
 
 
-def _connect_imported(lowering: "Lowering", import_: Element, target: Node) -> None:
-    imported = lowering.element_of(target)
+def _connect_imported(graph: Graph, elements: NodeElements, import_: Element, target: Node) -> None:
+    imported = elements.find(target)
     if imported is not None:
-        lowering.graph.connect(Edge.REFERENCES, import_, imported)
+        graph.connect(Edge.REFERENCES, import_, imported)
 
 
-def lower_alias(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+def lower_alias(lowering: Lowering, node: Node, owner: Element | None) -> None:
     """Lower a membership with a name to an alias; ignore a membership without a name."""
     name = node.name or node.short_name
     if not name:
-        lowering.mark_ignored(node)
+        lowering.verdicts.mark_ignored(node)
         return
     attributes = visibility_attributes(node)
     alias = lowering.add_element(node, Kind.ALIAS, name, owner, **attributes)
@@ -332,26 +333,26 @@ def lower_alias(lowering: "Lowering", node: Node, owner: Element | None) -> None
 _EXPOSE = "expose "
 
 
-def lower_filter(lowering: "Lowering", condition: Node, owner: Element | None) -> None:
+def lower_filter(lowering: Lowering, condition: Node, owner: Element | None) -> None:
     """Add the condition that the members of a package or view fulfil to its ``filters``."""
     if owner is None:
-        lowering.mark_ignored(condition)
+        lowering.verdicts.mark_ignored(condition)
     else:
-        _append_text(lowering, owner, "filters", values.expression_text(condition, lowering))
+        _append_text(lowering.graph, owner, "filters", values.expression_text(condition, lowering))
 
 
-def lower_expose(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+def lower_expose(lowering: Lowering, node: Node, owner: Element | None) -> None:
     """Add what a view exposes to its ``exposed``, with the condition in brackets."""
     if owner is None:
-        lowering.mark_ignored(node)
+        lowering.verdicts.mark_ignored(node)
         return
-    document = lowering.document_of(node)
+    document = lowering.trees.document_of(node)
     source = "" if document is None else nodes.quote_source(node, document.text)
     names = ", ".join(str(relation.reference) for relation in node.relations)
     text = source.partition(_EXPOSE)[2].removesuffix(";") or names
-    _append_text(lowering, owner, "exposed", text)
+    _append_text(lowering.graph, owner, "exposed", text)
 
 
-def _append_text(lowering: "Lowering", element: Element, key: str, text: str) -> None:
+def _append_text(graph: Graph, element: Element, key: str, text: str) -> None:
     texts = list_items(element.attrs.get(key))
-    lowering.graph.set(element, **{key: (*texts, text)})
+    graph.set(element, **{key: (*texts, text)})

@@ -1,7 +1,5 @@
 """Constraints and requirements, and what satisfies and verifies requirements."""
 
-from typing import TYPE_CHECKING
-
 from sysmlc.frontends.sysml import annotations, nodes, values
 from sysmlc.frontends.sysml.definitions import (
     connect_generals,
@@ -10,13 +8,12 @@ from sysmlc.frontends.sysml.definitions import (
     visibility_attributes,
 )
 from sysmlc.frontends.sysml.features import lower_property
-from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.frontends.sysml.lowering import Lowering
+from sysmlc.frontends.sysml.trees import Trees
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir.expressions import ExpressionText, Unary
 from sysmlc.language.library import SHIPPED
 from sysmlc.language.tree import Node, Reference
-
-if TYPE_CHECKING:
-    from sysmlc.frontends.sysml.lowering import Lowering
 
 _PACKAGES = (Kind.PACKAGE, Kind.PROFILE)
 _CONDITION_SUBKINDS = {
@@ -35,10 +32,10 @@ _VERIFICATION: dict[str, AttrValue] = {"role": "verify", "subkind": "abstraction
 # -- constraints -------------------------------------------------------------------------------
 
 
-def lower_constraint(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+def lower_constraint(lowering: Lowering, node: Node, owner: Element | None) -> None:
     """Lower a constraint with a condition, or the usage of a constraint definition."""
     result = nodes.result_of(node)
-    if result is None and owner is not None and nodes.types_of(lowering, node):
+    if result is None and owner is not None and lowering.trees.types_of(node):
         _lower_constraint_usage(lowering, node, owner)
         return
     constraint = lowering.add_element(
@@ -46,11 +43,11 @@ def lower_constraint(lowering: "Lowering", node: Node, owner: Element | None) ->
     )
     lowering.set_attributes(constraint, **visibility_attributes(node))
     if result is not None:
-        lowering.defer_until_elements(lambda: _set_body(lowering, node, constraint, result))
-        if _is_unasserted(lowering, node):
+        lowering.queue.defer_until_elements(lambda: _set_body(lowering, node, constraint, result))
+        if _is_unasserted(lowering.trees, node):
             lowering.graph.set(constraint, asserted=False)
             construct = "a constraint that nothing asserts"
-            lowering.mark_approximated(node, construct, "one that holds")
+            lowering.verdicts.mark_approximated(node, construct, "one that holds")
     for reference in nodes.list_references(node, "ReferenceSubsetting"):
         lowering.connect_reference(Edge.REFERENCES, constraint, reference)
     annotations.lower_only_annotations(lowering, node, constraint, "a constraint")
@@ -64,14 +61,14 @@ def _constraint_subkind(node: Node) -> str:
     return str(name or read_kind(node, Kind.CONSTRAINT)[1])
 
 
-def _is_unasserted(lowering: "Lowering", node: Node) -> bool:
+def _is_unasserted(trees: Trees, node: Node) -> bool:
     """Whether a constraint only names a condition, which may hold or not (SysML 2.0, 7.20.1)."""
     is_usage = node.kind == "ConstraintUsage" and node.membership == "FeatureMembership"
-    document = lowering.document_of(node)
+    document = trees.document_of(node)
     return is_usage and document is not None and not document.path.startswith(SHIPPED)
 
 
-def _set_body(lowering: "Lowering", node: Node, constraint: Element, result: Node) -> None:
+def _set_body(lowering: Lowering, node: Node, constraint: Element, result: Node) -> None:
     text = values.expression_text(result, lowering)
     body = f"not ({text})" if node.attributes.get("isNegated") else text
     if isinstance(text, ExpressionText) and body is not text:
@@ -79,33 +76,35 @@ def _set_body(lowering: "Lowering", node: Node, constraint: Element, result: Nod
     lowering.set_attributes(constraint, body=body)
 
 
-def lower_result(lowering: "Lowering", node: Node, owner: Element) -> None:
+def lower_result(lowering: Lowering, node: Node, owner: Element) -> None:
     """Lower the condition of a constraint definition to a constraint without a name."""
     constraint = lowering.add_element(node, Kind.CONSTRAINT, "", owner)
-    lowering.defer_until_elements(lambda: values.set_expression(lowering, constraint, "body", node))
+    lowering.queue.defer_until_elements(
+        lambda: values.set_expression(lowering, constraint, "body", node)
+    )
 
 
-def _lower_constraint_usage(lowering: "Lowering", node: Node, owner: Element) -> None:
+def _lower_constraint_usage(lowering: Lowering, node: Node, owner: Element) -> None:
     """Lower a usage to a constraint property, and values of its parameters to bindings."""
     arguments = [
         (member, value) for member in node.members if (value := nodes.value_of(member)) is not None
     ]
-    lowering.skipped.update(id(parameter) for parameter, _ in arguments)
+    lowering.verdicts.skipped.update(id(parameter) for parameter, _ in arguments)
     usage = lower_property(lowering, node, owner)
     for parameter, value in arguments:
         _defer_argument(lowering, usage, parameter, value)
 
 
-def _defer_argument(lowering: "Lowering", usage: Element, parameter: Node, value: Node) -> None:
+def _defer_argument(lowering: Lowering, usage: Element, parameter: Node, value: Node) -> None:
     """Add a binding connector between a parameter of a usage and the features of its value."""
 
     def add_binding() -> None:
-        path = [lowering.element_of(step) for step in nodes.path_of_expression(value)]
+        path = [lowering.elements.find(step) for step in nodes.path_of_expression(value)]
         features = [feature for feature in path if feature is not None]
-        formal = lowering.element_of(nodes.find_target(parameter, "Redefinition"))
+        formal = lowering.elements.find(nodes.find_target(parameter, "Redefinition"))
         if not path or len(features) < len(path) or formal is None:
             construct = "a value of a constraint's parameter"
-            lowering.mark_approximated(parameter, construct, "nothing")
+            lowering.verdicts.mark_approximated(parameter, construct, "nothing")
             return
         graph, owner = lowering.graph, lowering.graph.owner(usage)
         binding = lowering.add_derived(
@@ -118,13 +117,13 @@ def _defer_argument(lowering: "Lowering", usage: Element, parameter: Node, value
             for feature in outer:
                 graph.connect(Edge.PATH, end, feature)
 
-    lowering.defer_until_edges(add_binding)
+    lowering.queue.defer_until_edges(add_binding)
 
 
 # -- requirements ------------------------------------------------------------------------------
 
 
-def lower_requirement(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+def lower_requirement(lowering: Lowering, node: Node, owner: Element | None) -> None:
     """Lower a requirement: its short name is the id, its first documentation the text."""
     if node.membership == "RequirementVerificationMembership":
         _lower_verification(lowering, node, owner)
@@ -146,18 +145,18 @@ def lower_requirement(lowering: "Lowering", node: Node, owner: Element | None) -
     )
     connect_generals(lowering, node, requirement)
     if documentation is not None:
-        lowering.skipped.add(id(documentation))
+        lowering.verdicts.skipped.add(id(documentation))
     for member in nodes.body_of(node):
         _lower_member(lowering, member, requirement)
 
 
-def _lower_member(lowering: "Lowering", node: Node, requirement: Element) -> None:
+def _lower_member(lowering: Lowering, node: Node, requirement: Element) -> None:
     if node.membership == "SubjectMembership":
         lower_subject(lowering, node, requirement)
-        lowering.elements[id(node)] = requirement
+        lowering.elements.own[id(node)] = requirement
     elif node.membership == "RequirementConstraintMembership":
         lower_constraint(lowering, node, requirement)
-        constraint = lowering.element_of(node)
+        constraint = lowering.elements.find(node)
         # A constraint that is no assumption is required without an edge.
         if constraint is not None and node.role == "assumption":
             lowering.graph.connect(Edge.ASSUMES, requirement, constraint)
@@ -165,26 +164,26 @@ def _lower_member(lowering: "Lowering", node: Node, requirement: Element) -> Non
         lowering.lower(node, requirement)
 
 
-def lower_subject(lowering: "Lowering", node: Node, element: Element) -> None:
+def lower_subject(lowering: Lowering, node: Node, element: Element) -> None:
     """Connect a requirement or a use case to the types of its subject."""
-    for type_ in nodes.types_of(lowering, node):
+    for type_ in lowering.trees.types_of(node):
         _defer_subject(lowering, element, type_)
     if node.name:
         lowering.graph.set(element, subject_name=node.name)
     if nodes.value_of(node) is not None:
-        lowering.mark_approximated(node, "the value of a subject", "its type")
+        lowering.verdicts.mark_approximated(node, "the value of a subject", "its type")
 
 
-def _defer_subject(lowering: "Lowering", element: Element, type_: Node) -> None:
-    lowering.defer_until_elements(lambda: lowering.connect_node(Edge.SUBJECT, element, type_))
+def _defer_subject(lowering: Lowering, element: Element, type_: Node) -> None:
+    lowering.queue.defer_until_elements(lambda: lowering.connect_node(Edge.SUBJECT, element, type_))
 
 
 # -- satisfy and verify ------------------------------------------------------------------------
 
 
-def lower_satisfaction(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+def lower_satisfaction(lowering: Lowering, node: Node, owner: Element | None) -> None:
     """Lower a satisfaction by the feature that it names, else by the element that owns it."""
-    package = _find_package(lowering, owner)
+    package = _find_package(lowering.graph, owner)
     facts = _NEGATED_SATISFACTION if node.attributes.get("isNegated") else _SATISFACTION
     satisfaction = lowering.add_element(node, Kind.DEPENDENCY, node.name or "", package, **facts)
     annotations.lower_only_annotations(lowering, node, satisfaction, "a satisfaction")
@@ -193,7 +192,7 @@ def lower_satisfaction(lowering: "Lowering", node: Node, owner: Element | None) 
         or nodes.find_reference(node, "Subsetting")
         or nodes.find_reference(node, "FeatureTyping")
     )
-    lowering.defer_until_elements(
+    lowering.queue.defer_until_elements(
         lambda: lowering.connect_node(Edge.SUPPLIER, satisfaction, _find_requirement(requirement))
     )
     subject = next(nodes.iter_by_membership(node, "SubjectMembership"), None)
@@ -203,12 +202,12 @@ def lower_satisfaction(lowering: "Lowering", node: Node, owner: Element | None) 
     if satisfying is not None and satisfying.membership == "SubjectMembership":
         # Subjects are edges of requirements and no elements that a relation could lead to.
         substitute = "one by the requirement with this subject"
-        lowering.mark_approximated(node, "a satisfaction by a subject", substitute)
+        lowering.verdicts.mark_approximated(node, "a satisfaction by a subject", substitute)
         satisfying = satisfying.owner
     if value is None and owner is not None:
         lowering.graph.connect(Edge.CLIENT, satisfaction, owner)
     else:
-        lowering.defer_until_elements(
+        lowering.queue.defer_until_elements(
             lambda: lowering.connect_node(Edge.CLIENT, satisfaction, satisfying)
         )
 
@@ -226,37 +225,37 @@ def _find_requirement(reference: Reference | None) -> Node | None:
     return target
 
 
-def _find_package(lowering: "Lowering", owner: Element | None) -> Element | None:
+def _find_package(graph: Graph, owner: Element | None) -> Element | None:
     """Return the nearest package: a relation belongs to neither of its ends."""
     while owner is not None and owner.kind not in _PACKAGES:
-        owner = lowering.graph.owner(owner)
+        owner = graph.owner(owner)
     return owner
 
 
-def lower_objective(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+def lower_objective(lowering: Lowering, node: Node, owner: Element | None) -> None:
     """Lower the objective of a case: the requirements that it verifies, and annotations."""
-    lowering.skipped.add(id(node))
+    lowering.verdicts.skipped.add(id(node))
     if nodes.find_reference(node, "FeatureTyping", "ReferenceSubsetting", "Subsetting"):
-        lowering.mark_approximated(node, "the type of an objective", "nothing")
+        lowering.verdicts.mark_approximated(node, "the type of an objective", "nothing")
     for member in nodes.body_of(node):
         if member.membership == "RequirementVerificationMembership":
             _lower_verification(lowering, member, owner)
         elif nodes.is_annotation(member):
             lowering.lower(member, owner)
         elif member.membership != "SubjectMembership":
-            lowering.mark_approximated(member, "a part of an objective", "nothing")
+            lowering.verdicts.mark_approximated(member, "a part of an objective", "nothing")
 
 
-def _lower_verification(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+def _lower_verification(lowering: Lowering, node: Node, owner: Element | None) -> None:
     """Lower the verification of a requirement by the case that contains it."""
-    package = _find_package(lowering, owner)
+    package = _find_package(lowering.graph, owner)
     verification = lowering.add_element(
         node, Kind.DEPENDENCY, node.name or "", package, **_VERIFICATION
     )
     if owner is not None:
         lowering.graph.connect(Edge.CLIENT, verification, owner)
     requirement = nodes.find_reference(node, "ReferenceSubsetting", "FeatureTyping", "Subsetting")
-    lowering.defer_until_elements(
+    lowering.queue.defer_until_elements(
         lambda: lowering.connect_node(Edge.SUPPLIER, verification, _find_requirement(requirement))
     )
     annotations.lower_only_annotations(lowering, node, verification, "a verification")

@@ -1,7 +1,5 @@
 """State machines: states, regions, pseudostates, transitions."""
 
-from typing import TYPE_CHECKING
-
 from sysmlc.frontends.sysml import annotations, expressions, nodes, values
 from sysmlc.frontends.sysml.activities import lower_body
 from sysmlc.frontends.sysml.definitions import (
@@ -11,6 +9,8 @@ from sysmlc.frontends.sysml.definitions import (
     read_kind,
     visibility_attributes,
 )
+from sysmlc.frontends.sysml.implied_nodes import ensure_vertex
+from sysmlc.frontends.sysml.lowering import Lowering
 from sysmlc.frontends.sysml.relations import allocate_arguments
 from sysmlc.frontends.sysml.successions import (
     End,
@@ -20,11 +20,8 @@ from sysmlc.frontends.sysml.successions import (
     reference_of_end,
 )
 from sysmlc.frontends.sysml.triggers import lower_trigger
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.language.tree import Node, Reference
-
-if TYPE_CHECKING:
-    from sysmlc.frontends.sysml.lowering import Lowering
 
 _PSEUDOSTATES = {
     "Choice": "choice",
@@ -49,7 +46,7 @@ _TRANSITIONS = frozenset({"TransitionUsage", "SuccessionAsUsage"})
 # -- state machines ----------------------------------------------------------------------------
 
 
-def lower_state_machine(lowering: "Lowering", node: Node, owner: Element | None) -> Element:
+def lower_state_machine(lowering: Lowering, node: Node, owner: Element | None) -> Element:
     """Lower a state definition, or a state usage that is no part of another state."""
     _, subkind = read_kind(node, Kind.STATE_MACHINE)
     attributes = declaration_attributes(node)
@@ -61,7 +58,7 @@ def lower_state_machine(lowering: "Lowering", node: Node, owner: Element | None)
     return machine
 
 
-def lower_exhibited_machine(lowering: "Lowering", node: Node, owner: Element) -> None:
+def lower_exhibited_machine(lowering: Lowering, node: Node, owner: Element) -> None:
     """Lower what a classifier exhibits: its own state machine, or one defined elsewhere."""
     has_states = any(member.kind in _STATES for member in nodes.body_of(node))
     reference = _find_behaviour_reference(node)
@@ -79,7 +76,7 @@ def _find_behaviour_reference(node: Node) -> Reference | None:
     return nodes.find_reference(node, "ReferenceSubsetting", "FeatureTyping", "Subsetting")
 
 
-def _lower_content(lowering: "Lowering", node: Node, state: Element) -> None:
+def _lower_content(lowering: Lowering, node: Node, state: Element) -> None:
     """Lower the members of a state or state machine: vertices belong to its regions."""
     body = nodes.body_of(node)
     if node.attributes.get("isParallel"):
@@ -99,7 +96,7 @@ def _lower_content(lowering: "Lowering", node: Node, state: Element) -> None:
         _lower_vertices(lowering, node, region)
 
 
-def _lower_parallel_state(lowering: "Lowering", node: Node, owner: Element) -> None:
+def _lower_parallel_state(lowering: Lowering, node: Node, owner: Element) -> None:
     """Lower a state of a parallel state to a region with its substates.
 
     A state with subactions or parallel substates, or without substates, is itself the only state of
@@ -113,12 +110,12 @@ def _lower_parallel_state(lowering: "Lowering", node: Node, owner: Element) -> N
     is_state = has_subactions or not has_substates or node.attributes.get("isParallel")
     if is_state and not is_marked:
         state = lower_state(lowering, node, region)
-        start = lowering.ensure_vertex(region, "start", node)
+        start = ensure_vertex(lowering, region, "start", node)
         transition = lowering.add_derived(node, Kind.TRANSITION, "", region)
         lowering.graph.connect(Edge.FLOW_SOURCE, transition, start)
         lowering.graph.connect(Edge.FLOW_TARGET, transition, state)
         return
-    lowering.elements[id(node)] = region
+    lowering.elements.own[id(node)] = region
     for member in body:
         if not _belongs_to_region(member) and not _is_subaction(member):
             lowering.lower(member, region)
@@ -147,7 +144,7 @@ def _is_empty(subaction: Node) -> bool:
 # -- states and what they do -------------------------------------------------------------------
 
 
-def lower_state(lowering: "Lowering", node: Node, region: Element) -> Element:
+def lower_state(lowering: Lowering, node: Node, region: Element) -> Element:
     """Lower a state with its behaviours and substates; a keyword may make it a pseudostate."""
     for keyword in nodes.shipped_metadata_of(node):
         if keyword in _PSEUDOSTATES:
@@ -162,7 +159,7 @@ def lower_state(lowering: "Lowering", node: Node, region: Element) -> Element:
     return state
 
 
-def _lower_pseudostate(lowering: "Lowering", node: Node, region: Element, subkind: str) -> Element:
+def _lower_pseudostate(lowering: Lowering, node: Node, region: Element, subkind: str) -> Element:
     """Lower a pseudostate; a connection point belongs to the state that owns the region."""
     owner = lowering.graph.owner(region) if subkind in _CONNECTION_POINTS else region
     pseudostate = lowering.add_element(
@@ -177,14 +174,14 @@ def _lower_pseudostate(lowering: "Lowering", node: Node, region: Element, subkin
     return pseudostate
 
 
-def _lower_subactions(lowering: "Lowering", node: Node, state: Element) -> None:
+def _lower_subactions(lowering: Lowering, node: Node, state: Element) -> None:
     for member in node.members:
         if _is_subaction(member):
             edge = _SUBACTION_EDGES.get(member.role, Edge.DO)
             _lower_behaviour(lowering, member, state, edge)
 
 
-def _lower_behaviour(lowering: "Lowering", node: Node, owner: Element, edge: Edge) -> None:
+def _lower_behaviour(lowering: Lowering, node: Node, owner: Element, edge: Edge) -> None:
     """Lower a behaviour of a state or a transition: its own, or one defined elsewhere."""
     if expressions.read_statement(node) is not None:
         name = node.name or ""
@@ -194,7 +191,7 @@ def _lower_behaviour(lowering: "Lowering", node: Node, owner: Element, edge: Edg
         return
     reference = _find_behaviour_reference(node)
     if _is_empty(node):
-        lowering.skipped.add(id(node))
+        lowering.verdicts.skipped.add(id(node))
     elif reference is not None and not nodes.body_of(node):
         lowering.connect_reference(edge, owner, reference)
     else:
@@ -202,10 +199,10 @@ def _lower_behaviour(lowering: "Lowering", node: Node, owner: Element, edge: Edg
         lowering.graph.connect(edge, owner, behaviour)
 
 
-def _lower_own_behaviour(lowering: "Lowering", node: Node, owner: Element) -> Element:
+def _lower_own_behaviour(lowering: Lowering, node: Node, owner: Element) -> Element:
     if node.kind == "TerminateActionUsage":
         # It ends the state itself or what it names; the grammar of effects cannot express this.
-        lowering.mark_approximated(
+        lowering.verdicts.mark_approximated(
             node, "a terminate action of a state or a transition", "an action without effect"
         )
     body, name = nodes.body_of(node), node.name or ""
@@ -226,7 +223,7 @@ def _lower_own_behaviour(lowering: "Lowering", node: Node, owner: Element) -> El
 # -- transitions -------------------------------------------------------------------------------
 
 
-def _lower_vertices(lowering: "Lowering", node: Node, region: Element) -> None:
+def _lower_vertices(lowering: Lowering, node: Node, region: Element) -> None:
     """Lower the states and transitions of a region in the order of the text.
 
     A transition without a source leaves the state before it.
@@ -256,7 +253,7 @@ def _lower_vertices(lowering: "Lowering", node: Node, region: Element) -> None:
         elif waiting:
             # A `then` stands before its target, and only states are vertices.
             _, succession = waiting.pop()
-            lowering.mark_unsupported(succession)
+            lowering.verdicts.mark_unsupported(succession)
 
 
 def _read_ends(succession: Node) -> tuple[Reference | None, Reference | None]:
@@ -267,16 +264,16 @@ def _read_ends(succession: Node) -> tuple[Reference | None, Reference | None]:
 
 
 def _lower_succession(
-    lowering: "Lowering", node: Node, region: Element, source: End, target: End
+    lowering: Lowering, node: Node, region: Element, source: End, target: End
 ) -> None:
     """Lower a succession between states to a transition without trigger."""
     _add_mentioned_vertex(lowering, region, source, node)
     _add_mentioned_vertex(lowering, region, target, node)
     transition = lowering.add_element(node, Kind.TRANSITION, node.name or "", region)
-    lowering.defer_until_edges(lambda: _connect_ends(lowering, transition, source, target))
+    lowering.queue.defer_until_edges(lambda: _connect_ends(lowering, transition, source, target))
 
 
-def _lower_transition(lowering: "Lowering", node: Node, region: Element, previous: End) -> None:
+def _lower_transition(lowering: Lowering, node: Node, region: Element, previous: End) -> None:
     """Lower a transition with its trigger, guard and effect."""
     _, subkind = read_kind(node, Kind.TRANSITION)
     source = nodes.find_reference(node, "Membership") or previous
@@ -287,7 +284,7 @@ def _lower_transition(lowering: "Lowering", node: Node, region: Element, previou
     )
     guard = guard_of(node)
     if guard is not None:
-        lowering.defer_until_elements(
+        lowering.queue.defer_until_elements(
             lambda: values.set_expression(lowering, transition, "guard", guard)
         )
     target: End = None
@@ -300,18 +297,18 @@ def _lower_transition(lowering: "Lowering", node: Node, region: Element, previou
             target = _read_ends(member)[1] or target
         elif nodes.is_annotation(member) or member.kind.endswith("ConstraintUsage"):
             lowering.lower(member, transition)
-    lowering.defer_until_edges(lambda: _connect_ends(lowering, transition, source, target))
+    lowering.queue.defer_until_edges(lambda: _connect_ends(lowering, transition, source, target))
 
 
-def _add_mentioned_vertex(lowering: "Lowering", region: Element, end: End, node: Node) -> None:
+def _add_mentioned_vertex(lowering: Lowering, region: Element, end: End, node: Node) -> None:
     """Add the initial or final vertex of a region if the end names it; *node* is its location."""
-    if isinstance(end, Reference) and is_own_end(lowering, end):
-        lowering.ensure_vertex(region, nodes.last_name(end), node)
+    if isinstance(end, Reference) and is_own_end(lowering.trees, end):
+        ensure_vertex(lowering, region, nodes.last_name(end), node)
     elif isinstance(end, Node) and _is_subaction(end):
-        lowering.ensure_vertex(region, "start", node)
+        ensure_vertex(lowering, region, "start", node)
 
 
-def _connect_ends(lowering: "Lowering", transition: Element, source: End, target: End) -> None:
+def _connect_ends(lowering: Lowering, transition: Element, source: End, target: End) -> None:
     region = lowering.graph.owner(transition)
     assert region is not None
     for edge, end in ((Edge.FLOW_SOURCE, source), (Edge.FLOW_TARGET, target)):
@@ -322,26 +319,26 @@ def _connect_ends(lowering: "Lowering", transition: Element, source: End, target
             lowering.graph.connect(edge, transition, vertex)
 
 
-def _find_vertex(lowering: "Lowering", region: Element, end: End) -> Element | None:
+def _find_vertex(lowering: Lowering, region: Element, end: End) -> Element | None:
     """Return the vertex that an end means: a state, or the start or the end of a region."""
     if end is None:
         return None
     target = end if isinstance(end, Node) else end.target
     if target is not None and _is_subaction(target):
-        return lowering.ensure_vertex(region, "start")
-    if isinstance(end, Node) or not is_start_or_done(lowering, end):
-        return lowering.element_of(target)
+        return ensure_vertex(lowering, region, "start")
+    if isinstance(end, Node) or not is_start_or_done(lowering.trees, end):
+        return lowering.elements.find(target)
     holders = (end.targets or [])[:-1]
-    holder = lowering.element_of(holders[-1]) if holders and len(end.chain) > 1 else None
-    inner_region = region if holder is None else _find_region(lowering, holder)
+    holder = lowering.elements.find(holders[-1]) if holders and len(end.chain) > 1 else None
+    inner_region = region if holder is None else _find_region(lowering.graph, holder)
     if inner_region is None:
         return None
-    return lowering.ensure_vertex(inner_region, nodes.last_name(end))
+    return ensure_vertex(lowering, inner_region, nodes.last_name(end))
 
 
-def _find_region(lowering: "Lowering", holder: Element) -> Element | None:
+def _find_region(graph: Graph, holder: Element) -> Element | None:
     """Return a region itself, or the first region of a state."""
     if holder.kind is Kind.REGION:
         return holder
-    members = lowering.graph.owned(holder)
+    members = graph.owned(holder)
     return next((member for member in members if member.kind is Kind.REGION), None)

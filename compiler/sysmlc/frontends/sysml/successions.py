@@ -2,15 +2,15 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 from sysmlc.frontends.sysml import annotations, nodes, values
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.frontends.sysml.elements import NodeElements
+from sysmlc.frontends.sysml.implied_nodes import ensure_control_node
+from sysmlc.frontends.sysml.lowering import Lowering
+from sysmlc.frontends.sysml.trees import Trees
+from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.language.metaclasses import is_a
 from sysmlc.language.tree import Node, Reference
-
-if TYPE_CHECKING:
-    from sysmlc.frontends.sysml.lowering import Lowering
 
 End = Node | Reference | None
 """An end of a succession: a step beside it in the text, the name of a step, or none."""
@@ -41,7 +41,7 @@ class _Body:
 
 
 def lower_steps(
-    lowering: "Lowering",
+    lowering: Lowering,
     members: Iterable[Node],
     owner: Element,
     entry_and_exit: list[Element] | None = None,
@@ -71,10 +71,10 @@ def lower_steps(
             elif body.waiting:
                 # A `then` stands before its target, which is no step of the graph.
                 _, succession = body.waiting.pop()
-                lowering.mark_unsupported(succession)
+                lowering.verdicts.mark_unsupported(succession)
 
 
-def _lower_succession(lowering: "Lowering", node: Node, body: _Body) -> None:
+def _lower_succession(lowering: Lowering, node: Node, body: _Body) -> None:
     """Lower a succession; an end that is not stated is the step before or after it."""
     ends = nodes.ends_of(node)
     source, target = map(reference_of_end, ends[:2]) if len(ends) > 1 else (None, None)
@@ -89,7 +89,7 @@ def reference_of_end(end: Node) -> Reference | None:
     return nodes.find_reference(end, "ReferenceSubsetting", "Subsetting")
 
 
-def _lower_guarded_succession(lowering: "Lowering", node: Node, body: _Body) -> None:
+def _lower_guarded_succession(lowering: Lowering, node: Node, body: _Body) -> None:
     """Lower a guarded succession. A succession without a guard gets the guard ``else``."""
     source = nodes.find_reference(node, "Membership") or body.previous
     succession = next(nodes.iter_by_metaclass(node, *SUCCESSIONS), None)
@@ -107,7 +107,7 @@ def guard_of(transition: Node) -> Node | None:
 # -- control flows -----------------------------------------------------------------------------
 
 
-def defer_implied_start(lowering: "Lowering", node: Node, owner: Element, entry: Element) -> None:
+def defer_implied_start(lowering: Lowering, node: Node, owner: Element, entry: Element) -> None:
     """Add a flow from the start of the behaviour if no other node of it leads to *entry*.
 
     Flows of the structure itself, such as that back to the entry of a loop, do not count. A loop
@@ -117,18 +117,18 @@ def defer_implied_start(lowering: "Lowering", node: Node, owner: Element, entry:
 
     def connect_start() -> None:
         flows = lowering.graph.sources(entry, Edge.FLOW_TARGET)
-        if all(lowering.origin_of(flow) is node for flow in flows):
-            start = lowering.ensure_control_node(owner, "start")
+        if all(lowering.elements.origins.get(flow.id) is node for flow in flows):
+            start = ensure_control_node(lowering, owner, "start")
             flow = lowering.add_derived(node, Kind.CONTROL_FLOW, "", owner)
             lowering.graph.connect(Edge.FLOW_SOURCE, flow, start)
             lowering.graph.connect(Edge.FLOW_TARGET, flow, entry)
 
     # Deferred twice: blocks around this node add their flows in the first round.
-    lowering.defer_until_edges(lambda: lowering.defer_until_edges(connect_start))
+    lowering.queue.defer_until_edges(lambda: lowering.queue.defer_until_edges(connect_start))
 
 
 def _add_flow(
-    lowering: "Lowering",
+    lowering: Lowering,
     body: _Body,
     node: Node,
     source: End,
@@ -136,8 +136,10 @@ def _add_flow(
     guard: Node | str | None = None,
 ) -> None:
     """Add a control flow for a succession; metadata may make it an object flow."""
-    if _is_action_of_package(lowering, source) or _is_action_of_package(lowering, target):
-        lowering.mark_unsupported(node)
+    if _is_action_of_package(lowering.trees, source) or _is_action_of_package(
+        lowering.trees, target
+    ):
+        lowering.verdicts.mark_unsupported(node)
         return
     _add_mentioned_end(lowering, body, source, node)
     _add_mentioned_end(lowering, body, target, node)
@@ -147,32 +149,36 @@ def _add_flow(
     if isinstance(guard, str):
         lowering.set_attributes(flow, guard=guard)
     elif guard is not None:
-        lowering.defer_until_elements(lambda: values.set_expression(lowering, flow, "guard", guard))
+        lowering.queue.defer_until_elements(
+            lambda: values.set_expression(lowering, flow, "guard", guard)
+        )
     lowering.lower_annotations(node, flow)
-    lowering.defer_until_edges(lambda: _connect_ends(lowering, flow, (source, target), body))
+    lowering.queue.defer_until_edges(lambda: _connect_ends(lowering, flow, (source, target), body))
     if is_object_flow:
-        lowering.defer_until_edges(lambda: _move_ends_to_pins(lowering, node, flow))
+        lowering.queue.defer_until_edges(
+            lambda: _move_ends_to_pins(lowering.graph, lowering.elements, node, flow)
+        )
     if guard is not None:
         # Deferred twice: all flows must have their targets.
-        lowering.defer_until_edges(
-            lambda: lowering.defer_until_edges(lambda: _add_merge(lowering, flow))
+        lowering.queue.defer_until_edges(
+            lambda: lowering.queue.defer_until_edges(lambda: _add_merge(lowering, flow))
         )
 
 
-def _move_ends_to_pins(lowering: "Lowering", node: Node, flow: Element) -> None:
+def _move_ends_to_pins(graph: Graph, elements: NodeElements, node: Node, flow: Element) -> None:
     """Move the ends of an object flow from steps to the pins that metadata names."""
     for key, edge in (("source", Edge.FLOW_SOURCE), ("target", Edge.FLOW_TARGET)):
-        step = lowering.graph.target(flow, edge)
+        step = graph.target(flow, edge)
         name = annotations.metadata_value(node, "ObjectFlow", key)
-        members = [] if step is None or not name else lowering.graph.owned(step)
+        members = [] if step is None or not name else graph.owned(step)
         pins = (member for member in members if member.kind is Kind.PIN)
-        pin = next((pin for pin in pins if lowering.text_name_of(pin) == name), None)
+        pin = next((pin for pin in pins if elements.text_name_of(pin) == name), None)
         if step is not None and pin is not None:
-            lowering.graph.disconnect(edge, flow, step)
-            lowering.graph.connect(edge, flow, pin)
+            graph.disconnect(edge, flow, step)
+            graph.connect(edge, flow, pin)
 
 
-def _add_merge(lowering: "Lowering", guarded_flow: Element) -> None:
+def _add_merge(lowering: Lowering, guarded_flow: Element) -> None:
     """Add a merge before the target of a guarded flow if other control flows lead there, too.
 
     A guarded succession that is not taken does not occur (SysML 2.0, 8.4.13.5); the step waits for
@@ -200,9 +206,9 @@ def _add_merge(lowering: "Lowering", guarded_flow: Element) -> None:
     lowering.graph.connect(Edge.FLOW_TARGET, merged_flow, step)
 
 
-def _connect_ends(lowering: "Lowering", flow: Element, ends: tuple[End, End], body: _Body) -> None:
+def _connect_ends(lowering: Lowering, flow: Element, ends: tuple[End, End], body: _Body) -> None:
     for edge, end in zip((Edge.FLOW_SOURCE, Edge.FLOW_TARGET), ends, strict=True):
-        if body.entry_and_exit and isinstance(end, Reference) and is_own_end(lowering, end):
+        if body.entry_and_exit and isinstance(end, Reference) and is_own_end(lowering.trees, end):
             entry, exit_ = body.entry_and_exit
             node: Element | None = exit_ if nodes.last_name(end) == "done" else entry
         else:
@@ -216,50 +222,54 @@ def _connect_ends(lowering: "Lowering", flow: Element, ends: tuple[End, End], bo
 
 
 def _find_flow_node(
-    lowering: "Lowering", owner: Element, end: End, *, is_target: bool
+    lowering: Lowering, owner: Element, end: End, *, is_target: bool
 ) -> Element | None:
     """Return the node of an activity that an end of a succession means."""
     if end is None:
         return None
     if isinstance(end, Node):
-        return lowering.flow_node_of(end, is_target=is_target)
-    if is_start_or_done(lowering, end):
+        return lowering.elements.flow_node_of(end, is_target=is_target)
+    if is_start_or_done(lowering.trees, end):
         holders = (end.targets or [])[:-1]
         has_holder = holders and len(end.chain) > 1
-        holder = lowering.element_of(holders[-1]) if has_holder else owner
+        holder = lowering.elements.find(holders[-1]) if has_holder else owner
         if holder is None:
             return None
-        return lowering.ensure_control_node(holder, nodes.last_name(end))
+        return ensure_control_node(lowering, holder, nodes.last_name(end))
     target = end.target
-    return None if target is None else lowering.flow_node_of(target, is_target=is_target)
+    return None if target is None else lowering.elements.flow_node_of(target, is_target=is_target)
 
 
 # -- starts and ends ---------------------------------------------------------------------------
 
 
-def _is_action_of_package(lowering: "Lowering", end: End) -> bool:
+def _is_action_of_package(trees: Trees, end: End) -> bool:
     """Whether an end is an action of a package, which is no step of any behaviour."""
     if not isinstance(end, Reference) or len(end.chain) > 1 or end.target is None:
         return False
     owner = end.target.owner
     is_in_package = owner is not None and (owner.kind == "Namespace" or is_a(owner.kind, "Package"))
-    return is_in_package and not is_start_or_done(lowering, end)
+    return is_in_package and not is_start_or_done(trees, end)
 
 
-def _add_mentioned_end(lowering: "Lowering", body: _Body, end: End, node: Node) -> None:
+def _add_mentioned_end(lowering: Lowering, body: _Body, end: End, node: Node) -> None:
     """Add the initial or final node of a behaviour if the end names it; *node* is its location."""
-    if body.entry_and_exit is None and isinstance(end, Reference) and is_own_end(lowering, end):
-        lowering.ensure_control_node(body.owner, nodes.last_name(end), node)
+    if (
+        body.entry_and_exit is None
+        and isinstance(end, Reference)
+        and is_own_end(lowering.trees, end)
+    ):
+        ensure_control_node(lowering, body.owner, nodes.last_name(end), node)
 
 
-def is_own_end(lowering: "Lowering", reference: Reference) -> bool:
+def is_own_end(trees: Trees, reference: Reference) -> bool:
     """Whether a reference is ``start`` or ``done`` of the behaviour that contains it."""
-    return len(reference.chain) == 1 and is_start_or_done(lowering, reference)
+    return len(reference.chain) == 1 and is_start_or_done(trees, reference)
 
 
-def is_start_or_done(lowering: "Lowering", reference: Reference) -> bool:
+def is_start_or_done(trees: Trees, reference: Reference) -> bool:
     """Whether a reference is the start or the end that every behaviour inherits."""
     if nodes.last_name(reference) not in ("start", "done"):
         return False
     target = reference.target
-    return target is None or lowering.document_of(target) is None
+    return target is None or trees.document_of(target) is None

@@ -1,9 +1,7 @@
 """A compile unit: its documents are analysed together, lowered one by one and accounted for."""
 
-from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from itertools import chain, pairwise
-from operator import attrgetter
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from sysmlc.diagnostics import Coverage, Sink, Verdict
@@ -11,10 +9,13 @@ from sysmlc.frontends.sysml import nodes
 from sysmlc.frontends.sysml.coverage import count_verdicts, describe_loss
 from sysmlc.frontends.sysml.declarations import store_declarations
 from sysmlc.frontends.sysml.definitions import variation_attributes
+from sysmlc.frontends.sysml.elements import NodeElements
 from sysmlc.frontends.sysml.handlers import HANDLERS
+from sysmlc.frontends.sysml.implied_nodes import mark_flow_finals
 from sysmlc.frontends.sysml.lowering import Lowering
 from sysmlc.frontends.sysml.object_nodes import ensure_pin
 from sysmlc.frontends.sysml.rules import APPROXIMATED, UNSUPPORTED
+from sysmlc.frontends.sysml.trees import Trees
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.query.activities import pin_subkind
 from sysmlc.language.library import SHIPPED
@@ -24,10 +25,7 @@ from sysmlc.support.interpreter import allow_recursion
 if TYPE_CHECKING:
     from sysmlc.language.names import Model
 
-NodesByKind = Mapping[str, Sequence[Node]]
-_FLOWS = ("FlowUsage", "SuccessionFlowUsage", "Flow", "SuccessionFlow")
 _PACKAGES = (Kind.PACKAGE, Kind.PROFILE)
-_list_members = attrgetter("members")
 
 
 def lower_unit(
@@ -38,114 +36,33 @@ def lower_unit(
     coverage: Coverage,
 ) -> None:
     """Add the elements of all documents to the graph and count the verdict of every node."""
-    lowering = Lowering(documents, model, graph, sink, HANDLERS)
-    indexes, depth = [], 0
-    for document in documents:
-        index, levels = _index_by_kind(document.root)
-        lowering.assign_document(document, chain.from_iterable(index.values()))
-        indexes.append(index)
-        depth = max(depth, levels)
-    nodes_by_kind = _merge_indexes(indexes)
-    lowering.signals = _find_signals(nodes_by_kind)
-    lowering.flow_features = _find_flow_features(nodes_by_kind)
+    trees = Trees(documents, model)
+    lowering = Lowering(trees, graph, sink, HANDLERS)
     # Deferred work, such as that of ends of connections, recurs as deep as the lowering.
-    with allow_recursion(depth):
-        for root in lowering.roots:
+    with allow_recursion(trees.depth):
+        for root in trees.roots:
             lowering.lower_all(root.members, None)
-        lowering.defer_until_edges(lambda: _add_pins_of_chains(lowering, nodes_by_kind))
-        lowering.finish()
-    lowering.mark_flow_finals()
-    store_declarations(lowering, depth)
+        lowering.queue.defer_until_edges(lambda: _add_pins_of_chains(lowering))
+        lowering.queue.run()
+    lowering.library.finish()
+    mark_flow_finals(lowering)
+    store_declarations(lowering)
     _set_pin_subkinds(graph)
-    report_losses(lowering)
+    _report_losses(lowering)
     _relate_errors(lowering)
-    for document, index in zip(documents, indexes, strict=True):
+    for document, index in zip(documents, trees.indexes, strict=True):
         if not document.path.startswith(SHIPPED):
-            count_verdicts(lowering, document, index, coverage)
-
-
-# -- analysis before the lowering --------------------------------------------------------------
-
-
-def _index_by_kind(root: Node) -> tuple[NodesByKind, int]:
-    """Return the nodes of a document by metaclass, owners first, and the depth of the tree."""
-    index: dict[str, list[Node]] = defaultdict(list)
-    depth, level = 0, [root]
-    while level:
-        for node in level:
-            index[node.kind].append(node)
-        depth, level = depth + 1, list(chain.from_iterable(map(_list_members, level)))
-    return index, depth
-
-
-def _merge_indexes(indexes: Iterable[NodesByKind]) -> NodesByKind:
-    """Return the nodes of all documents by metaclass, one document after the other."""
-    merged: dict[str, list[Node]] = {}
-    for index in indexes:
-        for kind, members in index.items():
-            merged.setdefault(kind, []).extend(members)
-    return merged
-
-
-def _find_signals(nodes_by_kind: NodesByKind) -> set[int]:
-    """Return the identities of the definitions that are signals.
-
-    A signal is sent or accepted, or it is an item definition that types no feature.
-    """
-    signals = {id(definition) for definition in _iter_payload_types(nodes_by_kind)}
-    items = {id(definition) for definition in nodes_by_kind.get("ItemDefinition", ())}
-    if not items:
-        return signals
-    return signals | (items - {id(type_) for type_ in _iter_feature_types(nodes_by_kind)})
-
-
-def _find_flow_features(nodes_by_kind: NodesByKind) -> set[int]:
-    """Return the identities of the features at which flows start or end."""
-    flows = (flow for kind in _FLOWS for flow in nodes_by_kind.get(kind, ()))
-    paths = (nodes.path_of_end(end) for flow in flows for end in nodes.ends_of(flow))
-    return {id(path[-1]) for path in paths if path and path[-1] is not None}
-
-
-def _iter_payload_types(nodes_by_kind: NodesByKind) -> Iterator[Node]:
-    """Yield the types that accept actions accept, expressions instantiate, and messages carry."""
-    for node in nodes_by_kind.get("AcceptActionUsage", ()):
-        for parameter in nodes.iter_by_membership(node, "ParameterMembership"):
-            yield from _iter_targets(parameter, "FeatureTyping")
-    for kind in ("ConstructorExpression", "InvocationExpression"):
-        for node in nodes_by_kind.get(kind, ()):
-            yield from _iter_targets(node, "Membership", "FeatureTyping")
-    for message in filter(nodes.is_message, nodes_by_kind.get("FlowUsage", ())):
-        for member in message.members:
-            yield from _iter_targets(member, "FeatureTyping")
-
-
-def _iter_feature_types(nodes_by_kind: NodesByKind) -> Iterator[Node]:
-    """Yield the types of usages, except for payloads of accept actions."""
-    for kind, features in nodes_by_kind.items():
-        if kind.endswith("Usage") or kind == "PayloadFeature":
-            for feature in features:
-                if kind == "PayloadFeature" or not _is_accepted_payload(feature):
-                    yield from _iter_targets(feature, "FeatureTyping")
-
-
-def _is_accepted_payload(node: Node) -> bool:
-    owner = node.owner
-    return owner is not None and owner.kind == "AcceptActionUsage"
-
-
-def _iter_targets(node: Node, *kinds: str) -> Iterator[Node]:
-    for reference in nodes.list_references(node, *kinds):
-        if reference.target is not None:
-            yield reference.target
+            count_verdicts(lowering.verdicts, lowering.elements.own, document, index, coverage)
 
 
 # -- pins --------------------------------------------------------------------------------------
 
 
-def _add_pins_of_chains(lowering: Lowering, nodes_by_kind: NodesByKind) -> None:
+def _add_pins_of_chains(lowering: Lowering) -> None:
     """Add output pins of steps whose values feature chains read, such as ``pick.ok``."""
+    nodes_by_kind = lowering.trees.nodes_by_kind
     for node in sorted(nodes_by_kind.get("FeatureChainExpression", ()), key=_member_indexes):
-        path = (lowering.element_of(feature) for feature in nodes.path_of_expression(node))
+        path = (lowering.elements.find(feature) for feature in nodes.path_of_expression(node))
         for step, feature in pairwise(path):
             if step is None or feature is None or step.kind is not Kind.ACTION:
                 continue
@@ -181,7 +98,7 @@ def _relate_errors(lowering: Lowering) -> None:
     metadata. Any other error concerns the whole definition or usage in the package that contains
     it, or the package itself.
     """
-    documents = {document.path: document for document in lowering.documents}
+    documents = {document.path: document for document in lowering.trees.documents}
     for diagnostic in list(lowering.sink):
         place = diagnostic.subject.place
         document = None if place is None else documents.get(place.file)
@@ -190,16 +107,16 @@ def _relate_errors(lowering: Lowering) -> None:
         if diagnostic.subject.id or not diagnostic.is_error:
             continue
         character = document.byte_offsets.character_at(place.offset)
-        element = _find_element_at(lowering, document.root, character)
+        element = _find_element_at(lowering.elements, document.root, character)
         if element is not None:
             lowering.sink.set_element(diagnostic, element.id)
 
 
-def _find_element_at(lowering: Lowering, root: Node, offset: int) -> Element | None:
+def _find_element_at(elements: NodeElements, root: Node, offset: int) -> Element | None:
     """Return the stereotype application at an offset, else the outermost element in a package."""
     outermost: Element | None = None
     for node in _iter_nodes_at(root, offset):
-        element = lowering.elements.get(id(node))
+        element = elements.own.get(id(node))
         if element is None:
             continue
         if element.kind is Kind.APPLICATION:
@@ -220,7 +137,6 @@ def _iter_nodes_at(root: Node, offset: int) -> Iterator[Node]:
 
 
 # -- unread members --------------------------------------------------------------------------------
-
 
 _WITHOUT_CONTENT = frozenset({Verdict.UNSUPPORTED, Verdict.EXTERNAL, Verdict.IGNORED_NOTATION})
 """Verdicts that hold for all members, too."""
@@ -257,15 +173,17 @@ _VARIANT = "VariantMembership"
 _END = "EndFeatureMembership"
 
 
-def report_losses(lowering: Lowering) -> None:
+def _report_losses(lowering: Lowering) -> None:
     """Report what the graph does not represent, with one diagnostic for each kind of loss."""
     _mark_unread_members(lowering)
-    for construct, approximation, nodes_of_loss in lowering.iter_losses():
+    for construct, approximation, nodes_of_loss in lowering.verdicts.iter_losses():
         # A member that is not allowed in its owner is reported already.
-        lost = [node for node in nodes_of_loss if not lowering.is_misplaced(node)]
+        lost = [
+            node for node in nodes_of_loss if not lowering.trees.is_misplaced(node, lowering.sink)
+        ]
         if not lost:
             continue
-        count, subject = len(lost), lowering.subject_of(lost[0])
+        count, subject = len(lost), lowering.trees.subject_of(lost[0])
         if construct:
             loss = describe_loss(construct, approximation)
             lowering.sink.report(APPROXIMATED, subject, count=count, loss=loss)
@@ -276,18 +194,23 @@ def report_losses(lowering: Lowering) -> None:
 
 def _mark_unread_members(lowering: Lowering) -> None:
     """Mark the members that no handler lowered or read as approximated by nothing."""
-    accounted = lowering.lowered.union(
-        lowering.verdicts, lowering.skipped, lowering.redundant, lowering.elements
+    accounted = lowering.verdicts.lowered.union(
+        lowering.verdicts.by_node,
+        lowering.verdicts.skipped,
+        lowering.elements.redundant,
+        lowering.elements.own,
     )
     closed = {
-        node_id for node_id, verdict in lowering.verdicts.items() if verdict in _WITHOUT_CONTENT
+        node_id
+        for node_id, verdict in lowering.verdicts.by_node.items()
+        if verdict in _WITHOUT_CONTENT
     }
-    for root in lowering.roots:
+    for root in lowering.trees.roots:
         for node in _iter_unread(lowering, root, accounted, closed):
             assert node.owner is not None
             owner = nodes.add_article(nodes.spell_metaclass(node.owner.kind))
             part = "the multiplicity" if node.kind == "MultiplicityRange" else "a member"
-            lowering.mark_approximated(node, f"{part} of {owner}", "nothing")
+            lowering.verdicts.mark_approximated(node, f"{part} of {owner}", "nothing")
 
 
 def _iter_unread(
@@ -300,7 +223,7 @@ def _iter_unread(
         for member in reversed(owner.members):
             if member.kind in nodes.EXPRESSIONS:
                 continue
-            if id(member) not in accounted and not _is_read(lowering, member, owner):
+            if id(member) not in accounted and not _is_read(lowering.elements, member, owner):
                 yield member
             elif id(member) not in closed:
                 if member.members:
@@ -308,7 +231,7 @@ def _iter_unread(
                 variation = _find_lost_variation(lowering, member)
                 if variation:
                     construct = nodes.add_article(variation)
-                    lowering.mark_approximated(member, construct, "a plain usage")
+                    lowering.verdicts.mark_approximated(member, construct, "a plain usage")
 
 
 def _find_lost_variation(lowering: Lowering, node: Node) -> str:
@@ -316,7 +239,7 @@ def _find_lost_variation(lowering: Lowering, node: Node) -> str:
     is_plain = _VARIATION_ATTRIBUTES.isdisjoint(node.attributes) and node.membership != _VARIANT
     if is_plain or node.kind == "EnumerationUsage":
         return ""
-    elements = (lowering.elements.get(id(node)), lowering.usage_classes.get(id(node)))
+    elements = (lowering.elements.own.get(id(node)), lowering.elements.usage_classes.get(id(node)))
     lost = [
         key
         for key, value in variation_attributes(node).items()
@@ -327,30 +250,30 @@ def _find_lost_variation(lowering: Lowering, node: Node) -> str:
     return lost[0] if lost else ""
 
 
-def _is_read(lowering: Lowering, node: Node, owner: Node) -> bool:
+def _is_read(elements: NodeElements, node: Node, owner: Node) -> bool:
     """Whether the handler of the owner has read a member that was not lowered by itself."""
     if node.membership == _END or node.kind in _READ_MEMBERS.get(owner.kind, ()):
         return True
     if node.kind == "MultiplicityRange":
-        return _has_multiplicity(lowering, owner)
+        return _has_multiplicity(elements, owner)
     if node.membership == "ParameterMembership" and owner.kind in _READ_PARAMETERS:
         return True
-    return _is_in_body(lowering, node, owner) or _is_fact_of_owner(node, owner)
+    return _is_in_body(elements, node, owner) or _is_fact_of_owner(node, owner)
 
 
-def _has_multiplicity(lowering: Lowering, feature: Node) -> bool:
+def _has_multiplicity(elements: NodeElements, feature: Node) -> bool:
     """Whether the multiplicity of a feature is an attribute of its element."""
-    element = lowering.elements.get(id(feature))
+    element = elements.own.get(id(feature))
     is_counted = element is not None and element.kind in _WITH_MULTIPLICITY
     return nodes.is_end(feature) or feature.kind == "Feature" or is_counted
 
 
-def _is_in_body(lowering: Lowering, node: Node, owner: Node) -> bool:
+def _is_in_body(elements: NodeElements, node: Node, owner: Node) -> bool:
     """Whether an action is part of the text that is the body of an opaque behaviour."""
     behaviour = owner
-    while behaviour.owner is not None and id(behaviour) not in lowering.elements:
+    while behaviour.owner is not None and id(behaviour) not in elements.own:
         behaviour = behaviour.owner
-    element = lowering.elements.get(id(behaviour))
+    element = elements.own.get(id(behaviour))
     return element is not None and "body" in element.attrs and node.kind.endswith("ActionUsage")
 
 

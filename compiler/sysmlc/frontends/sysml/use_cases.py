@@ -1,36 +1,32 @@
 """Use cases: subject, actors, inclusions, extension points."""
 
-from typing import TYPE_CHECKING
-
 from sysmlc.frontends.sysml import nodes
 from sysmlc.frontends.sysml.definitions import lower_definition
+from sysmlc.frontends.sysml.lowering import Lowering
 from sysmlc.frontends.sysml.requirements import lower_objective, lower_subject
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.language.tree import Node
 
-if TYPE_CHECKING:
-    from sysmlc.frontends.sysml.lowering import Lowering
 
-
-def lower_use_case(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+def lower_use_case(lowering: Lowering, node: Node, owner: Element | None) -> None:
     """Lower a use case definition or usage."""
     special = [member for member in nodes.body_of(node) if member.membership in _MEMBER_HANDLERS]
-    lowering.skipped.update(id(member) for member in special)
+    lowering.verdicts.skipped.update(id(member) for member in special)
     use_case = lower_definition(lowering, node, owner, Kind.USE_CASE, "")
     for member in special:
         _MEMBER_HANDLERS[member.membership](lowering, member, use_case)
 
 
-def lower_inclusion(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+def lower_inclusion(lowering: Lowering, node: Node, owner: Element | None) -> None:
     """Lower the inclusion of another use case to an edge."""
     if owner is None:
-        lowering.mark_unsupported(node)
+        lowering.verdicts.mark_unsupported(node)
         return
     included = nodes.find_reference(node, "ReferenceSubsetting", "FeatureTyping", "Subsetting")
     lowering.connect_reference(Edge.INCLUDES, owner, included)
 
 
-def lower_extension_point(lowering: "Lowering", node: Node, owner: Element | None) -> None:
+def lower_extension_point(lowering: Lowering, node: Node, owner: Element | None) -> None:
     """Lower an event of a use case to an extension point."""
     lowering.add_element(node, Kind.EXTENSION_POINT, nodes.name_of(node), owner)
 
@@ -38,18 +34,18 @@ def lower_extension_point(lowering: "Lowering", node: Node, owner: Element | Non
 # -- actors ------------------------------------------------------------------------------------
 
 
-def _lower_actor(lowering: "Lowering", node: Node, use_case: Element) -> None:
+def _lower_actor(lowering: Lowering, node: Node, use_case: Element) -> None:
     """Lower an actor to an association with the use case (UML 2.5.1 clause 18.1.3)."""
     # Deferred twice: associations that the model states get their ends in the first round.
-    lowering.defer_until_edges(
-        lambda: lowering.defer_until_edges(lambda: _associate(lowering, node, use_case))
+    lowering.queue.defer_until_edges(
+        lambda: lowering.queue.defer_until_edges(lambda: _associate(lowering, node, use_case))
     )
 
 
-def _associate(lowering: "Lowering", node: Node, use_case: Element) -> None:
+def _associate(lowering: Lowering, node: Node, use_case: Element) -> None:
     association = _find_association(lowering, node, use_case)
     if association is not None:
-        lowering.elements[id(node)] = association
+        lowering.elements.own[id(node)] = association
         return
     graph = lowering.graph
     association = lowering.add_element(node, Kind.ASSOCIATION, "", graph.owner(use_case))
@@ -58,15 +54,15 @@ def _associate(lowering: "Lowering", node: Node, use_case: Element) -> None:
     graph.connect(Edge.TYPED_BY, case_end, use_case)
     actor_end = lowering.add_derived(node, Kind.PROPERTY, nodes.name_of(node), association)
     graph.connect(Edge.END, association, actor_end)
-    lowering.defer_until_elements(
-        lambda: lowering.connect_nodes(Edge.TYPED_BY, actor_end, nodes.types_of(lowering, node))
+    lowering.queue.defer_until_elements(
+        lambda: lowering.connect_nodes(Edge.TYPED_BY, actor_end, lowering.trees.types_of(node))
     )
 
 
-def _find_association(lowering: "Lowering", actor: Node, use_case: Element) -> Element | None:
+def _find_association(lowering: Lowering, actor: Node, use_case: Element) -> Element | None:
     """Return an association of the model between a use case and the type of an actor."""
     graph = lowering.graph
-    types = [lowering.element_of(type_) for type_ in nodes.types_of(lowering, actor)]
+    types = [lowering.elements.find(type_) for type_ in lowering.trees.types_of(actor)]
     for end in graph.sources(use_case, Edge.TYPED_BY):
         for association in graph.sources(end, Edge.END):
             ends = graph.targets(association, Edge.END)

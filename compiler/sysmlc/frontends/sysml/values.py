@@ -1,41 +1,39 @@
 """Values of features as attributes: literals, enumeration values, quantities, expressions."""
 
-from typing import TYPE_CHECKING
-
 from sysmlc.frontends.sysml import expressions, nodes, quantities
-from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.frontends.sysml.library_edges import LibraryEdges
+from sysmlc.frontends.sysml.lowering import Lowering
+from sysmlc.frontends.sysml.trees import Trees
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.language.tree import Node
-
-if TYPE_CHECKING:
-    from sysmlc.frontends.sysml.lowering import Lowering
 
 _LITERALS = frozenset({"LiteralBoolean", "LiteralString", "LiteralInteger", "LiteralRational"})
 
 
-def set_value(lowering: "Lowering", element: Element, key: str, expression: Node) -> None:
+def set_value(lowering: Lowering, element: Element, key: str, expression: Node) -> None:
     """Set the attribute *key* to the value of an expression.
 
     The name of a literal or an instance also sets ``<key>_instance``, any other expression that
     must be computed ``<key>_language``. A quantity sets ``<key>_unit``, and ``:=`` sets
     ``<key>_kind``.
     """
-    quantities.set_kind(lowering, element, key, expression)
+    quantities.set_kind(lowering.graph, element, key, expression)
     constant = constant_of(expression)
     if constant is not None:
         lowering.graph.set(element, **{key: constant})
         if quantities.has_unit(expression):
-            lowering.defer_until_edges(
+            lowering.queue.defer_until_edges(
                 lambda: quantities.set_unit(lowering, element, key, expression)
             )
         return
-    lowering.defer_until_edges(lambda: _set_computed(lowering, element, key, expression))
+    lowering.queue.defer_until_edges(lambda: _set_computed(lowering, element, key, expression))
 
 
-def _set_computed(lowering: "Lowering", element: Element, key: str, expression: Node) -> None:
+def _set_computed(lowering: Lowering, element: Element, key: str, expression: Node) -> None:
     target = _referenced_feature(expression)
-    literal = lowering.element_of(target)
+    literal = lowering.elements.find(target)
     if target is not None and target.kind == "EnumerationUsage" and literal is not None:
-        _set_literal(lowering, element, key, literal)
+        _set_literal(lowering.graph, lowering.library, element, key, literal)
         return
     if literal is not None and literal.kind is Kind.INSTANCE:
         lowering.graph.set(element, **{key: literal.name, f"{key}_instance": literal.id})
@@ -44,25 +42,25 @@ def _set_computed(lowering: "Lowering", element: Element, key: str, expression: 
     lowering.graph.set(element, **{key: text, f"{key}_language": ""})
 
 
-def _set_literal(lowering: "Lowering", element: Element, key: str, literal: Element) -> None:
+def _set_literal(
+    graph: Graph, library: LibraryEdges, element: Element, key: str, literal: Element
+) -> None:
     """Set a literal of an enumeration; a feature of another type gets the value of the literal."""
-    types = lowering.graph.targets(element, Edge.TYPED_BY)
-    has_other_type = lowering.has_scalar_type(element) or (
-        types and lowering.graph.owner(literal) not in types
+    types = graph.targets(element, Edge.TYPED_BY)
+    has_other_type = library.has_scalar_type(element) or (
+        types and graph.owner(literal) not in types
     )
     value = literal.attrs.get("value") if has_other_type else None
     written = literal.name if value is None else value
-    lowering.graph.set(element, **{key: written, f"{key}_instance": literal.id})
+    graph.set(element, **{key: written, f"{key}_instance": literal.id})
 
 
-def set_expression(
-    lowering: "Lowering", element: Element, key: str, expression: Node | None
-) -> None:
+def set_expression(lowering: Lowering, element: Element, key: str, expression: Node | None) -> None:
     """Set the attribute *key* to the text of a condition or another expression."""
     lowering.set_attributes(element, **{key: expression_text(expression, lowering)})
 
 
-def expression_text(expression: Node | None, lowering: "Lowering") -> str:
+def expression_text(expression: Node | None, lowering: Lowering) -> str:
     """Return an expression as text of our grammar.
 
     The back end ``sysml`` marks features that stand for a condition in words: the text is their
@@ -86,18 +84,18 @@ def _read_text(named: Node) -> str:
     return next((str(constant_of(value)) for value in expressions if value is not None), "")
 
 
-def _write(expression: Node, lowering: "Lowering") -> str:
-    document = lowering.document_of(expression)
+def _write(expression: Node, lowering: Lowering) -> str:
+    document = lowering.trees.document_of(expression)
     text = "" if document is None else document.text
-    return expressions.write_expression(expression, text, lowering.id_of_node)
+    return expressions.write_expression(expression, text, lowering.elements.id_of)
 
 
-def set_effect(lowering: "Lowering", element: Element, actions: list[Node]) -> None:
+def set_effect(lowering: Lowering, element: Element, actions: list[Node]) -> None:
     """Set the body of an element to the effect of actions, which may name elements to come."""
     lowering.set_attributes(element, body=expressions.write_effect(actions))
-    lowering.defer_until_elements(
+    lowering.queue.defer_until_elements(
         lambda: lowering.set_attributes(
-            element, body=expressions.write_effect(actions, lowering.id_of_node)
+            element, body=expressions.write_effect(actions, lowering.elements.id_of)
         )
     )
 
@@ -160,19 +158,19 @@ def _append(value: AttrValue, sequence: list[AttrValue]) -> bool:
 # -- multiplicities ----------------------------------------------------------------------------
 
 
-def multiplicity_of(lowering: "Lowering", node: Node) -> str:
+def multiplicity_of(trees: Trees, node: Node) -> str:
     """Return the multiplicity of a feature in the notation of UML; '' if it is exactly one."""
     if not node.members:
         return ""
     for member in node.members:
         if member.kind == "MultiplicityRange":
-            return _write_range(lowering, member)
+            return _write_range(trees, member)
     cross = nodes.cross_feature_of(node)
-    return "" if cross is None else multiplicity_of(lowering, cross)
+    return "" if cross is None else multiplicity_of(trees, cross)
 
 
-def _write_range(lowering: "Lowering", range_: Node) -> str:
-    document = lowering.document_of(range_)
+def _write_range(trees: Trees, range_: Node) -> str:
+    document = trees.document_of(range_)
     source = "" if document is None else document.text
     bounds = [
         _write_bound(bound, source) for bound in range_.members if bound.kind in nodes.EXPRESSIONS
