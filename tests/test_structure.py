@@ -45,7 +45,6 @@ WIDE_OBJECTS = {
     "sysmlc.logic.machines.machine.Machine": 16,
     "sysmlc.logic.machines.machine.Vertex": 15,
     "sysmlc.logic.machines.paths.Path": 14,
-    "sysmlc.analyses.activities.draft.Draft": 21,
     "sysmlc.analyses.recipe.context.Context": 19,
     "sysmlc.recipe.model.Recipe": 14,
     "sysmlc.recipe.model.Service": 14,

@@ -14,7 +14,11 @@ from sysmlc.analyses.activities import rules
 from sysmlc.analyses.activities.draft import Draft, lower_bound
 from sysmlc.analyses.activities.drawing import Drawing
 from sysmlc.analyses.activities.exception_analysis import Raising
-from sysmlc.analyses.activities.exceptions import add_exceptions, chain_handler_bodies
+from sysmlc.analyses.activities.exceptions import (
+    add_exceptions,
+    chain_handler_bodies,
+    exception_region_id,
+)
 from sysmlc.analyses.activities.flows import add_default_branch, add_flow
 from sysmlc.analyses.activities.implied_control import (
     ACCEPTS,
@@ -42,54 +46,58 @@ def build(
     graph: Graph, drawing: Drawing, inputs: Inputs, raising: Raising, sink: Sink
 ) -> TokenGraph:
     """Return the token graph of a drawing. Reports nodes with flows that UML does not allow."""
-    draft = Draft(graph, drawing, inputs, raising, sink)
+    draft = Draft(graph, drawing, inputs, sink)
     # Before the nodes: pins of chained nodes are not reported as open.
     chain_handler_bodies(draft)
     for node in drawing.nodes:
         add_node(draft, node)
     # Before the flows: flows after a protected node leave its outcome.
-    add_exceptions(draft)
+    add_exceptions(draft, raising)
     for node in drawing.nodes:
         chain_sequence_node(draft, node)
     for flow in drawing.flows:
         add_flow(draft, flow)
     regions = find_interruptible_regions(graph, drawing.inside, drawing.nodes)
-    _find_listening_actions(draft, regions)
+    listening_regions = _find_listening_regions(draft, regions)
     for node in drawing.nodes:
         add_default_branch(draft, node)
-        add_implied_start(draft, node)
+        add_implied_start(draft, node, listening_regions)
     _check_events(draft)
     return _finish(draft, regions)
 
 
 def _check_events(draft: Draft) -> None:
-    for event, accept_actions in draft.accept_actions.items():
+    for event, accept_actions in draft.inputs.receivers.items():
         if len(accept_actions) > 1:
             names = " and ".join(draft.drawing.labels[node.id] for node in accept_actions)
             subject = draft.graph.subject(accept_actions[0])
             draft.sink.report(rules.SHARED_EVENT, subject, nodes=names, event=event)
 
 
-def _find_listening_actions(draft: Draft, regions: Regions) -> None:
-    """Record the accept actions that listen once a token enters their interruptible region.
+def _find_listening_regions(draft: Draft, regions: Regions) -> dict[str, str]:
+    """Return the interruptible region whose first token makes an accept action listen, by action.
 
     These are the actions without incoming flows, if the region is not entered at the start.
     """
+    listening_regions: dict[str, str] = {}
     for region, members in regions:
-        idle_actions = [e for e in members if e.subkind in ACCEPTS and not draft.incoming[e.id]]
+        idle_actions = [
+            e for e in members if e.subkind in ACCEPTS and not draft.drawing.incoming(e)
+        ]
         if is_entered_later(draft.graph, members):
             for node in idle_actions:
-                draft.listening_regions[node.id] = region.id
+                listening_regions[node.id] = region.id
+    return listening_regions
 
 
 def _finish(draft: Draft, regions: Regions) -> TokenGraph:
     activity = draft.drawing.activity
     rounds = list(_list_rounds(draft))
     # A new round of a loop removes the tokens that the last round left, like an interruption.
-    round_of_edge = {edge: round.id for edges, round in rounds for edge in edges}
+    round_of_edge = {edge: round.id for edge, round in rounds}
     edges = (
         replace(edge, interrupts=round_of_edge[edge.id]) if edge.id in round_of_edge else edge
-        for edge in draft.edges
+        for edge in draft.edges.values()
     )
     return TokenGraph(
         activity=activity.id,
@@ -124,7 +132,11 @@ def _list_members(draft: Draft, elements: list[Element]) -> tuple[str, ...]:
 
 def _list_exception_regions(draft: Draft) -> Iterator[Interruptible]:
     """Yield for each exception the nodes that lose their tokens when it ends a structured node."""
-    for id, catcher in draft.ended_nodes.items():
+    catchers = {exception_region_id(id): draft.graph[id] for id in draft.drawing.handlers}
+    for id in dict.fromkeys(edge.interrupts for edge in draft.edges.values()):
+        catcher = catchers.get(id)
+        if catcher is None:
+            continue
         members = (
             node.id
             for node in draft.nodes.values()
@@ -133,14 +145,15 @@ def _list_exception_regions(draft: Draft) -> Iterator[Interruptible]:
         yield Interruptible(id, catcher.name, tuple(members))
 
 
-def _list_rounds(draft: Draft) -> Iterator[tuple[list[str], Interruptible]]:
-    """Yield for each loop the nodes that lose their remaining tokens when a new round begins."""
-    for id, back_edges in draft.back_edges.items():
-        edges = [e for e in draft.edges if e.region == id and draft.graph[e.origin].kind in FLOWS]
-        members = dict.fromkeys(end for edge in edges for end in (edge.source, edge.target))
+def _list_rounds(draft: Draft) -> Iterator[tuple[str, Interruptible]]:
+    """Yield the edge that begins a new round, and the nodes that then lose their tokens."""
+    for id, back_edge in draft.back_edges.items():
+        edges = (edge for edge in draft.edges.values() if edge.region == id)
+        flows = [edge for edge in edges if draft.graph[edge.origin].kind in FLOWS]
+        members = dict.fromkeys(end for flow in flows for end in (flow.source, flow.target))
         if members:
             name = draft.drawing.labels[id]
-            yield back_edges, Interruptible(derived_id(id, "rounds"), name, tuple(members))
+            yield back_edge, Interruptible(derived_id(id, "rounds"), name, tuple(members))
 
 
 # -- nodes -------------------------------------------------------------------------------------
@@ -196,18 +209,18 @@ def _classify_node(draft: Draft, node: Element) -> NodeKind:
         return NodeKind.ACTION
     if node.kind is Kind.STRUCTURED:
         return NodeKind.STRUCTURED
-    if not draft.incoming[node.id]:
+    if not draft.drawing.incoming(node):
         return NodeKind.INITIAL
     if node.kind is Kind.DATA_STORE:
         return NodeKind.DATA_STORE
-    return NodeKind.MERGE if draft.outgoing[node.id] else NodeKind.SINK
+    return NodeKind.MERGE if draft.drawing.outgoing(node) else NodeKind.SINK
 
 
 def _classify_control(draft: Draft, node: Element) -> NodeKind:
     kind = _CONTROL_KINDS.get(node.subkind, NodeKind.MERGE)
     # A fork has one incoming flow. With several it is taken as a join and a fork, and a join also
     # offers a token to all its outgoing flows.
-    if kind is NodeKind.FORK and len(draft.incoming[node.id]) > 1:
+    if kind is NodeKind.FORK and len(draft.drawing.incoming(node)) > 1:
         return NodeKind.JOIN
     return kind
 
@@ -225,11 +238,8 @@ def _add_action_variables(draft: Draft, node: Element, token_node: TokenNode) ->
     if node.subkind in _PULSE_ACTIONS or is_asynchronous or takes_one_step(node):
         return replace(token_node, duration=Duration.PULSE, run=run)
     if node.subkind in ACCEPTS:
-        end_condition, names = read_events(draft.inputs, node)
-        for name in names:
-            draft.accept_actions.setdefault(name, []).append(node)
         awaited = describe_events(draft.graph, node)
-        return replace(token_node, run=run, done=end_condition, awaited=awaited)
+        return replace(token_node, run=run, done=read_events(draft.inputs, node), awaited=awaited)
     return replace(token_node, run=run, done=draft.inputs.declare_pulse(f"done_{short}", node))
 
 
@@ -239,7 +249,7 @@ def _find_called_name(draft: Draft, node: Element) -> str:
 
 
 def _check_pins(draft: Draft, node: Element) -> None:
-    connected = {flow.target_pin.id for flow in draft.incoming[node.id] if flow.target_pin}
+    connected = {flow.target_pin.id for flow in draft.drawing.incoming(node) if flow.target_pin}
     # The exception fills the input pin of a handler body, without a drawn flow.
     if node.id in draft.chained or _redefines_inherited_step(draft, node):
         return
@@ -267,7 +277,7 @@ def _check_shape(draft: Draft, node: Element) -> None:
     """Report a control node that stands for two, such as a merge with several outgoing flows."""
     if node.kind is not Kind.CONTROL:
         return
-    incoming, outgoing = len(draft.primary_flows(node)), len(draft.outgoing[node.id])
+    incoming, outgoing = len(draft.primary_flows(node)), len(draft.drawing.outgoing(node))
     shapes = {
         "decision": (incoming > 1, f"{incoming} incoming flows", "a merge and a decision"),
         "merge": (outgoing > 1, f"{outgoing} outgoing flows", "a merge and a decision"),
@@ -286,9 +296,9 @@ def _check_ends(draft: Draft, node: Element, kind: NodeKind) -> None:
     """Report flows into an initial node and out of a final node."""
     is_final = kind in (NodeKind.ACTIVITY_FINAL, NodeKind.FLOW_FINAL)
     flows = ""
-    if kind is NodeKind.INITIAL and draft.incoming[node.id]:
+    if kind is NodeKind.INITIAL and draft.drawing.incoming(node):
         flows = "incoming flows"
-    elif is_final and draft.outgoing[node.id]:
+    elif is_final and draft.drawing.outgoing(node):
         flows = "outgoing flows"
     if flows:
         subject, label = draft.graph.subject(node), draft.drawing.labels[node.id]

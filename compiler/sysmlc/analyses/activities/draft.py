@@ -3,7 +3,6 @@
 from itertools import pairwise
 
 from sysmlc.analyses.activities.drawing import Drawing, Flow, flow_label
-from sysmlc.analyses.activities.exception_analysis import Raising
 from sysmlc.analyses.activities.inputs import DecisionInput, Inputs
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, Kind, query
@@ -15,52 +14,34 @@ from sysmlc.logic.identifiers import identifier
 class Draft:
     """The nodes and edges added so far, and tables that the modules of this package share.
 
-    ``follows_v2`` states whether the activity follows the rules of SysML v2 instead of UML.
-
     The tables have ids as keys:
 
     - ``short_names``: the name of a node inside names of variables.
     - ``chained``: nodes that another node starts, so that they have no implied start.
-    - ``accept_actions``: the accept actions that wait for an event, by the name of the event.
     - ``decision_inputs``: the input that a decision compares with its literal guards.
     - ``exits``: for a node with exception handlers or a call that may fail, the node that its drawn
       flows leave instead, because they also wait for the handlers.
-    - ``back_edges``: for a loop, the edges that begin another round.
-    - ``ended_nodes``: for a group of nodes that an exception ends, the structured node around them.
-    - ``failing_calls``: calls that may end with an exception.
-    - ``listening_regions``: for an accept action, the interruptible region whose first token makes
-      it listen.
+    - ``back_edges``: for a loop, the edge that begins another round.
     """
 
-    def __init__(
-        self, graph: Graph, drawing: Drawing, inputs: Inputs, raising: Raising, sink: Sink
-    ) -> None:
+    def __init__(self, graph: Graph, drawing: Drawing, inputs: Inputs, sink: Sink) -> None:
         self.graph = graph
-        self.follows_v2 = query.follows_v2(graph, drawing.activity)
-        self.raising = raising
         self.drawing = drawing
         self.inputs = inputs
         self.sink = sink
         self.nodes: dict[str, TokenNode] = {}
-        self.edges: list[TokenEdge] = []
+        self.edges: dict[str, TokenEdge] = {}
         self.short_names: dict[str, str] = {}
         self.decision_inputs: dict[str, DecisionInput] = {}
         self.chained: set[str] = set()
         self.exits: dict[str, str] = {}
-        self.back_edges: dict[str, list[str]] = {}
-        self.ended_nodes: dict[str, Element] = {}
-        self.failing_calls: set[str] = set()
-        self.listening_regions: dict[str, str] = {}
-        self._used_ids: set[str] = set()
+        self.back_edges: dict[str, str] = {}
         self._edges_by_target: dict[str, list[TokenEdge]] = {}
-        self.accept_actions: dict[str, list[Element]] = {}
-        self.incoming: dict[str, list[Flow]] = {node.id: [] for node in drawing.nodes}
-        self.outgoing: dict[str, list[Flow]] = {node.id: [] for node in drawing.nodes}
-        for flow in drawing.flows:
-            if not flow.enters:
-                self.outgoing[flow.source.id].append(flow)
-            if not flow.leaves:
-                self.incoming[flow.target.id].append(flow)
+
+    @property
+    def follows_v2(self) -> bool:
+        """Whether tokens follow the rules of SysML v2 instead of those of UML."""
+        return query.follows_v2(self.graph, self.drawing.activity)
 
     def put_node(self, node: TokenNode, short: str) -> TokenNode:
         """Add or replace a node."""
@@ -97,7 +78,6 @@ class Draft:
             f"at_{self.short_names[source]}_to_{self.short_names[target]}"
         )
         id = origin.id if self._has_free_id(origin) else derived_id(origin.id, variable)
-        self._used_ids.add(id)
         edge = TokenEdge(
             id,
             variable,
@@ -112,7 +92,7 @@ class Draft:
             keeps,
             listens,
         )
-        self.edges.append(edge)
+        self.edges[id] = edge
         self._edges_by_target.setdefault(target, []).append(edge)
         return edge
 
@@ -137,7 +117,7 @@ class Draft:
     def primary_flows(self, node: Element) -> list[Flow]:
         """Return the incoming flows of a node, without the decision input flow of a decision."""
         input_flow = node.attrs.get("decision_input_flow")
-        return [flow for flow in self.incoming[node.id] if flow.element.id != input_flow]
+        return [flow for flow in self.drawing.incoming(node) if flow.element.id != input_flow]
 
     def qualify_role(self, word: str, node: Element, region: str) -> str:
         """Return *word*, followed by the name of the part if the region is a part of the node."""
@@ -146,7 +126,7 @@ class Draft:
 
     def _has_free_id(self, origin: Element) -> bool:
         is_flow = origin.kind in (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
-        return is_flow and origin.id not in self._used_ids
+        return is_flow and origin.id not in self.edges
 
 
 def lower_bound(pin: Element) -> int:

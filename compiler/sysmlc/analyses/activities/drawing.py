@@ -78,6 +78,16 @@ class Drawing:
     handlers: dict[str, list[Handler]] = field(default_factory=dict)
     is_playable: bool = True
     """False if the token game cannot express the drawing; the reason has been reported."""
+    _incoming: dict[str, list[Flow]] = field(default_factory=dict)
+    _outgoing: dict[str, list[Flow]] = field(default_factory=dict)
+
+    def add_flow(self, flow: Flow) -> None:
+        """Add a flow, whose ends are nodes of the drawing."""
+        self.flows.append(flow)
+        if not flow.leaves:
+            self._incoming.setdefault(flow.target.id, []).append(flow)
+        if not flow.enters:
+            self._outgoing.setdefault(flow.source.id, []).append(flow)
 
     def list_steps(self) -> list[Element]:
         """List the actions, structured nodes and control nodes outside of structured nodes."""
@@ -87,11 +97,11 @@ class Drawing:
 
     def incoming(self, node: Element) -> list[Flow]:
         """Return the flows to the node or its pins, without flows from inside the node."""
-        return [flow for flow in self.flows if flow.target is node and not flow.leaves]
+        return self._incoming.get(node.id, [])
 
     def outgoing(self, node: Element) -> list[Flow]:
         """Return the flows from the node or its pins, without flows to nodes inside the node."""
-        return [flow for flow in self.flows if flow.source is node and not flow.enters]
+        return self._outgoing.get(node.id, [])
 
     def enclosing_regions(self, region: str) -> Iterator[str]:
         """Yield the region and those around it, from the innermost to the activity's."""
@@ -248,7 +258,7 @@ class _Reader:
         for element in self._list_flow_elements():
             flow = self._read_flow(element)
             if flow is not None:
-                self.drawing.flows.append(flow)
+                self.drawing.add_flow(flow)
 
     def _list_flow_elements(self) -> Iterator[Element]:
         stack = [self.drawing.activity]

@@ -7,7 +7,7 @@ the activity catches ends the activity.
 
 from sysmlc.analyses.activities import rules
 from sysmlc.analyses.activities.draft import Draft
-from sysmlc.analyses.activities.exception_analysis import CALLS, may_raise
+from sysmlc.analyses.activities.exception_analysis import CALLS, Raising, may_raise
 from sysmlc.analyses.activities.regions import Handler
 from sysmlc.ir import Element, Kind
 from sysmlc.ir.element import derived_id
@@ -20,23 +20,22 @@ def chain_handler_bodies(draft: Draft) -> None:
         draft.chained.update(handler.body.id for handler in handlers)
 
 
-def add_exceptions(draft: Draft) -> None:
+def add_exceptions(draft: Draft, raising: Raising) -> None:
     """Add the edges from raising actions to handlers, and from handlers to the next nodes."""
     for id in draft.drawing.handlers:
         _add_handlers(draft, draft.graph[id])
+    failing_calls = set()
     for node in draft.drawing.nodes:
         if node.kind is Kind.ACTION and node.subkind == "raise":
             _add_raise(draft, node)
-        elif node.kind is Kind.ACTION and _may_raise(draft, node):
+        elif node.kind is Kind.ACTION and _may_raise(draft, raising, node):
             _add_failure(draft, node)
+            failing_calls.add(node.id)
     for id in draft.drawing.handlers:
         node = draft.graph[id]
         outcome = derived_id(node.id, "outcome")
-        if (
-            node.subkind != "raise"
-            and outcome in draft.nodes
-            and node.id not in draft.failing_calls
-        ):
+        ends_normally = node.subkind != "raise" and node.id not in failing_calls
+        if ends_normally and outcome in draft.nodes:
             draft.add_edge(node.id, outcome, node, draft.nodes[outcome].region)
 
 
@@ -53,7 +52,7 @@ def _add_handlers(draft: Draft, node: Element) -> None:
         draft.add_edge(caught.id, body.id, node, draft.drawing.common_region(node, body))
     else:
         _choose_handler(draft, node, caught.id, handlers)
-    if draft.outgoing[node.id]:
+    if draft.drawing.outgoing(node):
         label = f"the outcome of {label}"
         outcome = draft.ensure_node(node, "outcome", NodeKind.MERGE, label, region)
         draft.exits[node.id] = outcome.id
@@ -107,7 +106,7 @@ def _find_catcher(draft: Draft, node: Element) -> Element | None:
 
 
 def _add_raise(draft: Draft, node: Element) -> None:
-    if node.id not in draft.exits and draft.outgoing[node.id]:
+    if node.id not in draft.exits and draft.drawing.outgoing(node):
         draft.exits[node.id] = _add_unreachable_end(draft, node)
     _add_throw(draft, node, node.id, None)
 
@@ -131,12 +130,14 @@ def _add_throw(draft: Draft, node: Element, source: str, guard: Guard | None) ->
         draft.sink.report(rules.UNCAUGHT, draft.graph.subject(node), node=label)
         return
     caught = draft.nodes[derived_id(catcher.id, "caught")]
-    interrupts = ""
     # An action that catches its own exception holds no other tokens that it could lose.
-    if catcher is not node:
-        interrupts = derived_id(catcher.id, "exception")
-        draft.ended_nodes[interrupts] = catcher
+    interrupts = "" if catcher is node else exception_region_id(catcher.id)
     draft.add_edge(source, caught.id, node, caught.region, guard=guard, interrupts=interrupts)
+
+
+def exception_region_id(catcher: str) -> str:
+    """Return the id of the nodes that lose their tokens when a protected node is ended."""
+    return derived_id(catcher, "exception")
 
 
 def _ensure_uncaught_final(draft: Draft) -> str:
@@ -148,7 +149,7 @@ def _ensure_uncaught_final(draft: Draft) -> str:
     ).id
 
 
-def _may_raise(draft: Draft, node: Element) -> bool:
+def _may_raise(draft: Draft, raising: Raising, node: Element) -> bool:
     """Whether the action may end with an exception.
 
     Outside protected nodes, this is only assumed of calls that lead to a raise action.
@@ -157,8 +158,8 @@ def _may_raise(draft: Draft, node: Element) -> bool:
         return False
     catcher = _find_catcher(draft, node)
     if catcher is None:
-        return may_raise(draft.graph, node, draft.raising.drawn, unknown=False)
-    return catcher is node or may_raise(draft.graph, node, draft.raising.possible, unknown=True)
+        return may_raise(draft.graph, node, raising.drawn, unknown=False)
+    return catcher is node or may_raise(draft.graph, node, raising.possible, unknown=True)
 
 
 def _add_failure(draft: Draft, node: Element) -> None:
@@ -171,7 +172,6 @@ def _add_failure(draft: Draft, node: Element) -> None:
     )
     guard = Guard("an exception is raised", decision_input.equals("true"))
     _add_throw(draft, node, choice.id, guard)
-    draft.failing_calls.add(node.id)
     normal_end = draft.exits.get(node.id) or _ensure_normal_end(draft, node)
     draft.add_edge(choice.id, normal_end, node, region, guard=Guard("else", None))
 
@@ -182,7 +182,7 @@ def _ensure_normal_end(draft: Draft, node: Element) -> str:
         f"the normal end of {draft.drawing.labels[node.id]}",
         draft.drawing.region[node.id],
     )
-    if not draft.outgoing[node.id]:
+    if not draft.drawing.outgoing(node):
         return draft.ensure_node(node, "end", NodeKind.SINK, label, region).id
     draft.exits[node.id] = draft.ensure_node(node, "end", NodeKind.MERGE, label, region).id
     return draft.exits[node.id]

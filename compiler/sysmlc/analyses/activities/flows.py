@@ -85,7 +85,7 @@ def _find_entry(draft: Draft, flow: Flow) -> str:
     if kind is NodeKind.DECISION and len(draft.primary_flows(node)) > 1:
         return _ensure_entry_merge(draft, flow, node, draft.primary_flows(node))
     if flow.target_pin is not None:
-        flows_to_pin = [g for g in draft.incoming[node.id] if g.target_pin is flow.target_pin]
+        flows_to_pin = [g for g in draft.drawing.incoming(node) if g.target_pin is flow.target_pin]
         if len(flows_to_pin) > 1 and not _needs_all(flow.target_pin, len(flows_to_pin)):
             return _ensure_entry_merge(draft, flow, flow.target_pin, flows_to_pin)
     return node.id
@@ -133,7 +133,7 @@ def _find_exit(draft: Draft, flow: Flow) -> tuple[str, bool, str | None]:
     if kind is NodeKind.DECISION:
         return node.id, False, node.id
     marked = kind is NodeKind.INITIAL
-    flows_from_pin = [g for g in draft.outgoing[node.id] if g.source_pin is flow.source_pin]
+    flows_from_pin = [g for g in draft.drawing.outgoing(node) if g.source_pin is flow.source_pin]
     holds = kind in (NodeKind.INITIAL, NodeKind.MERGE) and node.kind is not Kind.DATA_STORE
     has_choice = (holds or flow.source_pin is not None) and len(flows_from_pin) > 1
     # In SysML v2 only 'decide' chooses: all other successions and flows of a node are taken.
@@ -212,7 +212,7 @@ def _find_decision_input(draft: Draft, node: Element, decision: str) -> Decision
     if not query.has_decision_input(draft.graph, node):
         return None
     literals = [
-        _guard_text(g) for g in draft.outgoing[node.id] if g.element.attrs.get("guard_literal")
+        _guard_text(g) for g in draft.drawing.outgoing(node) if g.element.attrs.get("guard_literal")
     ]
     decision_input = draft.inputs.declare_decision_input(
         f"input_{draft.short_names[node.id]}", literals, node
@@ -229,7 +229,7 @@ def add_default_branch(draft: Draft, node: Element) -> None:
     decision_input = draft.decision_inputs.get(node.id)
     if decision_input is None:
         return
-    flows = draft.outgoing[node.id]
+    flows = draft.drawing.outgoing(node)
     texts = list(dict.fromkeys(_guard_text(flow) for flow in flows))
     is_literal = all(flow.element.attrs.get("guard_literal") is True for flow in flows)
     if not is_literal or decision_input.is_covered(texts):

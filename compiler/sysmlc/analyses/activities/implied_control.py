@@ -5,6 +5,7 @@ before it adds the drawn flows, and ``add_implied_start`` after them, because a 
 flow starts has no implied start.
 """
 
+from collections.abc import Mapping
 from itertools import pairwise
 
 from sysmlc.analyses.activities.draft import Draft
@@ -118,7 +119,7 @@ def _connect_loop(draft: Draft, node: Element, parts: dict[str, Part]) -> None:
     after_decision = body if is_tested_first else []
     draft.add_path(node, merge, *loop_variables, *before_decision, decision)
     back_edges = draft.add_path(node, decision, *after_decision, merge, guard=guard)
-    draft.back_edges[node.id] = [back_edges[-1].id]
+    draft.back_edges[node.id] = back_edges[-1].id
     # Without this condition a loop `while (true)` would have an exit that is never taken.
     if guard.condition != f.TRUE:
         draft.add_path(node, decision, end, guard=Guard("else", None))
@@ -173,7 +174,7 @@ def chain_sequence_node(draft: Draft, node: Element) -> None:
         draft.chained.add(next_step.id)
 
 
-def add_implied_start(draft: Draft, node: Element) -> None:
+def add_implied_start(draft: Draft, node: Element, listening_regions: Mapping[str, str]) -> None:
     """Start a node with its region, unless a flow from inside the region starts it.
 
     The node still waits for tokens from outside the region and from data stores (fUML 1.5, 8.10.2).
@@ -186,7 +187,7 @@ def add_implied_start(draft: Draft, node: Element) -> None:
         return
     # An accept action without incoming flows listens again after each event (UML 2.5.1, 16.10.3).
     if node.subkind in ACCEPTS and not incoming and not draft.follows_v2:
-        region = draft.listening_regions.get(node.id, "")
+        region = listening_regions.get(node.id, "")
         draft.add_edge(node.id, node.id, node, token_node.region, marked=not region, listens=region)
         return
     start = draft.ensure_node(node, "start", NodeKind.INITIAL, "the start", token_node.region)

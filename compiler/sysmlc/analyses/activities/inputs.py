@@ -231,6 +231,8 @@ class Inputs:
         self.names = Names(*scope.names())
         self.variables: dict[str, Variable] = {}
         self.pulses: list[str] = []
+        self.receivers: dict[str, list[Element]] = {}
+        """The accept actions that wait for an event, by the name of the event."""
         self._scope = scope
         self._sink = sink
         self._by_text: dict[str, str] = {}
@@ -337,14 +339,14 @@ class DecisionInput:
         return self._value_names is None and {"true", "false"} <= set(literals)
 
 
-def read_events(inputs: Inputs, action: Element) -> tuple[Formula, list[str]]:
-    """Return the condition that ends an accept action, and the names of its events."""
+def read_events(inputs: Inputs, action: Element) -> Formula:
+    """Return the condition that ends an accept action, and record the action for its events."""
     triggers = _list_triggers(inputs.graph, action)
     if not triggers:
         name = f"receive_{identifier(action.name, 'event')}"
-        return inputs.declare_pulse(name, action), [name]
-    events = [_read_event(inputs, trigger, action) for trigger in triggers]
-    return f.either(*(formula for formula, _ in events)), [name for _, name in events if name]
+        inputs.receivers.setdefault(name, []).append(action)
+        return inputs.declare_pulse(name, action)
+    return f.either(*[_read_event(inputs, trigger, action) for trigger in triggers])
 
 
 def describe_events(graph: Graph, action: Element) -> str:
@@ -375,12 +377,13 @@ def _list_triggers(graph: Graph, action: Element) -> list[Element]:
     return list(dict.fromkeys([*graph.targets(action, Edge.TRIGGER), *owned]))
 
 
-def _read_event(inputs: Inputs, trigger: Element, action: Element) -> tuple[Formula, str]:
+def _read_event(inputs: Inputs, trigger: Element, action: Element) -> Formula:
     if trigger.subkind == "change" and trigger.attrs.get("condition"):
         text = str(trigger.attrs["condition"])
-        return inputs.read_condition(text, action, "the change condition"), ""
+        return inputs.read_condition(text, action, "the change condition")
     name = _name_event(inputs.graph, trigger, action)
-    return inputs.share_event(name, trigger), name
+    inputs.receivers.setdefault(name, []).append(action)
+    return inputs.share_event(name, trigger)
 
 
 def _name_event(graph: Graph, trigger: Element, action: Element) -> str:
