@@ -33,7 +33,6 @@ WIDE_OBJECTS = {
     "sysmlc.config.Config": 15,
     "sysmlc.driver.compilation.Request": 14,
     "sysmlc.frontends.caex.component.Component": 15,
-    "sysmlc.frontends.caex.context.Context": 18,
     "sysmlc.frontends.caex.document.Document": 15,
     "sysmlc.frontends.xmi.document.Document": 18,
     "sysmlc.ir.pending.Drawing": 13,

@@ -4,13 +4,14 @@ import json
 import re
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.caex import data_types, mirrors, value_types
+from sysmlc.frontends.caex import data_types, value_types
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
+from sysmlc.frontends.caex.findings import Findings
 from sysmlc.frontends.caex.scales import check_scales
 from sysmlc.frontends.caex.types import Member, Type
 from sysmlc.frontends.caex.vocabulary import Family
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind
 
 _IDENTIFIER = re.compile(r"[^\W\d]\w*$")
 _BOUND_OPERATORS = {"RequiredMinValue": ">=", "RequiredValue": "==", "RequiredMaxValue": "<="}
@@ -42,33 +43,33 @@ def _lower_single(context: Context, owner: Type, node: Node, document: Document)
         default_value=default if default != value else None,
         semantics=_read_semantics(node),
     )
-    declared = mirrors.resolve_member_class(context, node, document)
-    data_types.check_data_type(context, document, node.row, data_type)
+    declared = context.resolve_member_class(node, document)
+    data_types.check_data_type(context.findings, document, node.row, data_type)
     if initial:
-        converted = data_types.convert_value(context, node, initial, data_type, declared)
+        converted = data_types.convert_value(context.findings, node, initial, data_type, declared)
         element.attrs["default"] = converted
     if default and default != initial:
         # The text is stored as it is written; the conversion only checks it.
-        data_types.convert_value(context, node, default, data_type, declared)
+        data_types.convert_value(context.findings, node, default, data_type, declared)
     value_types.set_multiplicity(element.attrs, declared)
-    connect_redefined(context, owner, node, element)
+    connect_redefined(context.graph, owner, node, element)
     structure = _add_structure(context, owner, node, document, element, declared)
     type = structure or declared
-    value_types.connect_type(context, element, node, document, type)
+    value_types.connect_type(context.graph, context.findings, element, node, document, type)
     lower_constraints(context, element, node, document)
-    check_scales(context, document, node, [node], declared)
+    check_scales(context.findings, document, node, [node], declared)
     owner.members["Attribute", node.name] = Member(element.id, type, document, node.row)
     return structure
 
 
-def connect_redefined(context: Context, owner: Type, node: Node, element: Element) -> None:
+def connect_redefined(graph: Graph, owner: Type, node: Node, element: Element) -> None:
     """Connect a feature to the inherited feature of its name, which it replaces as a whole.
 
     AML.Engine overrides by name, too, and does not merge nested attributes.
     """
     inherited = owner.base.find_member(node.tag, node.name) if owner.base else None
     if inherited is not None:
-        context.graph.connect(Edge.REDEFINES, element.id, inherited.id)
+        graph.connect(Edge.REDEFINES, element.id, inherited.id)
 
 
 def _add_structure(
@@ -118,7 +119,7 @@ def lower_constraints(context: Context, attribute: Element, node: Node, document
     """
     data_type = node.attributes.get("AttributeDataType", "")
     for child in node.iter_children("Constraint"):
-        body, language = _format_body(context, child, attribute.name, data_type)
+        body, language = _format_body(context.findings, child, attribute.name, data_type)
         id = f"{attribute.id}/{child.name or 'Constraint'}"
         constraint = context.add_element(
             Kind.CONSTRAINT,
@@ -133,28 +134,28 @@ def lower_constraints(context: Context, attribute: Element, node: Node, document
         child.mark_subtree()
 
 
-def _format_body(context: Context, node: Node, name: str, data_type: str) -> tuple[str, str]:
+def _format_body(findings: Findings, node: Node, name: str, data_type: str) -> tuple[str, str]:
     """Return the expression or text of a constraint, and its language."""
     subject = name if _IDENTIFIER.match(name) else f"'{name}'"
     for scale in node.children:
         if scale.tag == "OrdinalScaledType":
             comparisons = [
-                f"{subject} {operator} {_format_literal(context, node, text, data_type)}"
+                f"{subject} {operator} {_format_literal(findings, node, text, data_type)}"
                 for tag, operator in _BOUND_OPERATORS.items()
                 for text in scale.child_texts(tag)
             ]
             return " && ".join(comparisons), "sysmlc"
         if scale.tag == "NominalScaledType":
             texts = scale.child_texts("RequiredValue")
-            literals = [_format_literal(context, node, text, data_type) for text in texts]
+            literals = [_format_literal(findings, node, text, data_type) for text in texts]
             return " || ".join(f"{subject} == {literal}" for literal in literals), "sysmlc"
         if scale.tag == "UnknownType":
             return " ".join(scale.child_texts("Requirements")).strip(), ""
     return "", ""
 
 
-def _format_literal(context: Context, node: Node, text: str, data_type: str) -> str:
-    value = data_types.convert_value(context, node, text, data_type, None)
+def _format_literal(findings: Findings, node: Node, text: str, data_type: str) -> str:
+    value = data_types.convert_value(findings, node, text, data_type, None)
     if isinstance(value, str):
         value = _parse_number(text)
     return json.dumps(value, ensure_ascii=False)

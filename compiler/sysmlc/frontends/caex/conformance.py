@@ -9,8 +9,8 @@ from operator import gt
 
 from sysmlc.diagnostics import Severity, Verdict, rule
 from sysmlc.frontends.caex import rules
-from sysmlc.frontends.caex.context import Context, qualified_name
 from sysmlc.frontends.caex.document import Document, Node
+from sysmlc.frontends.caex.findings import Findings, qualified_name
 from sysmlc.frontends.caex.vocabulary import CLASS_TAGS, LIBRARIES
 from sysmlc.sources import Source
 from sysmlc.sources.caex_vocabulary import ATTRIBUTES, ORDER, TEXTS
@@ -46,13 +46,15 @@ _Shape = tuple[str, tuple[str, ...]]
 """Tag and names of the XML attributes of an element."""
 
 
-def report_unknown_content(context: Context, sources: Sequence[Source]) -> None:
+def report_unknown_content(
+    findings: Findings, documents: list[Document], sources: Sequence[Source]
+) -> None:
     """Report unknown attributes once a file and tag, and stray texts once a tag."""
     sources_by_name = {source.name: source for source in sources}
-    for document in context.documents:
+    for document in documents:
         if not document.is_built_in:
-            _report_unknown_attributes(context, document)
-            _report_stray_texts(context, document, sources_by_name[document.name])
+            _report_unknown_attributes(findings, document)
+            _report_stray_texts(findings, document, sources_by_name[document.name])
 
 
 def _is_unchecked(document: Document, row: int) -> bool:
@@ -72,7 +74,7 @@ def _quote_name(node: Node, document: Document) -> str:
 # -- attributes ------------------------------------------------------------------------------------
 
 
-def _report_unknown_attributes(context: Context, document: Document) -> None:
+def _report_unknown_attributes(findings: Findings, document: Document) -> None:
     unknown = _find_unknown_attributes(set(_iter_shapes(document)))
     rows_by_attribute: dict[tuple[str, str], list[int]] = {}
     if unknown:
@@ -95,7 +97,7 @@ def _report_unknown_attributes(context: Context, document: Document) -> None:
         if (tag, name) == _MISPLACED_CLASS and rows[0] in document.misplaced_classes:
             facts["hint"] = "it is read as 'RefBaseClassPath'"
         element = _quote_name(node, document)
-        context.report(UNKNOWN_ATTRIBUTE, document, node, element=element, **facts)
+        findings.report(UNKNOWN_ATTRIBUTE, document, node, element=element, **facts)
 
 
 def _iter_shapes(document: Document) -> Iterator[_Shape]:
@@ -134,7 +136,7 @@ _TEXTLESS_TAGS = frozenset(ATTRIBUTES) - TEXTS
 """Elements that hold no text; elements that CAEX does not have may hold any."""
 
 
-def _report_stray_texts(context: Context, document: Document, source: Source) -> None:
+def _report_stray_texts(findings: Findings, document: Document, source: Source) -> None:
     if not (document.has_stray_text or _has_stray_text_of_rows(document)):
         return
     # Texts between elements have no row, so a second pass over the file locates them.
@@ -148,7 +150,7 @@ def _report_stray_texts(context: Context, document: Document, source: Source) ->
         node = document.node(rows[ordinal])
         element = _quote_name(node, document)
         facts = {"element": element, "tag": tag, "text": text, "more": count}
-        context.report(STRAY_TEXT, document, node, **facts)
+        findings.report(STRAY_TEXT, document, node, **facts)
 
 
 def _has_stray_text_of_rows(document: Document) -> bool:
@@ -195,15 +197,15 @@ _NAMED_TAGS = frozenset({*CLASS_TAGS, *LIBRARIES, "Attribute"})
 """Elements that references find by name; internal elements, interfaces and links have IDs."""
 
 
-def report_repeated_names(context: Context) -> None:
+def report_repeated_names(findings: Findings, documents: list[Document]) -> None:
     """Report each row that has the parent, tag and name of an earlier row."""
-    for document in context.documents:
+    for document in documents:
         if document.is_built_in:
             continue
         for row in _find_repeated_rows(document):
             node = document.node(row)
             facts = {"owner": _quote_name(node.parent or node, document), "tag": node.tag}
-            context.report(REPEATED_NAME, document, node, name=node.name, **facts)
+            findings.report(REPEATED_NAME, document, node, name=node.name, **facts)
 
 
 def _find_repeated_rows(document: Document) -> Iterator[int]:
@@ -220,7 +222,7 @@ def _find_repeated_rows(document: Document) -> Iterator[int]:
 # -- order -----------------------------------------------------------------------------------------
 
 
-def report_order(context: Context, document: Document) -> None:
+def report_order(findings: Findings, document: Document) -> None:
     """Report the first element in a wrong place.
 
     One report per file is enough: a tool misplaces all elements of the same kind.
@@ -235,7 +237,7 @@ def report_order(context: Context, document: Document) -> None:
         count = count_nouns(len(misplaced), "place")
         name = qualified_name(node.parent or node) or document.name
         facts = {"tag": node.tag, "element": name, "before": before.tag, "count": count}
-        context.report(rules.ELEMENT_ORDER, document, node, **facts)
+        findings.report(rules.ELEMENT_ORDER, document, node, **facts)
 
 
 def _find_unordered_rows(document: Document) -> list[int]:

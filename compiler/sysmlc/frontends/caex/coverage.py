@@ -9,9 +9,15 @@ from sysmlc.diagnostics import Coverage, Place, Subject, Verdict
 from sysmlc.diagnostics.coverage import FileCoverage
 from sysmlc.diagnostics.locations import Location, locate
 from sysmlc.frontends.caex import conformance, rules, standard
-from sysmlc.frontends.caex.context import Context, qualified_name
+from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.data_types import report_values
 from sysmlc.frontends.caex.document import Document, Node
+from sysmlc.frontends.caex.findings import (
+    Findings,
+    qualified_name,
+    record_unresolved_path,
+    report_ids,
+)
 from sysmlc.frontends.caex.identifiers import LocatedNode
 from sysmlc.frontends.caex.types import MissingTarget
 from sysmlc.frontends.caex.value_types import report_unknown_units
@@ -22,7 +28,7 @@ from sysmlc.frontends.caex.vocabulary import (
     STANDARD_LIBRARIES,
     TAG_CODES,
 )
-from sysmlc.ir import Edge
+from sysmlc.ir import Edge, Graph
 from sysmlc.sources import Source
 from sysmlc.support.counts import count as count_nouns
 
@@ -30,18 +36,18 @@ from sysmlc.support.counts import count as count_nouns
 def report_coverage(context: Context, coverage: Coverage, sources: Sequence[Source]) -> None:
     """Count every element of each file once, and report all findings of the reading."""
     # Unknown attributes change verdicts, so they come before the count.
-    conformance.report_unknown_content(context, sources)
+    conformance.report_unknown_content(context.findings, context.documents, sources)
     for document in context.documents:
         _count_verdicts(document, coverage.file(document.name))
-        _report_unread(context, document)
-        conformance.report_order(context, document)
+        _report_unread(context.findings, document)
+        conformance.report_order(context.findings, document)
         standard.report_interfaces(context, document)
-    _report_missing_targets(context, sources)
-    context.report_ids()
-    standard.report_repeated_across_files(context)
-    report_unknown_units(context)
-    report_values(context)
-    conformance.report_repeated_names(context)
+    _report_missing_targets(context.graph, context.findings, sources)
+    report_ids(context.findings, context.ids, context.documents)
+    standard.report_repeated_across_files(context.findings, context.ids)
+    report_unknown_units(context.findings)
+    report_values(context.findings)
+    conformance.report_repeated_names(context.findings, context.documents)
 
 
 # -- verdicts --------------------------------------------------------------------------------------
@@ -75,7 +81,7 @@ def _count_tags(document: Document) -> Counter[str]:
     return numbers
 
 
-def _report_unread(context: Context, document: Document) -> None:
+def _report_unread(findings: Findings, document: Document) -> None:
     """Report elements without a verdict, once for each tag."""
     if None not in document.verdicts:
         return
@@ -85,7 +91,7 @@ def _report_unread(context: Context, document: Document) -> None:
             nodes_by_tag.setdefault(document.tags[row], []).append(document.node(row))
     for tag, nodes in nodes_by_tag.items():
         count = count_nouns(len(nodes), "element")
-        context.report(rules.UNSUPPORTED, document, nodes[0], count=count, tag=tag)
+        findings.report(rules.UNSUPPORTED, document, nodes[0], count=count, tag=tag)
 
 
 # -- references that do not resolve ----------------------------------------------------------------
@@ -108,25 +114,25 @@ _PROBLEMS = {
 }
 
 
-def _report_missing_targets(context: Context, sources: Sequence[Source]) -> None:
+def _report_missing_targets(graph: Graph, findings: Findings, sources: Sequence[Source]) -> None:
     grouped: dict[MissingTarget, list[LocatedNode]] = {}
-    for target, references in context.missing_targets.items():
+    for target, references in findings.missing_targets.items():
         for document, node in references:
-            _mark_unresolved(context, node)
+            _mark_unresolved(graph, node)
             if target.kind in _RULES_PER_REFERENCE:
-                _report_reference(context, target, document, node)
+                _report_reference(findings, target, document, node)
             else:
                 grouped.setdefault(target, []).append((document, node))
     places = [document.locate(node) for nodes in grouped.values() for document, node in nodes]
     locations = locate(sources, places) if places else {}
     for target, references in grouped.items():
-        _report_file_or_library(context, target, references, locations)
+        _report_file_or_library(findings, target, references, locations)
 
 
-def _mark_unresolved(context: Context, node: Node) -> None:
+def _mark_unresolved(graph: Graph, node: Node) -> None:
     """Record the missing edge in its element, so that later rules do not report consequences."""
     nodes = (node, *node.iter_ancestors())
-    elements = ((context.graph.get(holder.element_id), holder) for holder in nodes)
+    elements = ((graph.get(holder.element_id), holder) for holder in nodes)
     element, holder = next((pair for pair in elements if pair[0] is not None), (None, node))
     # A node that repeats a member of a class has the element of the class, which lacks nothing.
     if element is None or element.ordinal != holder.ordinal:
@@ -134,28 +140,28 @@ def _mark_unresolved(context: Context, node: Node) -> None:
     stored = element.attrs.get("unresolved")
     edges = {str(edge) for edge in stored} if isinstance(stored, tuple) else set()
     edges.add(_EDGES.get(node.tag, Edge.SPECIALIZES).value)
-    context.graph.set(element, unresolved=tuple(sorted(edges)))
+    graph.set(element, unresolved=tuple(sorted(edges)))
     named_by = node.parent if node.tag in ROLE_REFERENCES else node
     if named_by is not None and element.id == named_by.element_id:
-        context.record_unresolved_path(element, node)
+        record_unresolved_path(graph, element, node)
 
 
 def _report_reference(
-    context: Context, target: MissingTarget, document: Document, node: Node
+    findings: Findings, target: MissingTarget, document: Document, node: Node
 ) -> None:
     nodes = (node, *node.iter_ancestors())
     library = next((holder.name for holder in nodes if holder.tag in LIBRARIES), "")
     if library in STANDARD_LIBRARIES:
-        _report_library_fault(context, target, document, node, library)
+        _report_library_fault(findings, target, document, node, library)
         return
     facts = {"path": target.name, "alias": target.name, "family": "class"}
     rule, cause = _RULES_PER_REFERENCE[target.kind], f"no {target.kind} {target.name}"
     element = f"'{qualified_name(node)}'"
-    context.report(rule, document, node, cause, element=element, **facts)
+    findings.report(rule, document, node, cause, element=element, **facts)
 
 
 def _report_library_fault(
-    context: Context, target: MissingTarget, document: Document, node: Node, library: str
+    findings: Findings, target: MissingTarget, document: Document, node: Node, library: str
 ) -> None:
     """Report a fault in a standard library that the file holds as a warning: the plant is read."""
     name = qualified_name(node)
@@ -164,11 +170,11 @@ def _report_library_fault(
     facts = {"element": f"'{name}'", "library": library, "path": target.name}
     facts["problem"] = _PROBLEMS[target.kind]
     cause = f"{library} without {target.name}"
-    context.sink.report(rules.LIBRARY_FAULT, subject, notes=(), help="", cause=cause, **facts)
+    findings.sink.report(rules.LIBRARY_FAULT, subject, notes=(), help="", cause=cause, **facts)
 
 
 def _report_file_or_library(
-    context: Context,
+    findings: Findings,
     target: MissingTarget,
     references: list[LocatedNode],
     locations: dict[Place, Location],
@@ -182,7 +188,7 @@ def _report_file_or_library(
     subject = Subject(qualified_name(node), place=document.locate(node))
     notes = tuple(_format_note(*reference, locations) for reference in references)
     facts = {"library": target.name, "file": target.name, "count": count}
-    context.sink.report(rule, subject, notes=notes, **facts)
+    findings.sink.report(rule, subject, notes=notes, **facts)
 
 
 def _format_note(document: Document, node: Node, locations: dict[Place, Location]) -> str:

@@ -8,8 +8,8 @@ from collections.abc import Callable
 from functools import lru_cache
 
 from sysmlc.diagnostics import Severity, rule
-from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
+from sysmlc.frontends.caex.findings import Findings
 from sysmlc.frontends.caex.types import Type
 from sysmlc.ir import AttrValue
 from sysmlc.support.suggestions import find_similar
@@ -199,7 +199,7 @@ _LENIENT_CONVERTERS: dict[str, Converter] = {
 
 
 def convert_value(
-    context: Context, node: Node, text: str, stated: str, type: Type | None
+    findings: Findings, node: Node, text: str, stated: str, type: Type | None
 ) -> AttrValue:
     """Return the value of a text for an attribute with data type *stated* or attribute type *type*.
 
@@ -213,7 +213,7 @@ def convert_value(
     try:
         value = convert(text)
     except ValueError:
-        _record_invalid_value(context, node, text, data_type)
+        _record_invalid_value(findings, node, text, data_type)
         return convert_leniently(text, stated)
     return value if stated else text
 
@@ -226,36 +226,36 @@ def find_data_type(stated: str, type: Type | None) -> str:
     return next(filter(None, inherited), "")
 
 
-def _record_invalid_value(context: Context, node: Node, text: str, data_type: str) -> None:
+def _record_invalid_value(findings: Findings, node: Node, text: str, data_type: str) -> None:
     """Record a text that is not a value of its data type; an empty text is no value at all."""
     if text.strip():
-        rows = context.invalid_values.setdefault((node.document, data_type, text), [])
+        rows = findings.invalid_values.setdefault((node.document, data_type, text), [])
         # Both bounds of a constraint may have the same text.
         if node.row not in rows[-1:]:
             rows.append(node.row)
 
 
-def check_data_type(context: Context, document: Document, row: int, data_type: str) -> None:
+def check_data_type(findings: Findings, document: Document, row: int, data_type: str) -> None:
     """Record the data type of a row if XML Schema does not have it."""
     if data_type and local_name(data_type) not in DATA_TYPES:
-        context.unknown_data_types.setdefault((document, data_type), row)
+        findings.unknown_data_types.setdefault((document, data_type), row)
 
 
 # -- diagnostics -----------------------------------------------------------------------------------
 
 
-def report_values(context: Context) -> None:
+def report_values(findings: Findings) -> None:
     """Report each invalid value and each unknown data type once a file."""
-    for (document, data_type, text), rows in context.invalid_values.items():
+    for (document, data_type, text), rows in findings.invalid_values.items():
         node = document.node(rows[0])
         count = f" and {len(rows) - 1} more" if len(rows) > 1 else ""
         hint = _HINTS[PRIMITIVES.get(local_name(data_type), "")]
         facts = {"value": text, "data_type": data_type, "hint": hint, "more": count}
-        context.report(INVALID_VALUE, document, node, element=node.name, **facts)
-    for (document, data_type), row in context.unknown_data_types.items():
+        findings.report(INVALID_VALUE, document, node, element=node.name, **facts)
+    for (document, data_type), row in findings.unknown_data_types.items():
         node = document.node(row)
         facts = {"data_type": data_type, "hint": _suggest_data_type(local_name(data_type))}
-        context.report(UNKNOWN_DATA_TYPE, document, node, element=node.name, **facts)
+        findings.report(UNKNOWN_DATA_TYPE, document, node, element=node.name, **facts)
 
 
 def _suggest_data_type(name: str) -> str:

@@ -3,14 +3,15 @@
 from collections.abc import Iterator
 
 from sysmlc.diagnostics import Severity, Verdict, rule
-from sysmlc.frontends.caex import mirrors
 from sysmlc.frontends.caex.component import Component, ensure_own_type
-from sysmlc.frontends.caex.context import Context, qualified_name
+from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
+from sysmlc.frontends.caex.findings import Findings, qualified_name
+from sysmlc.frontends.caex.identifiers import Identifiers
 from sysmlc.frontends.caex.overrides import overrides_attribute
 from sysmlc.frontends.caex.types import Type
 from sysmlc.frontends.caex.vocabulary import BASE_ROLE, ROLE_REFERENCES, Family
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.support.suggestions import did_you_mean
 
 DESCRIBED_MIRROR = rule(
@@ -101,12 +102,12 @@ def connect_content(context: Context, component: Component) -> None:
     if element.kind is Kind.FACET:
         pairs = _iter_shown_features(context, component)
     else:
-        pairs = _iter_masters(context, component)
+        pairs = _iter_masters(context.ids, component)
     mirror_names = []
     for node, master in pairs:
         target = context.graph.get(master.element_id)
         if target is not None:
-            node.verdict = _choose_verdict(context, component, node, master)
+            node.verdict = _choose_verdict(context.findings, component, node, master)
             context.graph.connect(Edge.REFERENCES, element, target)
             id = component.document.ids[node.row]
             if id or node.name != target.name:
@@ -121,8 +122,8 @@ def _iter_shown_features(context: Context, component: Component) -> Iterator[tup
     A feature of a facet is a mirror, or in CAEX 2.15 a copy with the same name.
     """
     for node in component.node.iter_children("Attribute", "ExternalInterface"):
-        if mirrors.is_mirror(context, node):
-            master = mirrors.find_master(context, component.document, node)
+        if context.mirrors.is_mirror(node):
+            master = context.mirrors.find_master(component.document, node)
         else:
             master = _find_copied_feature(context, component, node)
         if master is not None:
@@ -149,28 +150,28 @@ def _find_copied_feature(context: Context, component: Component, node: Node) -> 
     return member.node
 
 
-def _iter_masters(context: Context, component: Component) -> Iterator[tuple[Node, Node]]:
+def _iter_masters(ids: Identifiers, component: Component) -> Iterator[tuple[Node, Node]]:
     """Yield the internal elements of a group, each with the element that it names."""
     for node in component.node.iter_children("InternalElement"):
         path = node.attributes.get("RefBaseSystemUnitPath", "").strip()
-        located = context.find_node(path)
+        located = ids.find(path)
         if located is not None:
             yield node, located[1]
 
 
-def _choose_verdict(context: Context, component: Component, node: Node, master: Node) -> Verdict:
+def _choose_verdict(findings: Findings, component: Component, node: Node, master: Node) -> Verdict:
     """Return approximated, and report it, for a description that the master does not have."""
     text = (node.child_text("Description") or "").strip()
     if not text or text == (master.child_text("Description") or "").strip():
         return Verdict.MAPPED
     facts = {"element": qualified_name(node), "holder": component.name}
-    context.report(DESCRIBED_MIRROR, component.document, node, **facts)
+    findings.report(DESCRIBED_MIRROR, component.document, node, **facts)
     return Verdict.APPROXIMATED
 
 
-def report_unknown_facets(context: Context, components: list[Component]) -> None:
+def report_unknown_facets(graph: Graph, findings: Findings, components: list[Component]) -> None:
     """Report groups that are associated with a facet that does not exist."""
-    elements = [context.graph[component.part_id] for component in components]
+    elements = [graph[component.part_id] for component in components]
     facets = sorted({element.name for element in elements if element.kind is Kind.FACET})
     for component, element in zip(components, elements, strict=True):
         facet = str(element.attrs.get("associated_facet", ""))
@@ -178,4 +179,4 @@ def report_unknown_facets(context: Context, components: list[Component]) -> None
             node = component.node
             facts = {"element": qualified_name(node), "facet": facet}
             facts["hint"] = did_you_mean(facet, facets)
-            context.report(UNKNOWN_FACET, component.document, node, **facts)
+            findings.report(UNKNOWN_FACET, component.document, node, **facts)

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from sysmlc.diagnostics import Verdict
-from sysmlc.frontends.caex import groups, mirrors
+from sysmlc.frontends.caex import groups
 from sysmlc.frontends.caex.component import Component, ensure_instance, ensure_own_type
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
@@ -168,7 +168,7 @@ class Components:
         type = context.find_resolved(path, _SYSTEM_UNIT, document)
         if type is not None:
             return type
-        component.is_mirror = mirrors.is_id_reference(context, path)
+        component.is_mirror = context.mirrors.is_id_reference(path)
         if component.is_mirror:
             return None
         return context.resolve_type(path, _SYSTEM_UNIT, document, component.node)
@@ -204,7 +204,7 @@ class Components:
             self._connect_mirror(component)
         for component in self._groups:
             groups.connect_content(self._context, component)
-        groups.report_unknown_facets(self._context, self._groups)
+        groups.report_unknown_facets(self._context.graph, self._context.findings, self._groups)
         self._connect_types()
 
     def _connect_types(self) -> None:
@@ -231,7 +231,7 @@ class Components:
         """
         element = self._context.graph[component.instance_id or component.part_id]
         node = component.node
-        master = mirrors.connect_to_master(self._context, component.document, node, element)
+        master = self._context.mirrors.connect_to_master(component.document, node, element)
         original = self.find(master) if master is not None else None
         component.declared_type = original.type if original else None
         if component.type is None and node.has_child("Attribute", "ExternalInterface"):

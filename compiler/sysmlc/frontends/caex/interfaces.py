@@ -1,8 +1,9 @@
 """External interfaces: ports of classes, with their properties and the documents they name."""
 
-from sysmlc.frontends.caex import attributes, data_types, mirrors
+from sysmlc.frontends.caex import attributes, data_types
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
+from sysmlc.frontends.caex.findings import Findings
 from sysmlc.frontends.caex.overrides import iter_overriding_attributes
 from sysmlc.frontends.caex.types import Member, Type, find_meaning
 from sysmlc.frontends.caex.vocabulary import (
@@ -11,7 +12,7 @@ from sysmlc.frontends.caex.vocabulary import (
     INTERFACE_MEANINGS,
     Family,
 )
-from sysmlc.ir import AttrValue, Edge, Element, Kind
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 
 
 def lower_interface(context: Context, owner: Type, node: Node, document: Document) -> None:
@@ -29,11 +30,11 @@ def lower_interface(context: Context, owner: Type, node: Node, document: Documen
 def _lower_single(context: Context, owner: Type, node: Node, document: Document) -> Type | None:
     """Add an interface without its nested interfaces; return the type added for it, if any."""
     element = context.add_element(Kind.PORT, node, document, owner.id)
-    declared = mirrors.resolve_member_class(context, node, document)
+    declared = context.resolve_member_class(node, document)
     declared = declared or _find_inherited_class(owner, node)
-    attributes.connect_redefined(context, owner, node, element)
-    properties = read_port_properties(context, node)
-    direction = _find_inherited_direction(context, owner, node, declared)
+    attributes.connect_redefined(context.graph, owner, node, element)
+    properties = read_port_properties(context.findings, node)
+    direction = _find_inherited_direction(context.graph, owner, node, declared)
     if direction:
         properties.setdefault("direction", direction)
     element.attrs.update(properties)
@@ -59,13 +60,11 @@ def _find_inherited_class(owner: Type, node: Node) -> Type | None:
     return inherited.type
 
 
-def _find_inherited_direction(
-    context: Context, owner: Type, node: Node, declared: Type | None
-) -> str:
+def _find_inherited_direction(graph: Graph, owner: Type, node: Node, declared: Type | None) -> str:
     """Return the direction of the interface that *node* overrides, else that of its class."""
     inherited = owner.base.find_member(node.tag, node.name) if owner.base else None
-    if inherited is not None and "direction" in context.graph[inherited.id].attrs:
-        return str(context.graph[inherited.id].attrs["direction"])
+    if inherited is not None and "direction" in graph[inherited.id].attrs:
+        return str(graph[inherited.id].attrs["direction"])
     chain = declared.iter_chain() if declared is not None else ()
     directions = (
         _read_direction(child)
@@ -106,7 +105,7 @@ def _add_own_type(
 # -- properties of a port --------------------------------------------------------------------------
 
 
-def read_port_properties(context: Context, node: Node) -> dict[str, AttrValue]:
+def read_port_properties(findings: Findings, node: Node) -> dict[str, AttrValue]:
     """Return direction, multiplicity, category and values that the attributes of a port give.
 
     The attributes Direction, Cardinality and Category are those of the class Port (IEC 62714-1).
@@ -123,7 +122,7 @@ def read_port_properties(context: Context, node: Node) -> dict[str, AttrValue]:
         elif child.name == "Category" and value:
             properties["category"] = value
         else:
-            properties.update(_read_values(context, child))
+            properties.update(_read_values(findings, child))
     return properties
 
 
@@ -140,7 +139,7 @@ def _read_cardinality(node: Node) -> str:
     return lower if lower == upper else f"{lower}..{upper}"
 
 
-def _read_values(context: Context, node: Node) -> dict[str, AttrValue]:
+def _read_values(findings: Findings, node: Node) -> dict[str, AttrValue]:
     """Return the values of an attribute and its nested attributes, by ``value.`` and their path."""
     values: dict[str, AttrValue] = {}
     worklist = [(node, f"value.{node.name}")]
@@ -150,7 +149,7 @@ def _read_values(context: Context, node: Node) -> dict[str, AttrValue]:
         text = attribute.child_text("DefaultValue") if text is None else text
         if text is not None:
             data_type = attribute.attributes.get("AttributeDataType", "")
-            values[key] = data_types.convert_value(context, attribute, text, data_type, None)
+            values[key] = data_types.convert_value(findings, attribute, text, data_type, None)
         nested = attribute.iter_children("Attribute")
         worklist += [(child, f"{key}.{child.name}") for child in nested]
     return values

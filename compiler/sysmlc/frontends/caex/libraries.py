@@ -11,6 +11,7 @@ from sysmlc.frontends.caex import data_types, rules, value_types
 from sysmlc.frontends.caex.attributes import lower_attribute, lower_constraints
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node, read_document
+from sysmlc.frontends.caex.findings import Findings
 from sysmlc.frontends.caex.interfaces import lower_interface
 from sysmlc.frontends.caex.types import Type
 from sysmlc.frontends.caex.vocabulary import (
@@ -20,7 +21,7 @@ from sysmlc.frontends.caex.vocabulary import (
     SYSML_ROLES,
     Family,
 )
-from sysmlc.ir import Edge, Kind
+from sysmlc.ir import Edge, Graph, Kind
 from sysmlc.sources import Source
 from sysmlc.support import resources
 
@@ -73,10 +74,9 @@ def _add_class(
     return type
 
 
-def mark_standard_libraries(context: Context) -> None:
+def mark_standard_libraries(graph: Graph, documents: list[Document]) -> None:
     """Mark the standard libraries in files as external, as the built-in ones are."""
-    graph = context.graph
-    for document in context.documents:
+    for document in documents:
         for node in document.root.iter_children(*LIBRARIES):
             if node.name in STANDARD_LIBRARIES:
                 for element in graph.subtree(graph[node.element_id]):
@@ -95,12 +95,12 @@ def connect_base_classes(context: Context, types: list[Type]) -> None:
         type.base = base
     acyclic: set[Type] = set()
     for type in types:
-        _cut_cycle(context, type, acyclic)
+        _cut_cycle(context.findings, type, acyclic)
         if type.base is not None:
             context.graph.connect(Edge.SPECIALIZES, type.id, type.base.id)
 
 
-def _cut_cycle(context: Context, start: Type, acyclic: set[Type]) -> None:
+def _cut_cycle(findings: Findings, start: Type, acyclic: set[Type]) -> None:
     """Remove the base of *start* if the class specialises itself.
 
     *acyclic* collects the classes whose chains of base classes end.
@@ -113,7 +113,7 @@ def _cut_cycle(context: Context, start: Type, acyclic: set[Type]) -> None:
     if type is start and start in chain:
         names = " -> ".join(general.node.name for general in (*chain, start))
         facts = {"element": start.node.name, "cycle": names}
-        context.report(rules.CLASS_CYCLE, start.document, start.node, **facts)
+        findings.report(rules.CLASS_CYCLE, start.document, start.node, **facts)
         start.base = None
     if type is None or type not in chain or type is start:
         acyclic.update(chain)
@@ -173,8 +173,8 @@ def lower_features(context: Context, type: Type) -> None:
     """Add the attributes and interfaces that are directly below a class."""
     if type.family is Family.ATTRIBUTE:
         lower_constraints(context, context.graph[type.id], type.node, type.document)
-        value_types.complete_attribute_type(context, type)
-        _set_defaults(context, type)
+        value_types.complete_attribute_type(context.graph, context.findings, type)
+        _set_defaults(context.graph, context.findings, type)
     for child in type.node.children:
         if child.tag == "Attribute":
             lower_attribute(context, type, child, type.document)
@@ -182,20 +182,20 @@ def lower_features(context: Context, type: Type) -> None:
             lower_interface(context, type, child, type.document)
 
 
-def _set_defaults(context: Context, type: Type) -> None:
+def _set_defaults(graph: Graph, findings: Findings, type: Type) -> None:
     """Set the initial value that an attribute type gives to attributes of this type."""
-    node, attrs = type.node, context.graph[type.id].attrs
+    node, attrs = type.node, graph[type.id].attrs
     value, default = node.child_text("Value"), node.child_text("DefaultValue")
     data_type = data_types.find_data_type("", type)
-    data_types.check_data_type(context, type.document, node.row, data_type)
+    data_types.check_data_type(findings, type.document, node.row, data_type)
     initial = default if value is None else value
     if initial:
-        attrs["default"] = data_types.convert_value(context, node, initial, data_type, None)
+        attrs["default"] = data_types.convert_value(findings, node, initial, data_type, None)
     if default and default != value:
         attrs["default_value"] = default
         if default != initial:
             # The text is stored as it is written; the conversion only checks it.
-            data_types.convert_value(context, node, default, data_type, None)
+            data_types.convert_value(findings, node, default, data_type, None)
 
 
 # -- standard libraries ----------------------------------------------------------------------------

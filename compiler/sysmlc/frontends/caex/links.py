@@ -13,6 +13,7 @@ from sysmlc.frontends.caex import rules
 from sysmlc.frontends.caex.component import Component
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
+from sysmlc.frontends.caex.findings import report_inexact_id
 from sysmlc.frontends.caex.hierarchies import Components
 from sysmlc.frontends.caex.identifiers import LocatedNode
 from sysmlc.frontends.caex.types import Type, split_path
@@ -80,12 +81,14 @@ class LinkEndResolver:
         """Return the end that a side means, None if the side is open; report what is wrong."""
         text = node.attributes.get(SIDES[side], "").strip()
         if not text:
-            self._context.report(rules.OPEN_LINK, document, node, element=node.name, side=side)
+            self._context.findings.report(
+                rules.OPEN_LINK, document, node, element=node.name, side=side
+            )
             return None
         end = self._resolve_text(text, document, node)
         if isinstance(end, Problem):
             facts = {"side": side, "reference": text, "problem": end.text}
-            self._context.report(
+            self._context.findings.report(
                 rules.DANGLING_LINK, document, node, f"no end {text}", element=node.name, **facts
             )
         return end
@@ -94,15 +97,15 @@ class LinkEndResolver:
         """Find an interface by its ID, else by the ID or path of its owner, ``:`` and its name.
 
         Names may contain ``:``, so the text is split at each one in turn."""
-        interface = self._context.find_node(text, document)
+        interface = self._context.ids.find(text, document)
         if interface is not None:
-            self._context.report_inexact_id(document, node, text)
+            report_inexact_id(self._context.findings, self._context.ids, document, node, text)
             return self._make_end_of_node(interface[1])
         for position in (index for index, character in enumerate(text) if character == ":"):
             prefix = text[:position]
-            owner = self._context.find_node(prefix, document) or self._find_by_path(prefix)
+            owner = self._context.ids.find(prefix, document) or self._find_by_path(prefix)
             if owner is not None:
-                self._context.report_inexact_id(document, node, prefix)
+                report_inexact_id(self._context.findings, self._context.ids, document, node, prefix)
                 return self._make_end_of_name(owner[1], text[position + 1 :])
         is_id = len(text) >= _MIN_ID_LENGTH and " " not in text
         return Problem("no element has that id" if is_id else "it names no interface")

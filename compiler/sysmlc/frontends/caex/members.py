@@ -4,8 +4,9 @@ from sysmlc.diagnostics import Verdict
 from sysmlc.frontends.caex import data_types, mirrors
 from sysmlc.frontends.caex.attributes import lower_attribute
 from sysmlc.frontends.caex.component import Component, ensure_instance, ensure_own_type
-from sysmlc.frontends.caex.context import Context, read_class_reference
+from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Node
+from sysmlc.frontends.caex.findings import read_class_reference
 from sysmlc.frontends.caex.interfaces import (
     add_external_document,
     lower_interface,
@@ -15,7 +16,7 @@ from sysmlc.frontends.caex.overrides import iter_overriding_attributes, override
 from sysmlc.frontends.caex.scales import check_scales
 from sysmlc.frontends.caex.types import Member, Type
 from sysmlc.frontends.caex.vocabulary import Family
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind
 
 _REPEATED_TAGS = frozenset({"Constraint", "RefSemantic"})
 """Content of a repeated attribute that repeats the definition in the class."""
@@ -111,7 +112,7 @@ def _lower_attribute(context: Context, component: Component, node: Node) -> None
 def _check_class(context: Context, node: Node, component: Component) -> None:
     """Record the class that an instance names if it does not exist."""
     path = read_class_reference(node)
-    if path and not mirrors.is_mirror(context, node):
+    if path and not context.mirrors.is_mirror(node):
         context.resolve_type(path, mirrors.MEMBER_FAMILIES[node.tag], component.document, node)
 
 
@@ -124,17 +125,17 @@ def _add_value(
         return
     owner = ensure_instance(context, component)
     data_type = member.node.attributes.get("AttributeDataType", "")
-    value = data_types.convert_value(context, node, text, data_type, member.type)
-    check_scales(context, component.document, node, [node, member.node], member.type)
+    value = data_types.convert_value(context.findings, node, text, data_type, member.type)
+    check_scales(context.findings, component.document, node, [node, member.node], member.type)
     slot = context.add_element(Kind.SLOT, node, component.document, owner, value=value)
     context.graph.connect(Edge.INSTANCE_OF, slot.id, member.id)
-    _connect_path(context, slot.id, path)
+    _connect_path(context.graph, slot.id, path)
 
 
-def _connect_path(context: Context, id: str, path: _FeaturePath) -> None:
+def _connect_path(graph: Graph, id: str, path: _FeaturePath) -> None:
     """Connect an element to the features around a nested one, whose type several features share."""
     for outer in path:
-        context.graph.connect(Edge.PATH, id, outer)
+        graph.connect(Edge.PATH, id, outer)
 
 
 def _add_description(
@@ -151,7 +152,7 @@ def _add_description(
     comment.attrs["body"] = str(text).strip()
     context.graph.add(comment)
     context.graph.connect(Edge.REFERENCES, id, member.id)
-    _connect_path(context, id, path)
+    _connect_path(context.graph, id, path)
 
 
 # -- interfaces ------------------------------------------------------------------------------------
@@ -207,7 +208,7 @@ def _overrides_interface(context: Context, node: Node, inherited: Member) -> boo
 def _is_of_other_class(context: Context, node: Node, inherited: Member) -> bool:
     """Whether an interface names a class that the inherited interface does not conform to."""
     path = node.attributes.get("RefBaseClassPath", "").strip()
-    if not path or mirrors.is_mirror(context, node):
+    if not path or context.mirrors.is_mirror(node):
         return False
     type = context.look_up_type(path, Family.INTERFACE, node.document)
     if not isinstance(type, Type):
@@ -219,7 +220,7 @@ def _add_port_values(
     context: Context, component: Component, node: Node, member: Member, path: _FeaturePath
 ) -> None:
     """Add a slot for properties of a port that differ from those in the class."""
-    properties = read_port_properties(context, node)
+    properties = read_port_properties(context.findings, node)
     inherited = context.graph[member.id].attrs
     changed = {key: value for key, value in properties.items() if inherited.get(key) != value}
     for child in node.iter_children("Attribute"):
@@ -232,5 +233,5 @@ def _add_port_values(
     slot.attrs.update(changed)
     context.graph.add(slot)
     context.graph.connect(Edge.INSTANCE_OF, id, member.id)
-    _connect_path(context, id, path)
+    _connect_path(context.graph, id, path)
     add_external_document(context, node, document, owner, member.id, changed)

@@ -6,7 +6,7 @@ from html import escape
 
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
-from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind
 
 _CAPITAL = re.compile(r"(?<=[a-z0-9])([A-Z])")
 
@@ -31,7 +31,7 @@ def lower_metadata(context: Context, document: Document) -> None:
         if element is None:
             continue
         if element.kind is not Kind.DOCUMENT and not _repeats_port(element, node):
-            _lower_texts(context, node, element)
+            _lower_texts(context.graph, node, element)
         for row in document.child_rows(node.row):
             if document.tags[row] in _STATEMENT_TAGS:
                 _lower_statement(context, document, document.node(row), element)
@@ -54,29 +54,29 @@ def _find_described_rows(document: Document) -> list[int]:
     return sorted(rows)
 
 
-def _lower_texts(context: Context, node: Node, element: Element) -> None:
+def _lower_texts(graph: Graph, node: Node, element: Element) -> None:
     """Add descriptions as comments, and set version and change mode of an element."""
     has_content = bool(node.texts or node.children)
     if has_content:
         for text in node.child_texts("Description"):
             if text.strip():
-                _add_comment(context, element, text)
+                _add_comment(graph, element, text)
     version = node.child_text("Version") if has_content else None
     if version and "version" not in element.attrs:
-        context.graph.set(element, version=version)
+        graph.set(element, version=version)
     change = node.attributes.get("ChangeMode", "")
     # "state" is the default of the schema: nothing was changed.
     if change and change != "state":
-        context.graph.set(element, change_mode=change)
+        graph.set(element, change_mode=change)
 
 
-def _add_comment(context: Context, element: Element, text: str) -> None:
+def _add_comment(graph: Graph, element: Element, text: str) -> None:
     owner = element.owner if element.kind is Kind.IMPORT else element.id
     id = f"{element.id}/Description"
-    if id not in context.graph:
+    if id not in graph:
         comment = Element(id, Kind.COMMENT, "", owner, element.ordinal, element.source)
         comment.attrs["body"] = text.strip()
-        context.graph.add(comment)
+        graph.add(comment)
 
 
 def _lower_statement(context: Context, document: Document, node: Node, element: Element) -> None:

@@ -13,10 +13,10 @@ from sysmlc.frontends.caex import libraries, rules, standard
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.coverage import report_coverage
 from sysmlc.frontends.caex.document import Document, Node, read_document
+from sysmlc.frontends.caex.findings import Findings
 from sysmlc.frontends.caex.hierarchies import Components
 from sysmlc.frontends.caex.links import LinkLowering
 from sysmlc.frontends.caex.metadata import lower_metadata
-from sysmlc.frontends.caex.mirrors import connect_mirrors
 from sysmlc.frontends.caex.roles import lower_mappings, lower_roles
 from sysmlc.frontends.caex.types import Type
 from sysmlc.frontends.caex.vocabulary import LIBRARIES, Family
@@ -49,7 +49,8 @@ def read(sources: Sequence[Source], graph: Graph, sink: Sink, coverage: Coverage
         context = Context(documents, graph, sink, standard_libraries.provide)
         _lower_unit(context)
         report_coverage(context, coverage, ordered)
-        context.release_nodes()
+        for document in documents:
+            document.release_nodes()
         standard_libraries.release_nodes()
 
 
@@ -63,13 +64,13 @@ def _lower_unit(context: Context) -> None:
     for document in context.documents:
         components.lower_hierarchies(document)
     components.complete()
-    connect_mirrors(context)
+    context.mirrors.connect()
     lower_roles(context, components)
     lower_mappings(context, components)
     LinkLowering(context, components).lower()
     for document in context.documents:
         lower_metadata(context, document)
-    libraries.mark_standard_libraries(context)
+    libraries.mark_standard_libraries(context.graph, context.documents)
 
 
 def _lower_classes(context: Context) -> list[Type]:
@@ -77,12 +78,12 @@ def _lower_classes(context: Context) -> list[Type]:
     types: list[Type] = []
     for document in context.documents:
         _lower_header(context, document)
-    _report_missing_plant(context)
-    _connect_aliases(context)
+    _report_missing_plant(context.findings, context.documents)
+    _connect_aliases(context.graph, context.documents)
     for document in context.documents:
         types += libraries.lower_libraries(context, document)
     libraries.connect_base_classes(context, types)
-    standard.report_classes_without_base(context, types)
+    standard.report_classes_without_base(context.findings, types)
     for type in libraries.order_by_base(types):
         libraries.lower_features(context, type)
     return types
@@ -107,21 +108,21 @@ def _lower_header(context: Context, document: Document) -> None:
     )
     context.graph.rename(element, root.attributes.get("FileName", "") or document.name)
     if not root.has_child(*LIBRARIES, "InstanceHierarchy"):
-        context.report(rules.NO_MODEL, document, root, file=document.name)
+        context.findings.report(rules.NO_MODEL, document, root, file=document.name)
     for node in root.iter_children("ExternalReference"):
         _lower_alias(context, document, node)
     for node in root.iter_children("SuperiorStandardVersion", "Description"):
         node.verdict = Verdict.MAPPED
 
 
-def _report_missing_plant(context: Context) -> None:
+def _report_missing_plant(findings: Findings, documents: list[Document]) -> None:
     """Report the first file of a unit that has libraries but no instance hierarchy."""
-    roots = [document.root for document in context.documents]
+    roots = [document.root for document in documents]
     if any(root.has_child("InstanceHierarchy") for root in roots):
         return
-    for document in context.documents:
+    for document in documents:
         if document.root.has_child(*LIBRARIES):
-            context.report(rules.ONLY_LIBRARIES, document, document.root, file=document.name)
+            findings.report(rules.ONLY_LIBRARIES, document, document.root, file=document.name)
             return
 
 
@@ -151,17 +152,17 @@ def _declare_alias(context: Context, document: Document, node: Node, file: str) 
     references = document.root.iter_children("ExternalReference")
     first = next(other for other in references if other.attributes.get("Alias", "") == alias)
     paths = {"path": node.attributes.get("Path", ""), "first": first.attributes.get("Path", "")}
-    context.report(REPEATED_ALIAS, document, node, alias=alias, **paths)
+    context.findings.report(REPEATED_ALIAS, document, node, alias=alias, **paths)
 
 
-def _connect_aliases(context: Context) -> None:
+def _connect_aliases(graph: Graph, documents: list[Document]) -> None:
     """Connect each alias to the document of its file, if that is part of the unit."""
-    for document in context.documents:
+    for document in documents:
         for node in document.root.iter_children("ExternalReference"):
             path = node.attributes.get("Path", "")
             target = f"{_resolve_file(document.name, path)}#"
-            if target in context.graph:
-                context.graph.connect(Edge.REFERENCES, node.element_id, target)
+            if target in graph:
+                graph.connect(Edge.REFERENCES, node.element_id, target)
 
 
 def _resolve_file(name: str, path: str) -> str:

@@ -7,11 +7,13 @@ from sysmlc.frontends.caex import rules
 from sysmlc.frontends.caex.component import Component, ensure_instance
 from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Node
+from sysmlc.frontends.caex.findings import Findings
 from sysmlc.frontends.caex.hierarchies import Components
+from sysmlc.frontends.caex.identifiers import Identifiers
 from sysmlc.frontends.caex.interfaces import read_port_properties
 from sysmlc.frontends.caex.types import Member, Type, find_meaning
 from sysmlc.frontends.caex.vocabulary import BASE_ROLE, PPR_ROLES, ROLE_REFERENCES, Family
-from sysmlc.ir import Edge
+from sysmlc.ir import Edge, Graph
 
 # Access to a member of an enumeration takes twice as long as to a global variable.
 _MAPPED = Verdict.MAPPED
@@ -38,7 +40,7 @@ def lower_roles(context: Context, components: Components) -> None:
             if ppr:
                 _set_ppr(context, component, ppr, class_roles)
             if is_port:
-                _mark_port_object(context, component)
+                _mark_port_object(context.graph, context.findings, component)
             realizations.append((_find_client(context, component), role.id))
             if component.own_type is not None:
                 class_roles.add(component.own_type, role)
@@ -101,13 +103,13 @@ class _ClassRoles:
             self._cached_types.clear()
 
 
-def _mark_port_object(context: Context, component: Component) -> None:
+def _mark_port_object(graph: Graph, findings: Findings, component: Component) -> None:
     """Mark a part with the role Port of CAEX 2.15 with the properties of a port."""
     if component.part_id and not component.is_inherited:
-        values = read_port_properties(context, component.node)
+        values = read_port_properties(findings, component.node)
         properties = {key: values[key] for key in _PORT_PROPERTIES if key in values}
-        part = context.graph[component.part_id]
-        context.graph.set(part, subkind="port-object", **properties)
+        part = graph[component.part_id]
+        graph.set(part, subkind="port-object", **properties)
 
 
 def _set_ppr(context: Context, component: Component, ppr: str, class_roles: _ClassRoles) -> None:
@@ -195,15 +197,15 @@ def _lower_mapping(context: Context, component: Component, node: Node) -> None:
     tag, own_key, role_keys = _MAPPINGS[node.tag]
     own_name = node.attributes.get(own_key, "")
     role_name = next((node.attributes[key] for key in role_keys if key in node.attributes), "")
-    own_feature = _find_feature(context, _list_mapped_types(context, component), tag, own_name)
-    role_feature = _find_feature(context, _iter_known_roles(context, component), tag, role_name)
+    own_feature = _find_feature(context.ids, _list_mapped_types(context, component), tag, own_name)
+    role_feature = _find_feature(context.ids, _iter_known_roles(context, component), tag, role_name)
     if own_feature and role_feature:
         context.graph.connect(Edge.REDEFINES, own_feature, role_feature)
         _realize_property_set(context, component, own_feature, role_feature)
         return
     missing = role_name if own_feature else own_name
     facts = {"element": component.node.name, "feature": missing}
-    context.report(rules.MAPPING_OF_NOTHING, component.document, node, **facts)
+    context.findings.report(rules.MAPPING_OF_NOTHING, component.document, node, **facts)
 
 
 def _realize_property_set(
@@ -237,9 +239,9 @@ def _is_property_set(context: Context, component: Component) -> bool:
     return any(role.conforms_to(*BASE_ROLE, "PropertySet") for role in roles)
 
 
-def _find_feature(context: Context, types: Iterable[Type], tag: str, name: str) -> str:
+def _find_feature(ids: Identifiers, types: Iterable[Type], tag: str, name: str) -> str:
     """Return the id of the feature with an ID, or of the first class that has its name."""
-    located = context.find_node(name)
+    located = ids.find(name)
     if located is not None and located[1].element_id:
         return located[1].element_id
     members = (_find_nested_member(type, tag, name) for type in types)

@@ -3,8 +3,8 @@
 from collections.abc import Iterable
 
 from sysmlc.diagnostics import Severity, rule
-from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
+from sysmlc.frontends.caex.findings import Findings
 from sysmlc.frontends.caex.types import Type
 
 OUTSIDE_SCALE = rule(
@@ -17,7 +17,11 @@ OUTSIDE_SCALE = rule(
 
 
 def check_scales(
-    context: Context, document: Document, node: Node, definitions: Iterable[Node], type: Type | None
+    findings: Findings,
+    document: Document,
+    node: Node,
+    definitions: Iterable[Node],
+    type: Type | None,
 ) -> None:
     """Report the value of an attribute if it is outside a scale.
 
@@ -30,7 +34,7 @@ def check_scales(
             fault = _find_fault(constraint, text)
             if fault:
                 facts = {"value": text, "element": node.name, "constraint": constraint.name}
-                context.report(OUTSIDE_SCALE, document, node, fault=fault, **facts)
+                findings.report(OUTSIDE_SCALE, document, node, fault=fault, **facts)
                 return
 
 

@@ -6,9 +6,10 @@ None of it prevents reading; other tools of AutomationML do not find what they n
 from collections.abc import Iterable, Iterator
 
 from sysmlc.diagnostics import Rule, Severity, rule
-from sysmlc.frontends.caex.context import Context, qualified_name
+from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.document import Document, Node
-from sysmlc.frontends.caex.identifiers import LocatedNode
+from sysmlc.frontends.caex.findings import Findings, qualified_name
+from sysmlc.frontends.caex.identifiers import Identifiers, LocatedNode
 from sysmlc.frontends.caex.types import Type, find_meaning
 from sysmlc.frontends.caex.vocabulary import (
     BASE_INTERFACE,
@@ -22,6 +23,7 @@ from sysmlc.frontends.caex.vocabulary import (
     STANDARD_LIBRARIES,
     Family,
 )
+from sysmlc.ir import Graph
 
 ID_IN_SEVERAL_FILES = rule(
     "SM341",
@@ -80,10 +82,10 @@ _MEANINGS = {
 }
 
 
-def report_repeated_across_files(context: Context) -> None:
+def report_repeated_across_files(findings: Findings, ids: Identifiers) -> None:
     """Report once a file that IDs of its elements are those of elements of an earlier file."""
     repeated: dict[Document, list[tuple[str, Node, LocatedNode]]] = {}
-    for id, nodes in context.ids.iter_repeated():
+    for id, nodes in ids.iter_repeated():
         by_file: dict[Document, Node] = {}
         for document, node in nodes:
             by_file.setdefault(document, node)
@@ -94,10 +96,10 @@ def report_repeated_across_files(context: Context) -> None:
         id, node, (first_document, first_node) = occurrences[0]
         facts = {"first": qualified_name(first_node), "file": first_document.name}
         rest = [occurrence[1] for occurrence in occurrences[1:]]
-        _report_group(context, ID_IN_SEVERAL_FILES, document, [node, *rest], id=id, **facts)
+        _report_group(findings, ID_IN_SEVERAL_FILES, document, [node, *rest], id=id, **facts)
 
 
-def report_classes_without_base(context: Context, types: Iterable[Type]) -> None:
+def report_classes_without_base(findings: Findings, types: Iterable[Type]) -> None:
     """Report once a file and family the role and interface classes without the standard base.
 
     A class whose base is missing or circular is reported as such, and one whose base lacks the
@@ -112,7 +114,7 @@ def report_classes_without_base(context: Context, types: Iterable[Type]) -> None
     for (document, family), group in nodes.items():
         base = _BASES[family]
         facts = {"family": family.value, "base": base[-1], "path": "/".join(base)}
-        _report_group(context, CLASS_WITHOUT_BASE, document, group, **facts)
+        _report_group(findings, CLASS_WITHOUT_BASE, document, group, **facts)
 
 
 def report_interfaces(context: Context, document: Document) -> None:
@@ -120,27 +122,29 @@ def report_interfaces(context: Context, document: Document) -> None:
     undirected: dict[str, list[Node]] = {}
     for node, meaning, is_instance in _iter_interfaces(context, document):
         if meaning in _DIRECTED:
-            has_value = _report_unknown_direction(context, document, node)
-            if is_instance and not has_value and not _has_direction(context, node):
+            has_value = _report_unknown_direction(context.findings, document, node)
+            if is_instance and not has_value and not _has_direction(context.graph, node):
                 undirected.setdefault(meaning, []).append(node)
         elif is_instance and not _has_uri(context, document, node):
-            context.report(WITHOUT_URI, document, node, "no refURI", element=qualified_name(node))
+            context.findings.report(
+                WITHOUT_URI, document, node, "no refURI", element=qualified_name(node)
+            )
     for meaning, nodes in undirected.items():
-        _report_group(context, WITHOUT_DIRECTION, document, nodes, base=_DIRECTED[meaning])
+        _report_group(context.findings, WITHOUT_DIRECTION, document, nodes, base=_DIRECTED[meaning])
     for node in _iter_port_elements(context, document):
-        _report_unknown_direction(context, document, node)
+        _report_unknown_direction(context.findings, document, node)
         if not _has_interface(context, document, node):
             facts = {"element": qualified_name(node)}
-            context.report(PORT_WITHOUT_INTERFACE, document, node, "port element", **facts)
+            context.findings.report(PORT_WITHOUT_INTERFACE, document, node, "port element", **facts)
 
 
 def _report_group(
-    context: Context, rule: Rule, document: Document, nodes: list[Node], **facts: str
+    findings: Findings, rule: Rule, document: Document, nodes: list[Node], **facts: str
 ) -> None:
     """Report the first of some nodes; the message counts the others."""
     rest = len(nodes) - 1
     more = f" ({rest} more in the file)" if rest else ""
-    context.report(rule, document, nodes[0], element=qualified_name(nodes[0]), more=more, **facts)
+    findings.report(rule, document, nodes[0], element=qualified_name(nodes[0]), more=more, **facts)
 
 
 # -- interfaces ------------------------------------------------------------------------------------
@@ -173,18 +177,18 @@ def _read_value(node: Node, name: str) -> str:
     return ""
 
 
-def _report_unknown_direction(context: Context, document: Document, node: Node) -> bool:
+def _report_unknown_direction(findings: Findings, document: Document, node: Node) -> bool:
     """Report a direction that is none; return whether the node states any."""
     value = _read_value(node, "Direction")
     if value and value.lower() not in DIRECTIONS:
         facts = {"element": qualified_name(node), "value": value}
-        context.report(UNKNOWN_DIRECTION, document, node, f"direction {value}", **facts)
+        findings.report(UNKNOWN_DIRECTION, document, node, f"direction {value}", **facts)
     return bool(value)
 
 
-def _has_direction(context: Context, node: Node) -> bool:
+def _has_direction(graph: Graph, node: Node) -> bool:
     """Whether the port of an interface has a direction, from its class or what it overrides."""
-    port = context.graph.get(node.element_id)
+    port = graph.get(node.element_id)
     return port is not None and "direction" in port.attrs
 
 

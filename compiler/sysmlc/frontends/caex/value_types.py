@@ -3,12 +3,12 @@
 from functools import lru_cache
 
 from sysmlc.frontends.caex import rules
-from sysmlc.frontends.caex.context import Context
 from sysmlc.frontends.caex.data_types import PRIMITIVES, local_name
 from sysmlc.frontends.caex.document import Document, Node
+from sysmlc.frontends.caex.findings import Findings
 from sysmlc.frontends.caex.types import Type
 from sysmlc.frontends.caex.vocabulary import BASE_ATTRIBUTE
-from sysmlc.ir import AttrValue, Edge, Element, Kind, Reference, list_items
+from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, Reference, list_items
 from sysmlc.support import units
 
 _PRIMITIVE_TYPES = "http://www.omg.org/spec/UML/20161101/PrimitiveTypes.xmi#"
@@ -17,20 +17,25 @@ _PACKAGE_ID = "values#"
 
 
 def connect_type(
-    context: Context, element: Element, node: Node, document: Document, type: Type | None
+    graph: Graph,
+    findings: Findings,
+    element: Element,
+    node: Node,
+    document: Document,
+    type: Type | None,
 ) -> None:
     """Connect a value property to its class, to a value type with its unit, or to a primitive."""
-    unit = _read_unit(context, node, document)
+    unit = _read_unit(findings, node, document)
     if unit:
         element.attrs["unit"] = unit
     if unit and unit not in _list_units(type):
-        value_type = context.graph[_find_measured_type(context, node, type, unit)]
-        context.graph.connect(Edge.TYPED_BY, element, value_type)
+        value_type = graph[_find_measured_type(graph, node, type, unit)]
+        graph.connect(Edge.TYPED_BY, element, value_type)
     elif type is not None:
-        context.graph.connect(Edge.TYPED_BY, element, context.graph[type.id])
+        graph.connect(Edge.TYPED_BY, element, graph[type.id])
     else:
         data_type = node.attributes.get("AttributeDataType", "")
-        _refer_to_primitive(context, Edge.TYPED_BY, element.id, data_type, element.ordinal)
+        _refer_to_primitive(graph, Edge.TYPED_BY, element.id, data_type, element.ordinal)
 
 
 def set_multiplicity(attrs: dict[str, AttrValue], declared: Type | None) -> None:
@@ -47,18 +52,18 @@ def set_multiplicity(attrs: dict[str, AttrValue], declared: Type | None) -> None
                 attrs["ordered"] = True
 
 
-def complete_attribute_type(context: Context, type: Type) -> None:
+def complete_attribute_type(graph: Graph, findings: Findings, type: Type) -> None:
     """Give an attribute type its primitive and its unit."""
-    node, element = type.node, context.graph[type.id]
+    node, element = type.node, graph[type.id]
     data_type = node.attributes.get("AttributeDataType")
     if data_type:
         element.attrs["data_type"] = data_type
     if data_type and type.base is None:
-        _refer_to_primitive(context, Edge.SPECIALIZES, type.id, data_type, element.ordinal)
-    unit = _read_unit(context, node, type.document)
+        _refer_to_primitive(graph, Edge.SPECIALIZES, type.id, data_type, element.ordinal)
+    unit = _read_unit(findings, node, type.document)
     if unit:
         element.attrs["unit"] = unit
-        _add_unit(context, type.id, unit)
+        _add_unit(graph, type.id, unit)
 
 
 @lru_cache(1024)
@@ -68,33 +73,33 @@ def find_primitive(data_type: str) -> str:
 
 
 def _refer_to_primitive(
-    context: Context, edge: Edge, source: str, data_type: str, ordinal: int
+    graph: Graph, edge: Edge, source: str, data_type: str, ordinal: int
 ) -> None:
     """Add a pending reference to the UML primitive of an XML Schema data type."""
     name = find_primitive(data_type)
     reference = Reference(edge, source, _HREFS[name], Kind.DATA_TYPE, name, ordinal)
-    context.graph.pending.append(reference)
+    graph.pending.append(reference)
 
 
 # -- units -----------------------------------------------------------------------------------------
 
 
-def _read_unit(context: Context, node: Node, document: Document) -> str:
+def _read_unit(findings: Findings, node: Node, document: Document) -> str:
     """Return the unit as it is written, known or not; nothing for the name of a type."""
     text = node.attributes.get("Unit", "").strip()
     if not text or units.find_unit(text) is not None or document.is_built_in:
         return text
-    context.unknown_units.setdefault((document, text), []).append(node)
+    findings.unknown_units.setdefault((document, text), []).append(node)
     return "" if text in units.TYPE_NAMES else text
 
 
-def report_unknown_units(context: Context) -> None:
+def report_unknown_units(findings: Findings) -> None:
     """Report each text that stands in place of a unit but is no unit, once for each file."""
-    for (document, text), nodes in context.unknown_units.items():
+    for (document, text), nodes in findings.unknown_units.items():
         count = f" and {len(nodes) - 1} more" if len(nodes) > 1 else ""
         problem = "is the name of a type" if text in units.TYPE_NAMES else "is not known"
         facts = {"unit": text, "problem": problem, "element": nodes[0].name, "more": count}
-        context.report(rules.UNKNOWN_UNIT, document, nodes[0], **facts)
+        findings.report(rules.UNKNOWN_UNIT, document, nodes[0], **facts)
 
 
 def _list_units(type: Type | None) -> list[str | None]:
@@ -106,23 +111,23 @@ def _list_units(type: Type | None) -> list[str | None]:
 # -- value types with a unit -----------------------------------------------------------------------
 
 
-def _find_measured_type(context: Context, node: Node, type: Type | None, unit: str) -> str:
+def _find_measured_type(graph: Graph, node: Node, type: Type | None, unit: str) -> str:
     """Return the id of the value type for a unit; all attributes of one unit and type share it."""
     stated = node.attributes.get("AttributeDataType", "")
     primitive = find_primitive(stated)
     id = f"{type.id if type else primitive}[{unit}]"
-    if id in context.graph:
+    if id in graph:
         return id
     name = f"{type.node.name if type else _name_quantity(unit, primitive)}[{unit}]"
-    owner = type.id if type else _find_package(context)
+    owner = type.id if type else _find_package(graph)
     value_type = Element(id, Kind.DATA_TYPE, name, owner)
     value_type.attrs.update(role="value type", external=True, library=True)
-    context.graph.add(value_type)
-    _add_unit(context, id, unit)
+    graph.add(value_type)
+    _add_unit(graph, id, unit)
     if type is not None:
-        context.graph.connect(Edge.SPECIALIZES, id, type.id)
+        graph.connect(Edge.SPECIALIZES, id, type.id)
     else:
-        _refer_to_primitive(context, Edge.SPECIALIZES, id, stated, -1)
+        _refer_to_primitive(graph, Edge.SPECIALIZES, id, stated, -1)
     return id
 
 
@@ -137,18 +142,17 @@ def _name_quantity(unit: str, primitive: str) -> str:
     return known_unit.quantity if primitive == "Real" else f"{primitive} {known_unit.quantity}"
 
 
-def _find_package(context: Context) -> str:
+def _find_package(graph: Graph) -> str:
     """Return the id of the package of value types without an attribute type."""
-    if _PACKAGE_ID not in context.graph:
+    if _PACKAGE_ID not in graph:
         package = Element(_PACKAGE_ID, Kind.PACKAGE, "Values")
         package.attrs.update(subkind="attribute-type-lib", external=True, library=True)
-        context.graph.add(package)
+        graph.add(package)
     return _PACKAGE_ID
 
 
-def _add_unit(context: Context, id: str, text: str) -> None:
+def _add_unit(graph: Graph, id: str, text: str) -> None:
     """Add the unit and quantity kind of a value type, which owns both, as no file holds them."""
-    graph = context.graph
     known_unit = units.find_unit(text)
     value_type = graph[id]
     unit = Element(f"{id}#unit", Kind.UNIT, known_unit.name if known_unit else text, id)
