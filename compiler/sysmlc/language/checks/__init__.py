@@ -3,10 +3,9 @@
 The tables below have the checks for each metaclass, and for each kind of relation.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from functools import lru_cache
 from itertools import chain
-from typing import TypeVar
 
 from sysmlc.diagnostics import Sink
 from sysmlc.language.checks import (
@@ -46,20 +45,14 @@ def check(model: Model, sink: Sink) -> None:
                     return
 
 
-Reporter = Callable[[Model, Document, Node, Sink], None]
-"""A check that reports its findings itself."""
-_Entry = TypeVar("_Entry")
-
 # The order within each table is the order of the diagnostics about one node.
-_REPORTERS: tuple[tuple[frozenset[str], Reporter], ...] = (
+_CHECKS: tuple[tuple[frozenset[str], Check], ...] = (
     (specializations.TYPED_KINDS, specializations.check_types),
     (DECLARED_TYPES, memberships.check_own_members),
     (USAGES, memberships.check_member),
     (USAGES, references.check_references),
     (USAGES, references.check_usage),
     (references.REFERRING_KINDS, references.check_accessibility),
-)
-_CHECKS: tuple[tuple[frozenset[str], Check], ...] = (
     *conformance.CHECKS,
     *specializations.CHECKS,
     *conformance.MULTIPLICITY_CHECKS,
@@ -83,16 +76,15 @@ _RELATION_CHECKS: tuple[tuple[frozenset[str], Check], ...] = (
 
 
 def _group_by_key(
-    entries: Iterable[tuple[frozenset[str], _Entry]],
-) -> dict[str, tuple[_Entry, ...]]:
-    groups: dict[str, tuple[_Entry, ...]] = {}
+    entries: Iterable[tuple[frozenset[str], Check]],
+) -> dict[str, tuple[Check, ...]]:
+    groups: dict[str, tuple[Check, ...]] = {}
     for keys, check in entries:
         for key in sorted(keys):
             groups[key] = (*groups.get(key, ()), check)
     return groups
 
 
-REPORTERS = _group_by_key(_REPORTERS)
 BY_KIND = _group_by_key(_CHECKS)
 BY_RELATION = _group_by_key(_RELATION_CHECKS)
 """The checks for each metaclass and for each kind of relation, in the order of the tables."""
@@ -125,10 +117,10 @@ def _select_checks(
     relation_kinds: tuple[str, ...],
     has_several_members: bool,
     is_variable: bool,
-) -> tuple[tuple[Reporter, ...], tuple[Check, ...]]:
+) -> tuple[Check, ...]:
     """Return the checks that may find something in a node, by its kind, members and relations."""
 
-    def may_find(check: Reporter | Check) -> bool:
+    def may_find(check: Check) -> bool:
         if check in _REQUIRED_MEMBERSHIPS:
             return not _REQUIRED_MEMBERSHIPS[check].isdisjoint(memberships_of_members)
         if check in _REQUIRED_RELATIONS:
@@ -139,22 +131,28 @@ def _select_checks(
 
     by_relation = chain.from_iterable([BY_RELATION.get(kind, ()) for kind in relation_kinds])
     checks = dict.fromkeys((*BY_KIND.get(kind, ()), *by_relation))
-    return tuple(filter(may_find, REPORTERS.get(kind, ()))), tuple(filter(may_find, checks))
+    return tuple(filter(may_find, checks))
 
 
 def check_node(model: Model, document: Document, node: Node, sink: Sink) -> None:
     """Report the findings of the checks for the metaclass and the relations of ``node``."""
     members, relations = node.members, node.relations
-    reporters, checks = _select_checks(
+    checks = _select_checks(
         node.kind,
         frozenset([member.membership for member in members]) if members else _NO_MEMBERSHIPS,
         tuple([relation.kind for relation in relations]) if relations else (),
         len(members) > 1,
         "isVariable" in node.attributes,
     )
-    for reporter in reporters:
-        reporter(model, document, node, sink)
     for check in checks:
         for finding in check(model, node):
-            subject = make_subject(document, node, finding.start)
-            sink.report(finding.rule, subject, notes=(), help="", **finding.facts)
+            subject = make_subject(document, finding.node or node, finding.start)
+            if not sink.has_reported(finding.unless, subject.place):
+                sink.report(
+                    finding.rule,
+                    subject,
+                    notes=(),
+                    help=finding.help,
+                    cause="",
+                    **finding.facts,
+                )

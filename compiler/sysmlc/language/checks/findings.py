@@ -1,6 +1,6 @@
 """Findings of checks, and helpers that checks share."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 from sysmlc.diagnostics import Rule
@@ -10,11 +10,19 @@ from sysmlc.language.tree import Node, Relation
 
 
 class Finding(NamedTuple):
-    """A broken rule, the offset of the text that breaks it, and the facts for its message."""
+    """A broken rule, the offset of the text that breaks it, and the facts for its message.
+
+    ``node`` is the element that breaks the rule if it is not the checked one. ``help`` replaces the
+    help of the rule. ``unless`` has the codes of rules whose finding in the same place explains
+    more.
+    """
 
     rule: Rule
     start: int
-    facts: dict[str, str]
+    facts: Mapping[str, object]
+    node: Node | None = None
+    help: str = ""
+    unless: tuple[str, ...] = ()
 
 
 DECLARED_TYPES = TYPES - EXPRESSIONS_WITHOUT_BODY

@@ -5,12 +5,12 @@ Members that may occur once are the subject, objective, result, entry, do, exit 
 
 from collections.abc import Iterator
 
-from sysmlc.diagnostics import Rule, Severity, Sink, rule
+from sysmlc.diagnostics import Rule, Severity, rule
 from sysmlc.language.checks.findings import DECLARED_FEATURES, DECLARED_TYPES, Finding, name_of
 from sysmlc.language.metaclasses import is_end, kinds_of
 from sysmlc.language.names import Model
 from sysmlc.language.names.implied import find_own_features, find_owning_type, find_role
-from sysmlc.language.tree import Document, Node, make_subject
+from sysmlc.language.tree import Node
 
 VARIANT_ELSEWHERE = rule(
     "SM226",
@@ -152,7 +152,7 @@ _PARAMETERS = ("parameter", "subject")
 # -- members and their owners ------------------------------------------------------------------
 
 
-def check_member(model: Model, document: Document, node: Node, sink: Sink) -> None:
+def check_member(model: Model, node: Node) -> Iterator[Finding]:
     """Report a node that may not be a member of its owner, or has a type that it may not have."""
     owner = node.owner
     if owner is None:
@@ -161,11 +161,10 @@ def check_member(model: Model, document: Document, node: Node, sink: Sink) -> No
     # One finding for each usage: its type may be right once it has its place.
     if broken is None and node.kind in _WITH_TYPE_CHECKS:
         broken = _find_broken_type(model, node)
-    place = make_subject(document, node, node.start)
-    # The parser reports a member that no owner of this kind may have (SM195).
-    if broken is not None and not sink.has_reported(("SM195",), place.place):
-        name = model.name(node) or node.kind
-        sink.report(broken, place, name=name, owner=model.name(owner) or owner.kind)
+    if broken is not None:
+        facts = {"name": name_of(model, node), "owner": name_of(model, owner)}
+        # The parser reports a member that no owner of this kind may have.
+        yield Finding(broken, node.start, facts, unless=("SM195",))
 
 
 def _find_broken_membership(node: Node, owner: Node) -> Rule | None:
@@ -266,18 +265,17 @@ CHECKS = ((_FUNCTIONS, check_result), (DECLARED_FEATURES, check_variable), (_IMP
 # -- members that may occur once ---------------------------------------------------------------
 
 
-def check_own_members(model: Model, document: Document, node: Node, sink: Sink) -> None:
+def check_own_members(model: Model, node: Node) -> Iterator[Finding]:
     """Report members that occur twice, and a subject after other parameters."""
     seen_roles: set[str] = set()
     parameters = 0
     for member in node.members:
         role = _find_single_role(member)
+        owner = {"owner": name_of(model, node)}
         if role in seen_roles:
-            place = make_subject(document, member, member.start)
-            sink.report(ONLY_ONE, place, owner=model.name(node) or node.kind, role=role)
+            yield Finding(ONLY_ONE, member.start, {**owner, "role": role}, member)
         elif role == "subject" and parameters:
-            place = make_subject(document, member, member.start)
-            sink.report(SUBJECT_FIRST, place, owner=model.name(node) or node.kind)
+            yield Finding(SUBJECT_FIRST, member.start, owner, member)
         if role:
             seen_roles.add(role)
         parameters += role in ("", "subject") and "direction" in member.attributes

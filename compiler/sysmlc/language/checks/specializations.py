@@ -3,13 +3,13 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from sysmlc.diagnostics import Severity, Sink, rule
+from sysmlc.diagnostics import Severity, rule
 from sysmlc.language.checks.findings import DECLARED_TYPES, Finding, iter_stated, name_of
 from sysmlc.language.checks.memberships import VARIATION_OF_VARIATION
 from sysmlc.language.checks.references import refers_to_other_kind
 from sysmlc.language.metaclasses import ALL_GENERALS, FEATURES, USAGES, describe_kind, kinds_of
 from sysmlc.language.names import Model
-from sysmlc.language.tree import Document, Node, Relation, make_subject
+from sysmlc.language.tree import Node, Relation
 
 OTHER_KIND = rule(
     "SM259",
@@ -253,41 +253,28 @@ TYPED_KINDS = frozenset(_REQUIREMENT_BY_KIND)
 """Metaclasses of usages that are checked."""
 
 
-def check_types(model: Model, document: Document, node: Node, sink: Sink) -> None:
+def check_types(model: Model, node: Node) -> Iterator[Finding]:
     """Report a usage whose types do not meet the requirement of its kind."""
     requirement = _REQUIREMENT_BY_KIND.get(node.kind)
     if requirement is None or not _is_resolved(node) or refers_to_other_kind(node):
         return
     types = _list_types(model, node)
-    if all(type_.kind in requirement.kinds for type_ in types) and not (
-        requirement.single and len(types) > 1
-    ):
-        return
-    place = make_subject(document, node, node.start)
+    unsuitable = next((type_ for type_ in types if type_.kind not in requirement.kinds), None)
     name = model.name(node)
     usage = f"{describe_kind(node).partition(' ')[2]} '{name}'" if name else describe_kind(node)
-    for type_ in types:
-        if type_.kind not in requirement.kinds:
-            found = describe_kind(type_)
-            keyword, type_name = found.partition(" ")[2], model.name(type_)
-            is_usage = type_.kind.endswith("Usage")
-            advice = (
-                f"write '{keyword} def {type_name}' to declare a type, or ':> {type_name}' for a "
-                "usage that is one of these"
-            )
-            sink.report(
-                TYPED_BY,
-                place,
-                help=advice if is_usage else "",
-                usage=usage,
-                wanted=requirement.words,
-                type=type_name,
-                found=found,
-            )
-            return
-    if requirement.single and len(types) > 1:
+    if unsuitable is not None:
+        found, type_name = describe_kind(unsuitable), model.name(unsuitable)
+        keyword = found.partition(" ")[2]
+        advice = (
+            f"write '{keyword} def {type_name}' to declare a type, or ':> {type_name}' for a usage "
+            "that is one of these"
+        )
+        facts = {"usage": usage, "wanted": requirement.words, "type": type_name, "found": found}
+        help_ = advice if unsuitable.kind.endswith("Usage") else ""
+        yield Finding(TYPED_BY, node.start, facts, help=help_)
+    elif requirement.single and len(types) > 1:
         names = " and ".join(f"'{model.name(type_)}'" for type_ in types)
-        sink.report(ONE_TYPE, place, usage=usage, types=names)
+        yield Finding(ONE_TYPE, node.start, {"usage": usage, "types": names})
 
 
 def _is_resolved(node: Node) -> bool:
