@@ -42,9 +42,7 @@ def _write_operand(node: Node, level: int) -> str:
 
 def _write_name(node: Node) -> str:
     """Return the name of the referent of an expression."""
-    relation = next(
-        (relation for relation in node.relations if relation.kind == "Membership"), None
-    )
+    relation = node.find_relation("Membership")
     if relation is None:
         raise _NoNotationError(node.kind)
     return _write_reference(relation.reference)
@@ -60,11 +58,10 @@ def _write_reference(reference: Reference) -> str:
 
 def _write_type(node: Node) -> str:
     """Return the type that an operator such as ``as`` names."""
-    relations = (relation for member in node.members for relation in member.relations)
-    typing = next((relation for relation in relations if relation.kind == "FeatureTyping"), None)
-    if typing is None:
-        raise _NoNotationError(node.kind)
-    return _write_reference(typing.reference)
+    for member in node.members:
+        if typing := member.find_relation("FeatureTyping"):
+            return _write_reference(typing.reference)
+    raise _NoNotationError(node.kind)
 
 
 def _write_operator(node: Node) -> tuple[str, int]:
@@ -137,9 +134,7 @@ def _write_argument(argument: Node) -> str:
     """Return an argument, by position or with the name of its parameter."""
     if argument.kind != "Feature":
         return _write_operand(argument, _CONDITIONAL)
-    redefinition = next(
-        (relation for relation in argument.relations if relation.kind == "Redefinition"), None
-    )
+    redefinition = argument.find_relation("Redefinition")
     if redefinition is None or len(argument.members) != 1:
         raise _NoNotationError(argument.kind)
     value = _write_operand(argument.members[0], _CONDITIONAL)
@@ -147,10 +142,8 @@ def _write_argument(argument: Node) -> str:
 
 
 def _write_constructor(node: Node) -> tuple[str, int]:
-    results = [
-        member for member in node.members if member.membership == "ReturnParameterMembership"
-    ]
-    arguments = [_write_argument(argument) for result in results for argument in result.members]
+    result = node.find_member("ReturnParameterMembership")
+    arguments = map(_write_argument, result.members if result else ())
     return f"new {_write_name(node)}({', '.join(arguments)})", _PRIMARY
 
 

@@ -147,6 +147,20 @@ class Node:
         self.members.append(member)
         return member
 
+    def find_relation(self, kind: str) -> Relation | None:
+        """Return the first relation of a kind, or None."""
+        for relation in self.relations:
+            if relation.kind == kind:
+                return relation
+        return None
+
+    def find_member(self, membership: str) -> "Node | None":
+        """Return the first member with a membership, or None."""
+        for member in self.members:
+            if member.membership == membership:
+                return member
+        return None
+
     def walk(self) -> Iterator["Node"]:
         """Yield the node and all below it, owners first, in the order of the text."""
         stack = [self]

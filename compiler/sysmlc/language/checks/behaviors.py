@@ -66,9 +66,7 @@ def check_parameters(model: Model, node: Node) -> Iterator[Finding]:
         return
     expected = model.lookup.features_of_role(called, "parameter")
     for position, parameter in enumerate(parameters):
-        is_redefinition_stated = any(
-            relation.kind == "Redefinition" for relation in parameter.relations
-        )
+        is_redefinition_stated = parameter.find_relation("Redefinition") is not None
         namesakes = [
             candidate for candidate in expected if model.name(candidate) == model.name(parameter)
         ]

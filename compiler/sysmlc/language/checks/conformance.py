@@ -92,7 +92,7 @@ def _have_no_owning_type(model: Model, feature: Node, general: Node) -> bool:
 
 def _is_featured(model: Model, feature: Node) -> bool:
     """Whether a feature that no type owns is a feature of a type by a TypeFeaturing."""
-    if any(relation.kind == "TypeFeaturing" for relation in feature.relations):
+    if feature.find_relation("TypeFeaturing"):
         return True
     return any(
         relation.reference.target is feature

@@ -80,8 +80,7 @@ def check_end_types(model: Model, node: Node) -> Iterator[Finding]:
         if node.kind == "InterfaceDefinition" and end.kind not in _PORTS:
             continue
         typings = [relation for relation in end.relations if relation.kind == "FeatureTyping"]
-        crosses = any(relation.kind == "CrossSubsetting" for relation in end.relations)
-        count = len(typings if crosses else model.types(end))
+        count = len(typings if end.find_relation("CrossSubsetting") else model.types(end))
         if count > 1:
             facts = {"name": name_of(model, end), "owner": name_of(model, node)}
             yield Finding(END_TYPE, end.start, {**facts, "count": str(count)})
@@ -100,7 +99,7 @@ def check_related(model: Model, node: Node) -> Iterator[Finding]:
 
 
 def _is_related(end: Node) -> bool:
-    return any(relation.kind == "ReferenceSubsetting" for relation in end.relations)
+    return end.find_relation("ReferenceSubsetting") is not None
 
 
 def check_flow_end(model: Model, node: Node) -> Iterator[Finding]:

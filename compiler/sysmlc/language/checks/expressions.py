@@ -56,11 +56,6 @@ _OPERATIONS: dict[str, Callable[[float, float], Value]] = {
 }
 
 
-def _find_value(feature: Node) -> Node | None:
-    """Return the expression that a feature is bound to."""
-    return next((member for member in feature.members if member.membership == "FeatureValue"), None)
-
-
 def evaluate_constant(model: Model, expression: Node, depth: int = 0) -> Value | None:
     """Return the constant value of an expression, also through bound features, or None."""
     if "value" in expression.attributes:
@@ -70,7 +65,7 @@ def evaluate_constant(model: Model, expression: Node, depth: int = 0) -> Value |
         return None
     if expression.kind == "FeatureReferenceExpression":
         feature = find_named_element(expression, model.lookup)
-        bound_value = _find_value(feature) if feature is not None else None
+        bound_value = feature.find_member("FeatureValue") if feature is not None else None
         return evaluate_constant(model, bound_value, depth + 1) if bound_value is not None else None
     operands = list_arguments(expression)
     if expression.kind != "OperatorExpression" or not 1 <= len(operands) <= 2:
@@ -104,7 +99,7 @@ def find_types(model: Model, expression: Node, depth: int = 0) -> list[Node]:
     source = _find_source(model, expression)
     if source is None or source.kind not in FEATURES:
         return [source] if source is not None else []
-    value = _find_value(source) if not model.lookup.generals(source) else None
+    value = source.find_member("FeatureValue") if not model.lookup.generals(source) else None
     return model.types(source) if value is None else find_types(model, value, depth + 1)
 
 

@@ -139,10 +139,8 @@ def _make_membership_context(node: Node) -> LookupContext:
 
 def _find_assigned_operand(node: Node) -> Node | None:
     """Return the expression before the dot of ``assign x.y := z``."""
-    for member in node.members:
-        if member.membership == "ParameterMembership":
-            return next((m for m in member.members if m.membership == "FeatureValue"), None)
-    return None
+    parameter = node.find_member("ParameterMembership")
+    return parameter.find_member("FeatureValue") if parameter else None
 
 
 def _is_connector_end(node: Node) -> bool:

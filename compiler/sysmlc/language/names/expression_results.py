@@ -1,10 +1,11 @@
 """Results of expressions: the feature or type in which names after a dot are looked up."""
 
 from collections.abc import Callable
+from functools import partial
 
 from sysmlc.language.metaclasses import FEATURES
 from sysmlc.language.names.queries import GeneralizationQueries
-from sysmlc.language.tree import Node
+from sysmlc.language.tree import Node, list_arguments
 
 _FIRST_OPERATORS = frozenset({",", "??", "[", "#"})
 _CASTS = frozenset({"as", "meta"})
@@ -18,29 +19,22 @@ def find_result(expression: Node, lookup: GeneralizationQueries) -> Node | None:
 
 def find_named_element(expression: Node, lookup: GeneralizationQueries) -> Node | None:
     """Return the element that an expression names: a referent, a target, a function or type."""
-    for relation in expression.relations:
-        if relation.kind == "Membership":
-            return lookup.target(expression, relation)
-    return None
+    relation = expression.find_relation("Membership")
+    return lookup.target(expression, relation) if relation else None
 
 
 def _find_referent_result(expression: Node, lookup: GeneralizationQueries) -> Node | None:
     body = next((member for member in expression.members if member.kind == "Expression"), None)
     if body is None:
         return find_named_element(expression, lookup)
-    result = next(
-        (member for member in body.members if member.membership == "ResultExpressionMembership"),
-        None,
-    )
+    result = body.find_member("ResultExpressionMembership")
     return find_result(result, lookup) if result else None
 
 
 def _find_operand_result(
-    expression: Node, index: int, lookup: GeneralizationQueries
+    index: int, expression: Node, lookup: GeneralizationQueries
 ) -> Node | None:
-    operands = [
-        member for member in expression.members if member.membership == "ParameterMembership"
-    ]
+    operands = list_arguments(expression)
     return find_result(operands[index], lookup) if index < len(operands) else None
 
 
@@ -49,15 +43,14 @@ def _find_operator_result(expression: Node, lookup: GeneralizationQueries) -> No
     if operator in _CASTS:
         return _find_cast_type(expression, lookup)
     if operator == "if":
-        return _find_operand_result(expression, 1, lookup)
-    return _find_operand_result(expression, 0, lookup) if operator in _FIRST_OPERATORS else None
+        return _find_operand_result(1, expression, lookup)
+    return _find_operand_result(0, expression, lookup) if operator in _FIRST_OPERATORS else None
 
 
 def _find_cast_type(expression: Node, lookup: GeneralizationQueries) -> Node | None:
     for member in reversed(expression.members):
-        for relation in member.relations:
-            if relation.kind == "FeatureTyping":
-                return lookup.target(member, relation)
+        if relation := member.find_relation("FeatureTyping"):
+            return lookup.target(member, relation)
     return None
 
 
@@ -84,16 +77,11 @@ def find_value_result(feature: Node, lookup: GeneralizationQueries) -> Node | No
     if membership == "ReturnParameterMembership" and owner.kind == "ConstructorExpression":
         return find_named_element(owner, lookup)
     if owner.kind == "ForLoopActionUsage" and feature is owner.members[0]:
-        feature = next(
-            (member for member in owner.members if member.membership == "ParameterMembership"),
-            feature,
-        )
+        feature = owner.find_member("ParameterMembership") or feature
     elif "direction" in feature.attributes:
         return None
-    for member in feature.members:
-        if member.membership == "FeatureValue":
-            return find_result(member, lookup)
-    return None
+    value = feature.find_member("FeatureValue")
+    return find_result(value, lookup) if value else None
 
 
 def find_result_parameter(
@@ -101,9 +89,9 @@ def find_result_parameter(
 ) -> Node | None:
     """Return the result parameter that a function or expression owns or inherits."""
     seen.add(function)
-    for member in function.members:
-        if member.membership == "ReturnParameterMembership":
-            return member
+    own_result = function.find_member("ReturnParameterMembership")
+    if own_result is not None:
+        return own_result
     for general in lookup.generals(function):
         parameter = find_result_parameter(general, lookup, seen) if general not in seen else None
         if parameter is not None:
@@ -111,20 +99,12 @@ def find_result_parameter(
     return None
 
 
-def _find_first_operand(expression: Node, lookup: GeneralizationQueries) -> Node | None:
-    return _find_operand_result(expression, 0, lookup)
-
-
-def _find_second_operand(expression: Node, lookup: GeneralizationQueries) -> Node | None:
-    return _find_operand_result(expression, 1, lookup)
-
-
 _RESULTS: dict[str, Callable[[Node, GeneralizationQueries], Node | None]] = {
     "FeatureReferenceExpression": _find_referent_result,
     "FeatureChainExpression": find_named_element,
-    "SelectExpression": _find_first_operand,
-    "IndexExpression": _find_first_operand,
-    "CollectExpression": _find_second_operand,
+    "SelectExpression": partial(_find_operand_result, 0),
+    "IndexExpression": partial(_find_operand_result, 0),
+    "CollectExpression": partial(_find_operand_result, 1),
     "OperatorExpression": _find_operator_result,
     "InvocationExpression": _find_invocation_result,
     "TriggerInvocationExpression": _find_invocation_result,

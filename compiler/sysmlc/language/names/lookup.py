@@ -227,7 +227,8 @@ class Lookup(ImportLookup):
         for index, names in enumerate(reference.chain):
             kinds = target_kinds if index == last_index else contexts.TARGET_KINDS["Subsetting"]
             if index or context.before is not None:
-                scope = targets[-1] if index else self._resolve_link(node, context.before)
+                before = context.before
+                scope = targets[-1] if index or before is None else self.target(node, before)
                 hit = self.descend(scope, names, 0, kinds) if scope else None
             elif context.operand is not None:
                 scope = find_result(context.operand, self)
@@ -248,21 +249,12 @@ class Lookup(ImportLookup):
             targets.append(element)
         return targets
 
-    def _resolve_link(self, node: Node, relation: Relation | None) -> Node | None:
-        return self.target(node, relation) if relation is not None else None
-
     def resolve_alias(self, hit: Node) -> Node | None:
         """Return the element that a member stands for: that of an alias, else the member itself."""
         if hit.kind != "Membership":
             return hit
-        return next(
-            (
-                self.target(hit, relation)
-                for relation in hit.relations
-                if relation.kind == "Membership"
-            ),
-            None,
-        )
+        relation = hit.find_relation("Membership")
+        return self.target(hit, relation) if relation else None
 
     def _search_hidden(
         self,

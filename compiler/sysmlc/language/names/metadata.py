@@ -10,11 +10,12 @@ from collections.abc import Callable
 from sysmlc.language.metaclasses import FEATURES, USAGES, is_a, is_composite
 from sysmlc.language.names.expression_results import find_named_element
 from sysmlc.language.names.queries import LookupQueries
-from sysmlc.language.tree import Node
+from sysmlc.language.tree import Node, list_arguments
 
 Value = str | bool | int | float | None
 """Values of expressions; None is the empty sequence."""
-_METADATA = frozenset({"MetadataUsage", "MetadataFeature"})
+METADATA = frozenset({"MetadataUsage", "MetadataFeature"})
+"""Members that may define what their owner specialises."""
 _BOOLEAN_ATTRIBUTES = frozenset(
     {"isAbstract", "isConstant", "isDerived", "isEnd", "isIndividual", "isNegated", "isOrdered"}
     | {"isParallel", "isPortion", "isSufficient", "isVariable", "isVariation"}
@@ -47,10 +48,7 @@ def evaluate(expression: Node, element: Node, lookup: LookupQueries) -> Value:
         return _evaluate_reference(expression, element, lookup)
     if operator in ("@", "hastype", "istype"):
         return _is_classified(expression, element, lookup)
-    operands = [
-        member for member in expression.members if member.membership == "ParameterMembership"
-    ]
-    return _apply_operator(str(operator), operands, element, lookup)
+    return _apply_operator(str(operator), list_arguments(expression), element, lookup)
 
 
 def _apply_operator(
@@ -92,11 +90,10 @@ _COMPARISONS: dict[str, Callable[[Value, Value], bool]] = {
 def _is_classified(expression: Node, element: Node, lookup: LookupQueries) -> bool:
     """Evaluate ``@M``: the element has metadata of that type, or that metaclass."""
     for member in expression.members:
-        for relation in member.relations:
-            if relation.kind == "FeatureTyping":
-                wanted = lookup.target(member, relation)
-                if wanted is not None:
-                    return _has_classifier(element, wanted, lookup)
+        relation = member.find_relation("FeatureTyping")
+        wanted = lookup.target(member, relation) if relation else None
+        if wanted is not None:
+            return _has_classifier(element, wanted, lookup)
     raise UndecidedError("type")
 
 
@@ -118,16 +115,14 @@ def _is_reflective(wanted: Node) -> bool:
 
 def _find_metadata(element: Node) -> list[Node]:
     """Return the metadata that an element owns."""
-    return [member for member in element.members if member.kind in _METADATA]
+    return [member for member in element.members if member.kind in METADATA]
 
 
 def _evaluate_reference(expression: Node, element: Node, lookup: LookupQueries) -> Value:
     """Evaluate ``M::x`` or ``(as M).x``: the value of a feature in the metadata of the element."""
-    for relation in expression.relations:
-        if relation.kind == "Membership":
-            feature = lookup.target(expression, relation)
-            if feature is not None and feature.kind in FEATURES:
-                return _evaluate_feature(feature, element, lookup)
+    feature = find_named_element(expression, lookup)
+    if feature is not None and feature.kind in FEATURES:
+        return _evaluate_feature(feature, element, lookup)
     raise UndecidedError("reference")
 
 
@@ -161,33 +156,25 @@ def _read_metaclass_attribute(feature: Node, element: Node) -> Value:
 
 
 def _evaluate_bound_value(feature: Node, element: Node, lookup: LookupQueries) -> Value:
-    for member in feature.members:
-        if member.membership == "FeatureValue":
-            return evaluate(member, element, lookup)
-    return None
-
-
-METADATA = frozenset({"MetadataUsage", "MetadataFeature"})
-"""Members that may define what their owner specialises."""
+    value = feature.find_member("FeatureValue")
+    return evaluate(value, element, lookup) if value else None
 
 
 def find_semantic_bases(node: Node, lookup: LookupQueries) -> list[tuple[str, Node]]:
     """Return relation and target of each base type of ``node`` that its metadata names."""
     relations: list[tuple[str, Node]] = []
-    for member in node.members:
-        if member.kind in METADATA:
-            base = _find_base_type(member, lookup)
-            if base is not None:
-                relations += _make_base_relations(node, base, lookup)
+    for metadata in _find_metadata(node):
+        base = _find_base_type(metadata, lookup)
+        if base is not None:
+            relations += _make_base_relations(node, base, lookup)
     return relations
 
 
 def _find_base_type(metadata: Node, lookup: LookupQueries) -> Node | None:
     """Return the element that the ``baseType`` of a metadata usage names."""
     for feature in lookup.iter_visible_inside(metadata, "baseType"):
-        for value in feature.members:
-            if value.membership == "FeatureValue":
-                return _choose_named_element(value, metadata, lookup)
+        if value := feature.find_member("FeatureValue"):
+            return _choose_named_element(value, metadata, lookup)
     return None
 
 

@@ -1,7 +1,7 @@
 """Symbol tables: the members of one namespace by declared, short and effective name."""
 
 from sysmlc.language.metaclasses import FEATURES
-from sysmlc.language.tree import Node, Reference
+from sysmlc.language.tree import Node, Reference, list_arguments
 
 SymbolTable = dict[str, list[Node]]
 """Members of one namespace by name. The entry of an alias is its Membership node."""
@@ -62,9 +62,7 @@ def _add_accepted_payload(index: SymbolTable, transition: Node) -> None:
 
 def find_payload(transition: Node) -> tuple[Node | None, Node | None]:
     """Return the payload parameters of a transition and of the accept action that triggers it."""
-    parameters = [
-        member for member in transition.members if member.membership == "ParameterMembership"
-    ]
+    parameters = list_arguments(transition)
     trigger = next((member for member in transition.members if member.role == "trigger"), None)
     accepted = trigger.members[0] if trigger is not None and trigger.members else None
     return (parameters[1] if len(parameters) > 1 else accepted), accepted
@@ -74,11 +72,8 @@ def find_naming_reference(node: Node) -> Reference | None:
     """Return the reference to the feature that names a nameless feature, if any."""
     if node.kind not in FEATURES or not node.relations:
         return None
+    relation = None
     if node.kind in _NAMED_BY_REFERENCE or node.membership in _MEMBERSHIPS_NAMED_BY_REFERENCE:
-        for relation in node.relations:
-            if relation.kind == "ReferenceSubsetting":
-                return relation.reference
-    for relation in node.relations:
-        if relation.kind == "Redefinition":
-            return relation.reference
-    return None
+        relation = node.find_relation("ReferenceSubsetting")
+    relation = relation or node.find_relation("Redefinition")
+    return relation.reference if relation else None
