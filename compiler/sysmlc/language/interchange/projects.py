@@ -2,9 +2,10 @@
 
 import hashlib
 import json
+import operator as op
 import re
 import zlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 from urllib.parse import unquote, urlsplit
 
@@ -16,15 +17,8 @@ from sysmlc.sources import DEFAULT_LIMITS, Fault, Limits, Source, SourceError, r
 from sysmlc.support.escapes import parse_json
 
 _ALGORITHMS = {
-    "SHA1": "sha1",
-    "SHA224": "sha224",
-    "SHA256": "sha256",
-    "SHA384": "sha384",
-    "SHA512": "sha512",
-    "SHA3256": "sha3_256",
-    "SHA3384": "sha3_384",
-    "SHA3512": "sha3_512",
-    "MD5": "md5",
+    name.upper().replace("_", ""): name
+    for name in ["md5", "sha1", "sha224", "sha384", "sha512", "sha3_256", "sha3_384", "sha3_512"]
 }
 _BLAKE_DIGEST_SIZES = {"BLAKE2B256": 32, "BLAKE2B384": 48, "BLAKE2B512": 64}
 
@@ -36,13 +30,11 @@ def _compute_checksum(source: Source, algorithm: str) -> str | None:
         return source.sha256
     if canonical_name in _ALGORITHMS:
         # Without `usedforsecurity` a FIPS build of Python refuses MD5 and SHA-1.
-        return hashlib.new(
-            _ALGORITHMS[canonical_name], source.data, usedforsecurity=False
-        ).hexdigest()
+        name = _ALGORITHMS[canonical_name]
+        return hashlib.new(name, source.data, usedforsecurity=False).hexdigest()
     if canonical_name in _BLAKE_DIGEST_SIZES:
-        return hashlib.blake2b(
-            source.data, digest_size=_BLAKE_DIGEST_SIZES[canonical_name]
-        ).hexdigest()
+        size = _BLAKE_DIGEST_SIZES[canonical_name]
+        return hashlib.blake2b(source.data, digest_size=size).hexdigest()
     if canonical_name == "ADLER32":
         return f"{zlib.adler32(source.data):08x}"
     return None
@@ -110,20 +102,13 @@ def read_project(path: str, sources: Sequence[Source], sink: Sink) -> Project:
     meta = files.get(META)
     meta_data = _read_json(meta, f"{path}!{META}", _LISTS, sink)
     place = Place(files[PROJECT].name, offset=0) if PROJECT in files else None
-    project = Project(
-        path,
-        str(name),
-        str(description.get("version", "")),
-        _read_usages(description),
-        {},
-        models,
-        place,
-    )
-    if meta is None:
-        return project
-    _check_files(project, meta, meta_data, files, sink)
+    version = str(description.get("version", ""))
     index = {str(member): str(file) for member, file in meta_data.get("index", {}).items()}
-    return Project(path, project.name, project.version, project.usages, index, models, place)
+    usages = _read_usages(description)
+    project = Project(path, str(name), version, usages, index, models, place)
+    if meta is not None:
+        _check_files(project, meta, meta_data, files, sink)
+    return project
 
 
 def _relative_name(path: str, name: str) -> str:
@@ -163,14 +148,10 @@ def _report_bad_project(sink: Sink, source: Source, problem: str, near: str = ""
 
 
 def _read_usages(description: Mapping[str, Any]) -> tuple[ProjectUsage, ...]:
-    usages = (
-        usage
-        for usage in description.get("usage", ())
-        if isinstance(usage, dict) and "resource" in usage
-    )
     return tuple(
         ProjectUsage(str(usage["resource"]), str(usage.get("versionConstraint") or ""))
-        for usage in usages
+        for usage in description.get("usage", ())
+        if isinstance(usage, dict) and "resource" in usage
     )
 
 
@@ -220,6 +201,14 @@ def _report(sink: Sink, rule: Rule, place: Place, **facts: str) -> None:
 
 
 _STANDARD = ("https://www.omg.org/spec/KerML/", "https://www.omg.org/spec/SysML/")
+_COMPARISONS: dict[str, Callable[[tuple[int, ...], tuple[int, ...]], bool]] = {
+    "=": op.eq,
+    "==": op.eq,
+    "<": op.lt,
+    "<=": op.le,
+    ">": op.gt,
+    ">=": op.ge,
+}
 _COMPARISON = re.compile(r"(>=|<=|>|<|==|=|\^|~)?\s*v?(\d+(?:\.\d+)*)$")
 
 
@@ -233,16 +222,9 @@ def resolve_usages(
     """
     resolved: dict[ProjectUsage, Project] = {}
     for usage in project.usages:
-        candidates = [
-            candidate
-            for candidate in projects
-            if candidate is not project and _matches_resource(candidate, usage.resource)
-        ]
-        fitting = [
-            candidate
-            for candidate in candidates
-            if satisfies_version(candidate.version, usage.constraint)
-        ]
+        used = [used for used in projects if _matches_resource(used, usage.resource)]
+        candidates = [candidate for candidate in used if candidate is not project]
+        fitting = [c for c in candidates if satisfies_version(c.version, usage.constraint)]
         if fitting:
             resolved[usage] = fitting[-1]
         elif not (has_standard and not candidates and usage.resource.startswith(_STANDARD)):
@@ -291,17 +273,10 @@ def _satisfies_comparison(version: str, constraint: str) -> bool:
     wanted_match, version_match = _COMPARISON.match(constraint), _COMPARISON.match(version)
     if wanted_match is None or version_match is None:
         return True
-    sign, wanted, actual = (
-        wanted_match[1] or "^",
-        _parse_version(wanted_match[2]),
-        _parse_version(version_match[2]),
-    )
-    if sign in ("=", "=="):
-        return actual == wanted
-    if sign in ("<", "<=", ">", ">="):
-        return {"<": actual < wanted, "<=": actual <= wanted, ">": actual > wanted}.get(
-            sign, actual >= wanted
-        )
+    sign = wanted_match[1] or "^"
+    wanted, actual = _parse_version(wanted_match[2]), _parse_version(version_match[2])
+    if sign in _COMPARISONS:
+        return _COMPARISONS[sign](actual, wanted)
     fixed_parts = 1 if sign == "^" else 2
     return actual >= wanted and actual[:fixed_parts] == wanted[:fixed_parts]
 
