@@ -142,25 +142,18 @@ def _find_line_end(pieces: Sequence[Piece], start: int, width: int) -> int:
         if (
             index > start
             and piece.rank is not None
-            and _fits(width)
+            and width <= WIDTH
             and (not best_end or piece.rank <= best_rank)
         ):
             best_end, best_rank = index, piece.rank
-        width += len(space) + _last_line_width(piece.text)
+        last_line = piece.text.rpartition("\n")[2]
+        width += len(space) + len(last_line)
         # The best break that fits, else the first one possible.
         if width > WIDTH and best_end:
             return best_end
         if width > WIDTH and index > start and piece.rank is not None:
             return index
     return len(pieces)
-
-
-def _fits(used: int) -> bool:
-    return used <= WIDTH
-
-
-def _last_line_width(text: str) -> int:
-    return len(text) - text.rfind("\n") - 1
 
 
 _STEP = "    "

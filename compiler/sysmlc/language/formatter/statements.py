@@ -216,18 +216,8 @@ _NO_SPACE_BEFORE = {";", ",", ")", "]", ".", "::", "..", ".?", "->"}
 _NO_SPACE_AFTER = {"(", "[", ".", "::", "..", ".?", "->", "$", "~"}
 _TIGHT_OPERATORS = {"^", "**"}
 _ARITHMETIC = {"+", "-", "*", "/", "%"}
-_SIGNS = {"+", "-"}
 _PREFIXES = {"@", "#", "~", "-", "+"}
-_BEFORE_VALUE = {
-    "=",
-    ":=",
-    "default",
-    "if",
-    "while",
-    "until",
-    "when",
-    "at",
-    "after",
+_BEFORE_VALUE = {"=", ":=", "default", "if", "while", "until", "when", "at", "after"} | {
     "filter",
     "assign",
 }
@@ -277,9 +267,8 @@ class Spacing:
         return Piece(token.text, space, rank)
 
     def _update_state(self, token: Token) -> None:
-        before = self._before
-        self._is_sign = token.text in _PREFIXES and not (before is not None and before.is_operand)
-        self._is_sign = self._is_sign or (token.text == "#" and self._is_prefix(before))
+        is_after_operand = self._before is not None and self._before.is_operand
+        self._is_sign = token.text in _PREFIXES and not is_after_operand
         if token.text in ("(", "[", "{"):
             self._open_brackets.append(token.text)
         elif token.text in (")", "]", "}") and self._open_brackets:
@@ -290,18 +279,13 @@ class Spacing:
             self._has_value = False
         if self._short_name_tokens:
             self._short_name_tokens -= 1
-        elif token.text == "<" and self._begins_short_name(before):
+        elif token.text == "<" and not is_after_operand:
             self._short_name_tokens = 2
         self._before = token
 
-    def _is_prefix(self, before: Token | None) -> bool:
-        return before is None or not before.is_operand
-
-    def _begins_short_name(self, before: Token | None) -> bool:
-        return before is None or not before.is_operand
-
     def _is_spaced(self, before: Token, token: Token) -> bool:
-        if self._is_sign or self._in_short_name(before, token):
+        # In ``<name>`` two tokens follow the bracket without a space.
+        if self._is_sign or self._short_name_tokens > 0:
             return False
         if token.text in _NO_SPACE_BEFORE:
             return token.text in ("->", "..") and before.text == ","
@@ -309,17 +293,14 @@ class Spacing:
             return before.text == "~" and before.sort is Sort.KEYWORD
         return self._is_spaced_by_context(before, token)
 
-    def _in_short_name(self, before: Token, token: Token) -> bool:
-        """Whether the token is in ``<name>``: two tokens follow the bracket without a space."""
-        return self._short_name_tokens > 0
-
     def _is_spaced_by_context(self, before: Token, token: Token) -> bool:
         if token.text == "(":
             return before.sort is not Sort.NAME and before.text not in (")", "]", "#")
         # `x[4]` is a multiplicity or an index, `5 [kg]` a quantity.
         if token.text == "[":
-            return self._is_unit_bracket(before)
-        if token.text == "#" and before.is_operand and self._has_operand_index(before):
+            is_bound = before.sort is Sort.NAME or before.text in ("]", "*", "**")
+            return self._has_value or not is_bound
+        if token.text == "#" and (before.sort is Sort.NAME or before.text in (")", "]")):
             return False
         if before.text == "{" or token.text == "}":
             return False
@@ -328,15 +309,6 @@ class Spacing:
             return True
         is_tight = self._is_tight(token) or self._is_tight(before)
         return not is_tight or (before.sort in _WORD_SORTS and token.sort in _WORD_SORTS)
-
-    def _has_operand_index(self, before: Token) -> bool:
-        return before.sort is Sort.NAME or before.text in (")", "]")
-
-    def _is_unit_bracket(self, before: Token) -> bool:
-        """Whether a bracket has a unit: it has a space before it, a multiplicity has none."""
-        if before.sort is Sort.NAME:
-            return self._has_value
-        return before.text not in ("]", "*", "**") or self._has_value
 
     def _is_tight(self, token: Token) -> bool:
         if token.text in _TIGHT_OPERATORS:
