@@ -72,6 +72,8 @@ class Errors:
         self._is_unclosed_reported = False
         self._unclosed_lines: set[int] = set()
         self.beginnings: list[str] = []
+        self.is_quiet = False
+        """Whether errors are consequences of the one before, and not reported."""
 
     def report(self, rule: Rule, offset: int, **facts: object) -> None:
         """Report an error at a character of the text, unless the maximum is reached.
@@ -79,6 +81,8 @@ class Errors:
         A syntax error in a line with an unclosed quotation is a consequence of it.
         """
         is_syntax = rule in (rules.SYNTAX, rules.MISSING)
+        if self.is_quiet:
+            return
         if is_syntax and self._unclosed_lines and self._find_line(offset) in self._unclosed_lines:
             return
         self._remaining -= 1
@@ -121,22 +125,19 @@ class Errors:
         """Report a token in a place where only ``expected`` tokens are valid."""
         if index > 1 and self._tokens[index - 2] == "->" and self._tokens[index] in (";", "}"):
             # `a -> b` calls a function with arguments, so that the parser fails behind it.
-            start = self._tokens.starts[index - 2]
-            self.report(rules.SYNTAX, start, found="'->'", expected="'then'", advice=hints.ARROW)
+            self._report_syntax(index - 2, "'then'", hints.ARROW)
             return
-        self.report(
-            rules.SYNTAX,
-            self._tokens.starts[index],
-            found=self._describe_token(index),
-            expected=_describe_expected(expected, self.beginnings),
-            advice=hints.advise_unexpected(self._tokens, index, expected, self.beginnings),
-        )
+        advice = hints.advise_unexpected(self._tokens, index, expected, self.beginnings)
+        self._report_syntax(index, _describe_expected(expected, self.beginnings), advice)
+
+    def _report_syntax(self, index: int, expected: str, advice: str) -> None:
+        found = self._describe_token(index)
+        start = self._tokens.starts[index]
+        self.report(rules.SYNTAX, start, found=found, expected=expected, advice=advice)
 
     def report_comment(self, index: int) -> None:
         """Report a comment in a place where no comment is valid."""
-        start = self._tokens.starts[index]
-        found, expected = "comment", "a note (// or //*)"
-        self.report(rules.SYNTAX, start, found=found, expected=expected, advice=_COMMENT_ADVICE)
+        self._report_syntax(index, "a note (// or //*)", _COMMENT_ADVICE)
 
     def report_substitution(self, index: int, substitute: str) -> None:
         """Report a token that is parsed as another one: a keyword as a name, `=` as `:=`."""
@@ -147,8 +148,7 @@ class Errors:
         advice = f"{hints.INITIAL}: here only '{substitute}' can stand"
         if word == "==":
             advice = f"'==' compares two values; {hints.INITIAL}"
-        expected = f"'{substitute}'"
-        self.report(rules.SYNTAX, start, found=f"'{word}'", expected=expected, advice=advice)
+        self._report_syntax(index, f"'{substitute}'", advice)
 
     def report_misspelt_keyword(self, index: int, keyword: str) -> None:
         """Report a word that is parsed as the keyword that it resembles."""
@@ -158,13 +158,7 @@ class Errors:
 
     def report_correction(self, correction: Correction) -> None:
         """Report a token that the parser replaces, removes or lacks, as in ``part a :: A``."""
-        self.report(
-            rules.SYNTAX,
-            self._tokens.starts[correction.position],
-            found=self._describe_token(correction.position),
-            expected=correction.expected,
-            advice=correction.advice,
-        )
+        self._report_syntax(correction.position, correction.expected, correction.advice)
 
     def report_missing_after(self, end: int, words: str) -> None:
         """Report a token that is missing after the one that ends at a character of the text."""
@@ -191,17 +185,16 @@ class Errors:
 
     def report_stray(self, index: int) -> None:
         """Report a superfluous `;` or `}`."""
-        symbol = self._tokens[index]
-        expected = "a declaration or '}'" if symbol == ";" else "a declaration"
-        advice = "take it away" if symbol == ";" else "no '{' is open here: one of both is too much"
-        start = self._tokens.starts[index]
-        self.report(rules.SYNTAX, start, found=f"'{symbol}'", expected=expected, advice=advice)
+        expected, advice = "a declaration", "no '{' is open here: one of both is too much"
+        if self._tokens[index] == ";":
+            expected, advice = "a declaration or '}'", "take it away"
+        self._report_syntax(index, expected, advice)
 
     def report_unclosed(self) -> None:
         """Report, once, the innermost brace that is open at the end of the text."""
         # An open comment contains the rest of the text.
         has_open_comment = any(fault.what == "comment" for fault in self._tokens.faults)
-        if self._is_unclosed_reported or has_open_comment:
+        if self._is_unclosed_reported or has_open_comment or self.is_quiet:
             return
         self._is_unclosed_reported = True
         open_braces: list[int] = []

@@ -26,9 +26,8 @@ _PREFIX_WITH_BODY = "abstract"
 class Recovery:
     """Recovers from the syntax errors of one text.
 
-    A mend takes the states of the stack, the index of the token that does not fit, and whether
-    the error is a consequence of the one before and must not be reported. It returns the index of
-    the token to parse on from, or -1 if it does not apply.
+    A mend takes the states of the stack and the index of the token that does not fit. It returns
+    the index of the token to parse on from, or -1 if it does not apply.
     """
 
     def __init__(self, tables: Tables, rules: Rules, tokens: Tokens, errors: Errors) -> None:
@@ -43,26 +42,36 @@ class Recovery:
 
     def recover(self, stack: Stack, index: int) -> int:
         """Mend the stack or the tokens; return where to parse on, or -1 to give the text up."""
-        states = stack[2::3]
         self._count += 1
         # Each recovery simulates the parser for all token types; hostile texts must not take
         # minutes.
         if self._count > _MAX_RECOVERIES:
             return -1
         # An error at the very next token follows from the mend, not from the text.
-        is_quiet = index <= self._last_error + 1
+        self._errors.is_quiet = index <= self._last_error + 1
         self._last_error = index
-        for correct in (self._correct_keyword, self._correct_member):
-            next_index = correct(stack, index, is_quiet)
-            if next_index >= 0:
-                return next_index
+        next_index = self._mend(stack, index)
+        self._errors.is_quiet = False
+        return next_index
+
+    def _mend(self, stack: Stack, index: int) -> int:
+        if not self._errors.is_quiet:
+            for correct in (self._correct_keyword, self._correct_member):
+                next_index = correct(stack, index)
+                if next_index >= 0:
+                    return next_index
+        states = stack[2::3]
         for mend in _MENDS:
-            next_index = mend(self, states, index, is_quiet)
+            next_index = mend(self, states, index)
             if next_index >= 0:
                 return next_index
-        if not is_quiet:
-            self._errors.report_unexpected(index, self._find_expected(states))
+        self._report_unexpected(states, index)
         return self._panic(stack, index)
+
+    def _report_unexpected(self, states: list[int], index: int) -> None:
+        # The expected tokens take long to find.
+        if not self._errors.is_quiet:
+            self._errors.report_unexpected(index, self._find_expected(states))
 
     def _find_expected(self, states: list[int]) -> list[str]:
         """Return the texts and type names of the tokens that may come next."""
@@ -71,11 +80,11 @@ class Recovery:
 
     # -- mends that lose nothing -----------------------------------------------------------------
 
-    def _correct_keyword(self, stack: Stack, index: int, is_quiet: bool) -> int:
+    def _correct_keyword(self, stack: Stack, index: int) -> int:
         """Take the name before ``index`` for the misspelt keyword of the member, ``prt def A``."""
         tokens, types = self._tokens, self._tables.types
         word_index = index - 1
-        if is_quiet or word_index < 0 or tokens.types[word_index] != types.name:
+        if word_index < 0 or tokens.types[word_index] != types.name:
             return -1
         start = self._find_member_start(word_index)
         if types.name in tokens.types[start:word_index]:
@@ -93,11 +102,11 @@ class Recovery:
                 return start
         return -1
 
-    def _correct_member(self, stack: Stack, index: int, is_quiet: bool) -> int:
+    def _correct_member(self, stack: Stack, index: int) -> int:
         """Replace a token of the member that only fails later, as in ``part a :: A;``."""
         tokens = self._tokens
         start = self._find_member_start(index)
-        if is_quiet or index - start > _MAX_CORRECTED:
+        if index - start > _MAX_CORRECTED:
             return -1
         body = self._find_body(stack[2::3])
         states = stack[2 : 3 * body + 3 : 3]
@@ -126,17 +135,16 @@ class Recovery:
             index -= 1
         return index
 
-    def _drop_comment(self, _states: list[int], index: int, is_quiet: bool) -> int:
+    def _drop_comment(self, _states: list[int], index: int) -> int:
         if self._tokens.types[index] != self._tables.types.body:
             return -1
-        if not is_quiet:
-            self._errors.report_comment(index)
+        self._errors.report_comment(index)
         del self._tokens.types[index], self._tokens.starts[index], self._tokens.ends[index]
         # The next token has the same index now, and is a first error if it does not fit.
         self._last_error = -2
         return index
 
-    def _substitute(self, states: list[int], index: int, is_quiet: bool) -> int:
+    def _substitute(self, states: list[int], index: int) -> int:
         """Take a keyword or string for a name, or one kind of `=` for another."""
         tokens, text = self._tokens, self._tokens[index]
         is_string = tokens.types[index] == self._tables.types.string
@@ -150,21 +158,20 @@ class Recovery:
         for token_type in candidates:
             if self._accepts_all(states, (token_type, *tokens.types[index + 1 : index + 2])):
                 tokens.types[index] = token_type
-                if is_string:
-                    # A name in typographic quotation marks is reported already.
-                    if not is_quiet and text[0] == '"':
-                        self._errors.report_unexpected(index, self._find_expected(states))
-                elif not is_quiet:
+                # A name in typographic quotation marks is reported already.
+                if is_string and text[0] == '"':
+                    self._report_unexpected(states, index)
+                elif not is_string:
                     self._errors.report_substitution(index, self._tables.names[token_type])
                 return index
         return -1
 
-    def _insert_semicolon(self, states: list[int], index: int, is_quiet: bool) -> int:
+    def _insert_semicolon(self, states: list[int], index: int) -> int:
         semicolon, types = self._words[";"], self._tokens.types
         count = self._count_beginning(index)
         if not count or not self._accepts_all(states, (semicolon, *types[index : index + count])):
             return -1
-        return self._insert(semicolon, "';'", index, is_quiet)
+        return self._insert(semicolon, "';'", index)
 
     def _count_beginning(self, index: int) -> int:
         """Return how many tokens from ``index`` on must fit after an inserted `;`.
@@ -183,7 +190,7 @@ class Recovery:
         gap = self._tokens.text[self._tokens.ends[index - 1] : self._tokens.starts[index]]
         return "\n" in gap or "\r" in gap
 
-    def _insert_opening_brace(self, states: list[int], index: int, is_quiet: bool) -> int:
+    def _insert_opening_brace(self, states: list[int], index: int) -> int:
         """Insert `{` before members that are indented, if the text has a `}` too many for it."""
         if index == 0 or not self._begins_line(index) or not self._has_extra_brace():
             return -1
@@ -193,7 +200,7 @@ class Recovery:
         brace = self._words["{"]
         if not self._accepts_all(states, (brace, self._tokens.types[index])):
             return -1
-        return self._insert(brace, "'{'", index, is_quiet)
+        return self._insert(brace, "'{'", index)
 
     def _find_column(self, index: int) -> int:
         start = self._tokens.starts[index]
@@ -203,46 +210,42 @@ class Recovery:
         types = self._tokens.types
         return types.count(self._words["}"]) > types.count(self._words["{"])
 
-    def _drop_extra_brace(self, states: list[int], index: int, is_quiet: bool) -> int:
+    def _drop_extra_brace(self, states: list[int], index: int) -> int:
         """Drop a `}` within a declaration, as in ``part x : };``, if no `{` belongs to it."""
         tokens = self._tokens
         is_within = tokens[index] == "}" and tokens.types[index + 1] == self._words[";"]
         if not is_within or not self._has_extra_brace():
             return -1
-        if not is_quiet:
-            self._errors.report_unexpected(index, self._find_expected(states))
+        self._report_unexpected(states, index)
         tokens.replace(index, 1, {})
         return index
 
-    def _insert_closing_bracket(self, states: list[int], index: int, is_quiet: bool) -> int:
+    def _insert_closing_bracket(self, states: list[int], index: int) -> int:
         # Only closing brackets are inserted: an opening one could stand anywhere before.
         for symbol in ")]":
             token_type = self._words[symbol]
             if self._accepts_all(states, (token_type, self._tokens.types[index])):
-                return self._insert(token_type, f"'{symbol}'", index, is_quiet)
+                return self._insert(token_type, f"'{symbol}'", index)
         return -1
 
-    def _insert(self, token_type: int, words: str, index: int, is_quiet: bool) -> int:
-        if not is_quiet:
-            self._errors.report_missing(index, words)
+    def _insert(self, token_type: int, words: str, index: int) -> int:
+        self._errors.report_missing(index, words)
         self._tokens.insert(index, token_type)
         return index
 
-    def _skip_stray(self, states: list[int], index: int, is_quiet: bool) -> int:
+    def _skip_stray(self, states: list[int], index: int) -> int:
         """Skip a `;` or `}` between members."""
         if self._tokens[index] not in (";", "}") or self._find_body(states) < len(states) - 1:
             return -1
-        if not is_quiet:
-            self._errors.report_stray(index)
+        self._errors.report_stray(index)
         return index + 1
 
-    def _close_body(self, states: list[int], index: int, is_quiet: bool) -> int:
+    def _close_body(self, states: list[int], index: int) -> int:
         """Insert `}` where the text ends within a body."""
         brace = self._words["}"]
         if self._tokens[index] or not self._accepts(states, brace):
             return -1
-        if not is_quiet:
-            self._errors.report_unclosed()
+        self._errors.report_unclosed()
         self._tokens.insert(index, brace)
         return index
 
