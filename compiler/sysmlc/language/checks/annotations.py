@@ -45,16 +45,9 @@ def check_annotated(model: Model, node: Node) -> Iterator[Finding]:
     for element in _list_annotated(node):
         if allowed and not any(is_a(element.kind, kind) for kind in allowed):
             name = name_of(model, next(iter(model.lookup.generals(node)), node))
-            facts = {
-                "name": name,
-                "found": describe_kind(element),
-                "wanted": _describe_kinds(allowed),
-            }
+            wanted = " or ".join(describe_kind(Node(kind)) for kind in allowed)
+            facts = {"name": name, "found": describe_kind(element), "wanted": wanted}
             yield Finding(OTHER_ELEMENT, node.start, facts)
-
-
-def _describe_kinds(kinds: list[str]) -> str:
-    return " or ".join(describe_kind(Node(kind)) for kind in kinds)
 
 
 def _list_annotated(node: Node) -> list[Node]:

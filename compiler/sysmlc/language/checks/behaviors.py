@@ -73,7 +73,10 @@ def check_parameters(model: Model, node: Node) -> Iterator[Finding]:
         candidates = [*expected[position : position + 1], *namesakes]
         if expected and not (
             is_redefinition_stated
-            or any(_can_match(parameter, candidate) for candidate in candidates)
+            or any(
+                _direction_of(candidate) in (_direction_of(parameter), "inout")
+                for candidate in candidates
+            )
         ):
             step, name = name_of(model, node), name_of(model, parameter)
             facts = {"name": name, "step": step, "called": name_of(model, called)}
@@ -85,10 +88,6 @@ def _find_called(step: Node) -> Node | None:
     targets = [relation.reference.target for relation in step.relations if relation.kind in _TYPES]
     behaviours = [target for target in targets if target is not None and target.kind in _CALLABLE]
     return behaviours[0] if len(behaviours) == 1 else None
-
-
-def _can_match(parameter: Node, candidate: Node) -> bool:
-    return _direction_of(candidate) in (_direction_of(parameter), "inout")
 
 
 def _direction_of(parameter: Node) -> str:

@@ -63,31 +63,27 @@ _KERML_FEATURES = DECLARED_FEATURES - USAGES
 
 def check_conformance(model: Model, node: Node) -> Iterator[Finding]:
     """Report a feature that violates a property of the feature that it subsets or redefines."""
+    own, owner = node.attributes, find_owning_type(node)
+    is_variable = own.get("isVariable") is True and not own.get("isConstant")
     for relation, target in iter_stated(node, _SUBSETTINGS):
+        general, general_owner = target.attributes, find_owning_type(target)
+        redefines, is_in_no_type = relation.kind == "Redefinition", owner is general_owner is None
         rules = (
-            (NONUNIQUE, node.attributes.get("isUnique") is False and _is_unique(target)),
-            (NOT_CONSTANT, _is_variable(node) and target.attributes.get("isConstant") is True),
+            (NONUNIQUE, own.get("isUnique") is False and general.get("isUnique") is not False),
+            (NOT_CONSTANT, is_variable and general.get("isConstant") is True),
             (
                 OF_PACKAGE,
-                relation.kind == "Redefinition" and _have_no_owning_type(model, node, target),
+                redefines
+                and is_in_no_type
+                and not (_is_featured(model, node) or _is_featured(model, target)),
             ),
-            (OF_SAME_OWNER, relation.kind == "Redefinition" and _have_same_owner(node, target)),
-            (NO_END, relation.kind == "Redefinition" and is_end(target) and not is_end(node)),
+            (OF_SAME_OWNER, redefines and owner is general_owner is not None),
+            (NO_END, redefines and is_end(target) and not is_end(node)),
         )
         for broken_rule, is_broken in rules:
             if is_broken:
                 facts = {"name": name_of(model, node), "general": name_of(model, target)}
                 yield Finding(broken_rule, relation.reference.start, facts)
-
-
-def _is_unique(feature: Node) -> bool:
-    return feature.attributes.get("isUnique") is not False
-
-
-def _have_no_owning_type(model: Model, feature: Node, general: Node) -> bool:
-    if find_owning_type(feature) is not None or find_owning_type(general) is not None:
-        return False
-    return not (_is_featured(model, feature) or _is_featured(model, general))
 
 
 def _is_featured(model: Model, feature: Node) -> bool:
@@ -101,15 +97,6 @@ def _is_featured(model: Model, feature: Node) -> bool:
         if node.kind == "TypeFeaturing"
         for relation in node.relations
     )
-
-
-def _have_same_owner(feature: Node, general: Node) -> bool:
-    owner = find_owning_type(feature)
-    return owner is not None and owner is find_owning_type(general)
-
-
-def _is_variable(feature: Node) -> bool:
-    return feature.attributes.get("isVariable") is True and not feature.attributes.get("isConstant")
 
 
 def check_direction(model: Model, node: Node) -> Iterator[Finding]:
@@ -205,10 +192,8 @@ def check_bound(model: Model, node: Node) -> Iterator[Finding]:
             is_invalid = isinstance(value, str | bool | float) or value < 0
             description = str(value).lower() if isinstance(value, bool) else str(value)
         else:
-            is_invalid, description = (
-                is_incompatible(model, bound, "ScalarValues::Integer"),
-                "no number",
-            )
+            is_invalid = is_incompatible(model, bound, "ScalarValues::Integer")
+            description = "no number"
         if is_invalid:
             facts = {"name": name_of(model, node.owner), "found": description}
             yield Finding(NOT_NATURAL, bound.start, facts)
@@ -270,17 +255,11 @@ def check_bounds(model: Model, node: Node) -> Iterator[Finding]:
             names = {"name": name_of(model, node), "general": name_of(model, target)}
             start = relation.reference.start
             if own_bounds.most > general_bounds.most:
-                most = {
-                    "own": _describe_values(own_bounds.most),
-                    "most": _describe_number(general_bounds.most),
-                }
-                yield Finding(MORE, start, {**names, **most})
+                names["own"] = _describe_values(own_bounds.most)
+                yield Finding(MORE, start, {**names, "most": _describe(general_bounds.most)})
             if relation.kind == "Redefinition" and own_bounds.least < general_bounds.least:
-                least = {
-                    "own": _describe_values(own_bounds.least),
-                    "least": _describe_number(general_bounds.least),
-                }
-                yield Finding(FEWER, start, {**names, **least})
+                names["own"] = _describe_values(own_bounds.least)
+                yield Finding(FEWER, start, {**names, "least": _describe(general_bounds.least)})
 
 
 def _find_bounds(model: Model, feature: Node, depth: int = 0) -> Bounds | None:
@@ -317,7 +296,7 @@ def _describe_values(number: float) -> str:
     return "any number of values" if number == inf else count(int(number), "value")
 
 
-def _describe_number(number: float) -> str:
+def _describe(number: float) -> str:
     return "any number of" if number == inf else f"{number:g}"
 
 

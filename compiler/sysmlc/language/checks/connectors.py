@@ -310,13 +310,13 @@ def _find_unrelated_types(model: Model, left: Node, right: Node) -> tuple[Node, 
     left_types, right_types = model.types(left), model.types(right)
     if not left_types or not right_types:
         return None
-    if any(_conform_either_way(model, one, other) for one in left_types for other in right_types):
+    if any(
+        model.specializes(left_type, right_type) or model.specializes(right_type, left_type)
+        for left_type in left_types
+        for right_type in right_types
+    ):
         return None
     return left_types[0], right_types[0]
-
-
-def _conform_either_way(model: Model, left: Node, right: Node) -> bool:
-    return model.specializes(left, right) or model.specializes(right, left)
 
 
 BINDING_CHECKS = ((kinds_of("BindingConnector"), check_binding),)
@@ -352,6 +352,7 @@ OTHER_OWN = rule(
 )
 
 _CROSSES = frozenset({"CrossSubsetting"})
+_CROSS_FEATURE = ("OwningMembership", "Feature")
 _TYPING = frozenset({"FeatureTyping"})
 
 
@@ -368,11 +369,15 @@ def check_cross_feature(model: Model, node: Node) -> Iterator[Finding]:
         is_typed = bool(types and model.lookup.generals(crossed))
         if is_typed and types != set(model.types(crossed)):
             yield Finding(OTHER_TYPE, start, facts)
-        for general in _list_inherited_crossed(model, node):
-            if not model.specializes(crossed, general):
-                yield Finding(NOT_SPECIAL, start, {**facts, "general": name_of(model, general)})
-        for own_feature in _find_own_cross_features(node):
-            if own_feature is not crossed:
+        # The cross features of the ends that the end redefines.
+        for end in _list_redefined(model, node):
+            for _, general in iter_stated(end, _CROSSES):
+                if not model.specializes(crossed, general):
+                    names = {**facts, "general": name_of(model, general)}
+                    yield Finding(NOT_SPECIAL, start, names)
+        for own_feature in node.members:
+            is_cross_feature = (own_feature.membership, own_feature.kind) == _CROSS_FEATURE
+            if is_cross_feature and own_feature is not crossed:
                 names = {"name": name_of(model, own_feature), "owner": name_of(model, node)}
                 yield Finding(OTHER_OWN, own_feature.start, names)
 
@@ -390,17 +395,6 @@ def _is_opposite(node: Node, reference: Reference) -> bool:
     targets = reference.targets or []
     is_other = bool(targets) and targets[0] is not node and is_end(targets[0])
     return len(targets) == 2 and is_other and find_owning_type(targets[0]) is not None
-
-
-def _list_inherited_crossed(model: Model, node: Node) -> list[Node]:
-    """Return the cross features of the ends that an end redefines."""
-    ends = sorted(model.lookup.redefined_features(node), key=model.qualified_name)
-    return [target for end in ends for _, target in iter_stated(end, _CROSSES)]
-
-
-def _find_own_cross_features(node: Node) -> list[Node]:
-    members = (member for member in node.members if member.membership == "OwningMembership")
-    return [member for member in members if member.kind == "Feature"]
 
 
 BY_RELATION = ((_CROSSES, check_cross_feature),)

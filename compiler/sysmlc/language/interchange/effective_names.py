@@ -66,10 +66,9 @@ def find_effective_name(
     accepted = find_accepted(node)
     if accepted is not None:
         return find_effective_name(accepted, redefined, depth + 1)
-    kinds = _naming_kinds(node)
-    naming = next(
-        (relation for kind in kinds for relation in node.relations if relation.kind == kind), None
-    )
+    by_reference = node.kind in _PERFORMANCES or node.membership in _NAMED_BY_REFERENCE
+    naming = node.find_relation("ReferenceSubsetting") if by_reference else None
+    naming = naming or node.find_relation("Redefinition")
     target = naming.reference.target if naming else next(iter(redefined(node)), None)
     if target is None:
         return _last_name(naming.reference) if naming else ""
@@ -89,11 +88,6 @@ def _last_name(reference: Reference) -> str:
     """Return the last name of an unresolved reference; empty for an id."""
     name = reference.chain[-1][-1] if reference.chain and reference.chain[-1] else ""
     return "" if "#" in name else name
-
-
-def _naming_kinds(node: Node) -> tuple[str, ...]:
-    by_reference = node.kind in _PERFORMANCES or node.membership in _NAMED_BY_REFERENCE
-    return ("ReferenceSubsetting", "Redefinition") if by_reference else ("Redefinition",)
 
 
 def _position(node: Node) -> str:

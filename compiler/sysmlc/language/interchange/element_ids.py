@@ -123,7 +123,7 @@ class _IdAssigner:
         path = f"{qualified}/owningMembership" if qualified else f"{owner_path}/{index}"
         element.id = self._make_id(path)
         for position, owned in enumerate(element.owned, 1):
-            if _is_relationship(owned):
+            if owned.kind == "Annotation":
                 self._assign_to_relationship(owned, path, position, "")
             else:
                 qualified_member = qualified if position == 1 else ""
@@ -136,10 +136,6 @@ def _join_names(owner: str, name: str) -> str:
     if not name:
         return ""
     return f"{owner}::{quote_name(name)}" if owner else quote_name(name)
-
-
-def _is_relationship(element: Element) -> bool:
-    return element.kind == "Annotation"
 
 
 def _find_member_name(owned: Element, redefined: RedefinitionQuery) -> str:

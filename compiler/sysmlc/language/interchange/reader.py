@@ -136,7 +136,9 @@ class _Reader:
             frame = Frame(kind, values.get("@id") or values.get("elementId", ""), self._ordinal)
             self._push(local, frame)
             self._bind_id(frame)
-            self._set_attributes(frame, values)
+            for feature, value in values.items():
+                if feature[0] != "@":
+                    self._set_attribute(frame, feature, value)
 
     def _push(self, tag: str, frame: Frame | None) -> None:
         self._tags.append(tag)
@@ -149,11 +151,6 @@ class _Reader:
             self._sink.report(rules.REPEATED_ID, subject, id=id)
         self._references.bind_id(id, frame.node)
 
-    def _set_attributes(self, frame: Frame, values: dict[str, str]) -> None:
-        for feature, value in values.items():
-            if feature[0] != "@":
-                self._set_attribute(frame, feature, value)
-
     def _set_attribute(self, frame: Frame, feature: str, value: str) -> None:
         if not has_feature(frame.kind, feature):
             self._report_feature(rules.UNKNOWN_FEATURE, frame, feature)
@@ -165,15 +162,10 @@ class _Reader:
     def _report_feature(
         self, rule: Rule, frame: Frame, feature: str, value: str = "", expected: str = ""
     ) -> None:
-        name, kind = describe_node(frame.node), frame.kind
+        name = describe_node(frame.node)
         subject = Subject(name, place=self._place())
-        facts = {
-            "feature": feature,
-            "element": name,
-            "kind": kind,
-            "value": value,
-            "type": expected,
-        }
+        facts = {"feature": feature, "element": name, "kind": frame.kind}
+        facts |= {"value": value, "type": expected}
         self._sink.report(rule, subject, notes=(), help="", **facts)
 
     def _open_feature(self, local: str, values: dict[str, str]) -> None:

@@ -200,17 +200,14 @@ def _set_attributes(element: Element, node: Node) -> None:
         {name: fact for name, fact in node.attributes.items() if name in features}
     )
     if node.membership in _PARAMETERS and not _is_argument(node):
-        element.attributes.setdefault("direction", _find_direction(node))
+        is_result = is_a(node.membership, "ReturnParameterMembership")
+        element.attributes.setdefault("direction", "out" if is_result else "in")
     if is_end(node):
         element.attributes["isEnd"] = True
     if node.attributes.get("isVariation") or node.kind == "EnumerationDefinition":
         element.attributes["isAbstract"] = True
     if node.kind in USAGES:
         _complete_usage(element, node)
-
-
-def _find_direction(node: Node) -> str:
-    return "out" if is_a(node.membership, "ReturnParameterMembership") else "in"
 
 
 def _complete_usage(element: Element, node: Node) -> None:

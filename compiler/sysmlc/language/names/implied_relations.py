@@ -31,15 +31,12 @@ def _find_typed_generals(model: Model, node: Node) -> tuple[Node, ...]:
     if inherited_bases is None:
         inherited_bases = {
             base
-            for general in _collect_supertypes(model, generals)
-            for base in _find_type_bases(model, general)
+            for general in generals
+            for supertype in model.supertype_set(general)
+            for base in _find_type_bases(model, supertype)
         }
         model.typed_generals_above[generals] = inherited_bases
     return tuple([base for base in bases if base not in inherited_bases])
-
-
-def _collect_supertypes(model: Model, generals: tuple[Node, ...]) -> set[Node]:
-    return {supertype for general in generals for supertype in model.supertype_set(general)}
 
 
 def _find_type_bases(model: Model, node: Node) -> tuple[Node, ...]:
@@ -108,12 +105,8 @@ def implied_redefinitions(model: Model, node: Node) -> list[Node]:
 
 
 def _has_implied(node: Node) -> bool:
-    return node.kind in _DECLARED or _is_condition(node)
-
-
-def _is_condition(node: Node) -> bool:
     owner = node.owner if node.membership == "ParameterMembership" else None
-    return owner is not None and owner.kind in _STEPS
+    return node.kind in _DECLARED or (owner is not None and owner.kind in _STEPS)
 
 
 def _list_relations(model: Model, node: Node) -> list[tuple[str, Node]]:

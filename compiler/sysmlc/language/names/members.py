@@ -209,7 +209,8 @@ class MemberLookup(GeneralLookup):
             inherited = self._find_heritable(general, name)
             if inherited:
                 hits += [hit for hit in inherited if hit not in hits]
-        if not hits and not self._may_inherit(scope, name):
+        inheritable = self._inheritable_by_generals.get(self.all_generals(scope))
+        if not hits and inheritable is not None and name not in inheritable:
             return NO_HITS
         # An implied general can redefine a member of the library, but not a member of the model.
         if not hits or any(map(is_in_library, hits)):
@@ -217,12 +218,10 @@ class MemberLookup(GeneralLookup):
                 inherited = self._find_heritable(general, name)
                 if inherited:
                     hits += [hit for hit in inherited if hit not in hits]
-        return tuple(hits) if len(hits) < 2 else self._drop_redefined(hits)
-
-    def _may_inherit(self, scope: Node, name: str) -> bool:
-        """Whether ``scope`` may inherit a member with that name, by the memoised names."""
-        names = self._inheritable_by_generals.get(self.all_generals(scope))
-        return names is None or name in names
+        if len(hits) < 2:
+            return tuple(hits)
+        redefined = {general for hit in hits for general in self.redefined_features(hit)}
+        return tuple(hit for hit in hits if hit not in redefined)
 
     def _find_heritable(self, general: Node, name: str) -> Hits:
         """Return the members named ``name`` that ``general`` passes on to its specialisations."""
@@ -235,11 +234,6 @@ class MemberLookup(GeneralLookup):
             if hits:
                 return tuple(hits)
         return self.inherited(general, name) or self.imported_members(general, name, inside=False)
-
-    def _drop_redefined(self, hits: list[Node]) -> Hits:
-        """Return the members that no other one of ``hits`` redefines."""
-        redefined = {general for hit in hits for general in self.redefined_features(hit)}
-        return tuple(hit for hit in hits if hit not in redefined)
 
     def _find_replacement(self, scope: Node, hit: Node) -> Node | None:
         """Return the member of ``scope`` in place of an inherited one.

@@ -69,7 +69,7 @@ class Model:
 
     def own_packages(self) -> list[Node]:
         """Return the root members of the documents."""
-        return _list_root_members(self.documents)
+        return [member for document in self.documents for member in document.root.members]
 
     def find_packages_owning(self, name: str) -> Sequence[Node]:
         """Return the root members of the documents that own a member of that name."""
@@ -91,10 +91,8 @@ class Model:
         """Return the element with a qualified name such as ``Parts::Part``, also of the library."""
         if qualified_name in self._elements_by_name:
             return self._elements_by_name[qualified_name]
-        names, hits_before = (
-            tuple(part.strip("'") for part in qualified_name.split("::")),
-            self.lookup.cycle_hits,
-        )
+        names = tuple(part.strip("'") for part in qualified_name.split("::"))
+        hits_before = self.lookup.cycle_hits
         hits = self._find_roots(names[0])
         hit = self.lookup.find_among(hits, names, 0, None)
         element = self.lookup.resolve_alias(hit) if hit else None
@@ -183,7 +181,7 @@ class Model:
         """Return everything that ``node`` may implicitly specialise, needed or not."""
         alike = self._find_alike(node)
         if node in alike.targets or self._has_own_candidates(node):
-            return tuple(dict.fromkeys([target for _, target in self._list_candidates(node)]))
+            return tuple(dict.fromkeys([target for _, target in self.candidates(node)]))
         return alike.targets
 
     def _has_own_candidates(self, node: Node) -> bool:
@@ -198,7 +196,7 @@ class Model:
         target = self.find(name) if name else None
         return [target] if target is not None and target is not node else []
 
-    def _list_candidates(self, node: Node) -> list[tuple[str, Node]]:
+    def candidates(self, node: Node) -> list[tuple[str, Node]]:
         """Return relation and target of everything that ``node`` may implicitly specialise."""
         cached = self._candidates.get(node)
         if cached is not None:
@@ -228,10 +226,6 @@ class Model:
             if self.lookup.cycle_hits == hits_before:
                 self._alike[key] = cached
         return cached
-
-    def candidates(self, node: Node) -> list[tuple[str, Node]]:
-        """Return relation and target of everything that ``node`` may implicitly specialise."""
-        return self._list_candidates(node)
 
     def needed_generals(self, node: Node, extra: tuple[Node, ...] = ()) -> list[Node]:
         """Return implied generals of ``node`` that no other general of it specialises already.
@@ -287,10 +281,6 @@ def _find_accepted_payload(node: Node) -> list[tuple[str, Node]]:
         return []
     payload, accepted = find_payload(owner)
     return [("Subsetting", accepted)] if node is payload and accepted is not None else []
-
-
-def _list_root_members(documents: Sequence[Document]) -> list[Node]:
-    return [member for document in documents for member in document.root.members]
 
 
 def _list_members(

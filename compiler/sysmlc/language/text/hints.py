@@ -199,7 +199,10 @@ def _advise_first_word(tokens: Tokens, index: int, beginnings: Collection[str]) 
 def list_similar_keywords(word: str, keywords: Collection[str]) -> list[str]:
     """Return the keywords that *word* may misspell, most similar first."""
     # The comparison takes quadratic time, and a hostile text may have words of megabytes.
-    if not _MIN_MISSPELT_LENGTH <= len(word) <= _MAX_MISSPELT_LENGTH or _is_foreign(word):
+    if not _MIN_MISSPELT_LENGTH <= len(word) <= _MAX_MISSPELT_LENGTH:
+        return []
+    # A word that begins declarations in another language is not misspelt.
+    if word in _FIRST_WORDS or find_type(word):
         return []
     candidates = sorted(keyword for keyword in keywords if keyword.isalpha())
     ratios = {
@@ -208,11 +211,6 @@ def list_similar_keywords(word: str, keywords: Collection[str]) -> list[str]:
     similar = [keyword for keyword in candidates if ratios[keyword] >= _MIN_SIMILARITY]
     # Exchanged letters are the commonest slip: 'prat' is 'part' and not 'port'.
     return sorted(similar, key=lambda key: (sorted(key) != sorted(word), -ratios[key]))
-
-
-def _is_foreign(word: str) -> bool:
-    """Whether a word begins declarations in another language."""
-    return word in _FIRST_WORDS or bool(find_type(word))
 
 
 @cache

@@ -291,11 +291,9 @@ def unquote(written: str) -> str:
     """Return the text between quotes, without escapes (KerML 8.2.2.3, Table 4)."""
     is_closed = len(written) > 1 and (written[-1] == written[0] or not written[0].isascii())
     inner = written[1:-1] if is_closed else written[1:]
-    return _ESCAPE.sub(_unescape, inner) if "\\" in inner else inner
-
-
-def _unescape(match: re.Match[str]) -> str:
-    return _ESCAPES.get(match[1], match[1])
+    if "\\" not in inner:
+        return inner
+    return _ESCAPE.sub(lambda match: _ESCAPES.get(match[1], match[1]), inner)
 
 
 _BASIC_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")

@@ -33,26 +33,26 @@ def add_members(node: Node, members: Sequence[Node]) -> Node:
     """Append the members of a body, adapted to the kind of ``node``, and return ``node``."""
     adapt = _ADAPTERS.get(node.kind)
     if adapt is not None:
-        adapt(node, members)
+        adapt(members)
     for member in members:
         member.owner = node
     node.members += members
     return node
 
 
-def _adapt_to_namespace(_owner: Node, members: Sequence[Node]) -> None:
+def _adapt_to_namespace(members: Sequence[Node]) -> None:
     for member in members:
         if member.membership == FEATURE:
             member.membership = OWNING
 
 
-def _adapt_to_relationship(_owner: Node, members: Sequence[Node]) -> None:
+def _adapt_to_relationship(members: Sequence[Node]) -> None:
     for member in members:
         if member.kind in _ANNOTATING:
             member.membership = "Annotation"
 
 
-def _adapt_to_enumeration(_owner: Node, members: Sequence[Node]) -> None:
+def _adapt_to_enumeration(members: Sequence[Node]) -> None:
     for member in members:
         if member.kind == "ReferenceUsage":
             member.kind = "EnumerationUsage"
@@ -60,7 +60,7 @@ def _adapt_to_enumeration(_owner: Node, members: Sequence[Node]) -> None:
             member.membership = "VariantMembership"
 
 
-def _adapt_to_interface(_owner: Node, members: Sequence[Node]) -> None:
+def _adapt_to_interface(members: Sequence[Node]) -> None:
     """Make ends without keyword ports; the word `ref` makes them references (8.2.2.14.1)."""
     for member in members:
         is_end = member.kind == "ReferenceUsage" and "isEnd" in member.attributes
@@ -68,7 +68,7 @@ def _adapt_to_interface(_owner: Node, members: Sequence[Node]) -> None:
             member.kind = "PortUsage"
 
 
-def _adapt_to_metadata(_owner: Node, members: Sequence[Node]) -> None:
+def _adapt_to_metadata(members: Sequence[Node]) -> None:
     """Let declarations in metadata redefine the attributes of its definition (8.2.2.27)."""
     for member in members:
         if member.kind in ("ReferenceUsage", "Feature") and member.name is not None:
@@ -79,7 +79,7 @@ def _adapt_to_metadata(_owner: Node, members: Sequence[Node]) -> None:
             member.name, member.name_start = None, start
 
 
-def _adapt_to_state(_owner: Node, members: Sequence[Node]) -> None:
+def _adapt_to_state(members: Sequence[Node]) -> None:
     """Make `then` and guards after a state transitions from that state (8.2.2.18.1)."""
     is_after_entry = False
     for member in members:
@@ -89,8 +89,9 @@ def _adapt_to_state(_owner: Node, members: Sequence[Node]) -> None:
         elif member.kind == "SuccessionAsUsage" and _has_only_target(member):
             if not is_after_entry:
                 _turn_into_transition(member)
-        elif member.kind == "TransitionUsage" and not _has_source(member):
-            if not is_after_entry and not _begins_with_parameter(member):
+        elif member.kind == "TransitionUsage" and not member.find_relation("Membership"):
+            has_parameter = member.members and member.members[0].membership == PARAMETER
+            if not is_after_entry and not has_parameter:
                 prepend_members(member, [_make_empty_parameter(member)])
         else:
             is_after_entry = False
@@ -98,14 +99,6 @@ def _adapt_to_state(_owner: Node, members: Sequence[Node]) -> None:
 
 def _has_only_target(member: Node) -> bool:
     return len(member.members) == 2 and not member.members[0].relations and member.name is None
-
-
-def _has_source(member: Node) -> bool:
-    return any(relation.kind == "Membership" for relation in member.relations)
-
-
-def _begins_with_parameter(member: Node) -> bool:
-    return bool(member.members) and member.members[0].membership == PARAMETER
 
 
 def _make_empty_parameter(member: Node) -> Node:
@@ -131,7 +124,7 @@ def _turn_into_transition(member: Node) -> None:
     member.add_member(succession)
 
 
-_ADAPTERS: dict[str, Callable[[Node, Sequence[Node]], None]] = {
+_ADAPTERS: dict[str, Callable[[Sequence[Node]], None]] = {
     **dict.fromkeys(("Namespace", "Package", "LibraryPackage"), _adapt_to_namespace),
     **dict.fromkeys(("Dependency", "Membership"), _adapt_to_relationship),
     **dict.fromkeys(("MembershipImport", "NamespaceImport"), _adapt_to_relationship),

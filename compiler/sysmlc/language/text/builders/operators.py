@@ -44,8 +44,10 @@ def _build_grouped(tokens: Tokens, parts: list[ExpressionPart]) -> Node:
     output: list[Node] = [part for part in parts[:1] if isinstance(part, Node)]
     operator_stack: list[str] = []
     for operator, operand in zip(operators, operands, strict=True):
+        level = PRECEDENCE[operator]
         # A looser operator completes the operations before it; `^` alone groups to the right.
-        while operator_stack and _binds_first(PRECEDENCE[operator_stack[-1]], PRECEDENCE[operator]):
+        least_level = level + 1 if level == _POWER else level
+        while operator_stack and PRECEDENCE[operator_stack[-1]] >= least_level:
             _reduce_operation(output, operator_stack.pop())
         if isinstance(operand, Reference):
             output.append(_make_operation(operator, output.pop(), operand))
@@ -60,10 +62,6 @@ def _build_grouped(tokens: Tokens, parts: list[ExpressionPart]) -> Node:
 def find_precedence(operator: str) -> int:
     """Return the precedence of a binary operator, higher for tighter binding; -1 for others."""
     return PRECEDENCE.get(operator, -1)
-
-
-def _binds_first(left: int, right: int) -> bool:
-    return left > right or (left == right and left != _POWER)
 
 
 def _reduce_operation(operands: list[Node], operator: str) -> None:
