@@ -357,17 +357,12 @@ def report_unresolved(
     if _is_incomplete(container or (context.scope if context.inherited else None), lookup):
         return
     name = "::".join(reference.chain[index])
+    subject = make_subject(document, node, _find_link_offset(document, reference, index))
     # The name may exist, so "unknown name" would be wrong.
     if reference in lookup.circular_references:
-        sink.report(
-            TOO_CIRCULAR,
-            make_subject(document, node, _find_link_offset(document, reference, index)),
-            cause=f"circular name {name}",
-            name=name,
-        )
+        sink.report(TOO_CIRCULAR, subject, cause=f"circular name {name}", name=name)
         return
     inside = f" in '{container.name}'" if container is not None and container.name else ""
-    subject = make_subject(document, node, _find_link_offset(document, reference, index))
     # A keyword in place of the name, or a stray word that is read as an expression.
     if sink.has_reported(_SYNTAX_ERRORS, subject.place):
         return
@@ -379,14 +374,8 @@ def report_unresolved(
         advice = f'{advice}; a string stands in double quotes: "{name}"'
     elif advice == _UNKNOWN and document.text.endswith(_NOTE_SIGNS, 0, max(reference.start, 0)):
         advice = NOTE
-    sink.report(
-        UNRESOLVED,
-        subject,
-        cause=f"unknown name {name}{inside}",
-        name=name,
-        inside=inside,
-        advice=advice,
-    )
+    cause = f"unknown name {name}{inside}"
+    sink.report(UNRESOLVED, subject, cause=cause, name=name, inside=inside, advice=advice)
 
 
 def _find_containing(
