@@ -10,10 +10,12 @@ from sysmlc.language.names import contexts
 from sysmlc.language.names.expression_results import find_result
 from sysmlc.language.names.members import NO_HITS, Hits, MemberLookup
 from sysmlc.language.names.metadata import passes_filter
-from sysmlc.language.tree import Node, Reference, Relation
+from sysmlc.language.tree import Node, Reference, Relation, find_root
 
 _IMPORTS = kinds_of("Import")
 _EXPOSES = kinds_of("Expose")
+Kinds = frozenset[str] | None
+"""Metaclasses that the element may have; None for any."""
 
 
 class ImportLookup(MemberLookup):
@@ -229,10 +231,10 @@ class Lookup(ImportLookup):
             if index or context.before is not None:
                 before = context.before
                 scope = targets[-1] if index or before is None else self.target(node, before)
-                hit = self.descend(scope, names, 0, kinds) if scope else None
+                hit = self.descend(scope, names, kinds) if scope else None
             elif context.operand is not None:
                 scope = find_result(context.operand, self)
-                hit = self.descend(scope, names, 0, kinds) if scope else None
+                hit = self.descend(scope, names, kinds) if scope else None
             else:
                 hits_before = self.cycle_hits
                 hit = self.search(context, names, kinds)
@@ -261,7 +263,7 @@ class Lookup(ImportLookup):
         node: Node,
         relation: Relation,
         context: contexts.LookupContext,
-        kinds: frozenset[str] | None,
+        kinds: Kinds,
     ) -> Node | None:
         """Return the member that a qualified name leads to if its nearest meaning lacks it."""
         # An import that is found by another import could depend on itself.
@@ -278,7 +280,7 @@ class Lookup(ImportLookup):
         self,
         context: contexts.LookupContext,
         names: tuple[str, ...],
-        kinds: frozenset[str] | None,
+        kinds: Kinds,
         *,
         past_imported: bool = False,
     ) -> Node | None:
@@ -290,13 +292,13 @@ class Lookup(ImportLookup):
         """
         first, scope = names[0], context.scope
         if first == "$" and len(names) > 1 and not self._is_first_name_quoted(context):
-            return self.find_among(self._find_roots(names[1]), names, 1, kinds)
+            return self.find_among(self._find_roots(names[1]), names[1:], kinds)
         while scope is not None:
             for hits in self._choose_stages(context, scope, first):
                 if context.past_subjects and scope is context.scope:
                     hits = tuple(hit for hit in hits if hit.membership != "SubjectMembership")
                 if hits:
-                    member = self.find_among(hits, names, 0, kinds, context.everything)
+                    member = self.find_among(hits, names, kinds, context.everything)
                     if member is not None:
                         return member
                     is_passed = past_imported and hits == self.imported_members(
@@ -305,11 +307,11 @@ class Lookup(ImportLookup):
                     if not is_passed and len(names) > 1 and any(map(self._is_namespace, hits)):
                         return None
             scope = contexts.find_outer_scope(scope)
-        member = self.find_among(self._find_roots(first), names, 0, kinds)
+        member = self.find_among(self._find_roots(first), names, kinds)
         if member is None and not past_imported:
             for importing in context.importing:
                 hits = self.imported_members(importing, first, inside=True)
-                member = member or self.find_among(hits, names, 0, kinds, context.everything)
+                member = member or self.find_among(hits, names, kinds, context.everything)
         return member
 
     def _choose_stages(
@@ -326,72 +328,46 @@ class Lookup(ImportLookup):
         return self._iter_stages(scope, name, context.without)
 
     def descend(
-        self,
-        scope: Node,
-        names: tuple[str, ...],
-        index: int,
-        kinds: frozenset[str] | None,
-        everything: bool = False,
+        self, scope: Node, names: tuple[str, ...], kinds: Kinds, everything: bool = False
     ) -> Node | None:
-        """Return the member that the names from ``index`` on lead to, from outside of ``scope``.
+        """Return the member that the names lead to from outside of ``scope``.
 
         With ``everything``, private and protected members are visible, as for ``import all``.
         """
-        name = names[index]
         hits = (
-            tuple(self.iter_visible_inside(scope, name))
+            tuple(self.iter_visible_inside(scope, names[0]))
             if everything
-            else self.visible_outside(scope, name)
+            else self.visible_outside(scope, names[0])
         )
-        return self.find_among(hits, names, index, kinds, everything)
+        return self.find_among(hits, names, kinds, everything)
 
     def find_among(
-        self,
-        hits: Hits,
-        names: tuple[str, ...],
-        index: int,
-        kinds: frozenset[str] | None,
-        everything: bool = False,
+        self, hits: Hits, names: tuple[str, ...], kinds: Kinds, everything: bool = False
     ) -> Node | None:
-        """Return the member that the names after ``index`` lead to from the first suitable hit.
+        """Return the member that the names lead to from the first suitable hit.
 
-        ``hits`` are the members for ``names[index]``.
+        ``hits`` are the members for the first name. If that is the only one, the result is the
+        first hit whose element is of one of ``kinds``. Otherwise the other names are looked up
+        inside the element of each hit.
         """
         for hit in hits:
-            member = self._match_hit(hit, names, index, kinds, everything)
-            if member is not None:
-                return member
+            element = hit if hit.kind != "Membership" else self.resolve_alias(hit)
+            if element is None:
+                continue
+            if len(names) > 1:
+                member = self.descend(element, names[1:], kinds, everything)
+                if member is not None:
+                    return member
+            elif kinds is None or element.kind in kinds:
+                return hit
         return None
-
-    def _match_hit(
-        self,
-        hit: Node,
-        names: tuple[str, ...],
-        index: int,
-        kinds: frozenset[str] | None,
-        everything: bool,
-    ) -> Node | None:
-        """Return the member that the names lead to if ``hit`` is the member for ``names[index]``.
-
-        If that is the last name, the result is ``hit`` itself, provided that its element is of one
-        of ``kinds``. Otherwise the next names are looked up inside the element of ``hit``.
-        """
-        element = hit if hit.kind != "Membership" else self.resolve_alias(hit)
-        if element is None:
-            return None
-        if index + 1 == len(names):
-            return hit if kinds is None or element.kind in kinds else None
-        return self.descend(element, names, index + 1, kinds, everything)
 
     def _is_first_name_quoted(self, context: contexts.LookupContext) -> bool:
         """Whether ``$`` is a name in quotes, not the global scope."""
         reference = context.reference
         if reference is None or reference.start < 0 or context.scope is None:
             return False
-        root = context.scope
-        while root.owner is not None:
-            root = root.owner
-        return self._text(root)[reference.start : reference.start + 1] == "'"
+        return self._text(find_root(context.scope))[reference.start : reference.start + 1] == "'"
 
     def _is_namespace(self, hit: Node) -> bool:
         element = self.resolve_alias(hit)

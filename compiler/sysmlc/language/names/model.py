@@ -94,7 +94,7 @@ class Model:
         names = tuple(part.strip("'") for part in qualified_name.split("::"))
         hits_before = self.lookup.cycle_hits
         hits = self._find_roots(names[0])
-        hit = self.lookup.find_among(hits, names, 0, None)
+        hit = self.lookup.find_among(hits, names, None)
         element = self.lookup.resolve_alias(hit) if hit else None
         # A name that was not found in a cycle may be found later.
         if self.lookup.cycle_hits == hits_before:

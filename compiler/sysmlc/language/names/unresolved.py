@@ -288,7 +288,7 @@ def _advise_import(
 def _search_regardless(use: _UnknownName, *, everything: bool) -> Node | None:
     lookup, names, context = use.model.lookup, use.names, use.context
     if use.container is not None:
-        return lookup.descend(use.container, names, 0, None, everything)
+        return lookup.descend(use.container, names, None, everything)
     if everything and context.inherited and context.scope is not None:
         hits = (
             lookup.own_members(general, names[0])
