@@ -89,19 +89,9 @@ def _replace_next_by_primes(formula: Formula) -> Formula | None:
         case Apply(op, args):
             parts = [_replace_next_by_primes(arg) for arg in args]
             converted = tuple(part for part in parts if part is not None)
-            return _apply(op, converted) if len(converted) == len(parts) else None
+            return f.apply(op, converted) if len(converted) == len(parts) else None
         case _:
             return formula
-
-
-def _apply(op: Op, args: tuple[Formula, ...]) -> Formula:
-    match op:
-        case Op.AND:
-            return f.both(*args)
-        case Op.OR:
-            return f.either(*args)
-        case _:
-            return Apply(op, args)
 
 
 def is_safety(formula: Formula, is_positive: bool = True) -> bool:

@@ -218,6 +218,26 @@ def eventually(formula: Formula) -> Formula:
     return _apply(Op.EVENTUALLY, (formula,))
 
 
+def apply(op: Op, args: tuple[Formula, ...]) -> Formula:
+    """Apply an operator; the connectives but ``iff`` are flattened and fold constants."""
+    match op:
+        case Op.AND:
+            return both(*args)
+        case Op.OR:
+            return either(*args)
+        case Op.NOT:
+            return negate(args[0])
+        case Op.IMPLIES:
+            return implies(*args)
+        case _:
+            return _apply(op, args)
+
+
+def previous(formula: Formula) -> Formula:
+    """Return ``Y formula``: it held one step ago; false in the first step."""
+    return _apply(Op.PREVIOUS, (formula,))
+
+
 @lru_cache(_CACHED_FORMULAS)
 def _apply(op: Op, args: tuple[Formula, ...]) -> Apply:
     """Return ``Apply(op, args)``; the cache also keeps recent formulas alive."""

@@ -76,26 +76,21 @@ def bounded_response(scope: Scope, trigger: Formula, answer: Formula, steps: int
     missing = f.both(f.negate(answer), f.negate(scope.end))
     waiting = f.both(trigger, _is_inside(scope), missing)
     for _ in range(steps):
-        waiting = f.both(_previous(waiting), missing)
+        waiting = f.both(f.previous(waiting), missing)
     return _forbid(scope, waiting)
 
 
 def bounded_existence(scope: Scope, counted: Formula, times: int) -> Formula:
     """The condition holds in at most *times* runs of consecutive steps inside the scope."""
     phase = f.both(counted, _is_inside(scope))
-    begins = f.both(phase, f.negate(_previous(phase)))
+    begins = f.both(phase, f.negate(f.previous(phase)))
     has_more = _once_inside(scope, begins)
     for _ in range(times):
-        has_more = _once_inside(scope, f.both(begins, _previous(has_more)))
+        has_more = _once_inside(scope, f.both(begins, f.previous(has_more)))
     return _forbid(scope, has_more)
 
 
 # -- operators -----------------------------------------------------------------------------------
-
-
-def _previous(formula: Formula) -> Formula:
-    """The formula held one step ago."""
-    return Apply(Op.PREVIOUS, (formula,))
 
 
 def _once(formula: Formula) -> Formula:
@@ -160,13 +155,13 @@ def _forbid_at_end(scope: Scope, bad: Formula) -> Formula:
     formula is violated if ``bad`` states that something is missing.
     """
     if scope.kind == "before":
-        is_first_end = f.negate(_previous(_once(scope.end)))
-        is_good = _previous(f.negate(bad))
-        has_steps = _previous(f.TRUE)
+        is_first_end = f.negate(f.previous(_once(scope.end)))
+        is_good = f.previous(f.negate(bad))
+        has_steps = f.previous(f.TRUE)
         if not _is_missing(bad):
             is_good = f.either(is_good, f.negate(has_steps))
         return _never(f.both(scope.end, is_first_end, f.negate(is_good)))
-    return _never(f.both(scope.end, _previous(bad)))
+    return _never(f.both(scope.end, f.previous(bad)))
 
 
 def _is_missing(bad: Formula) -> bool:

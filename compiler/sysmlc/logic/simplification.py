@@ -1,6 +1,6 @@
 """Substitution into formulas, constant folding, and satisfiability over small domains."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from functools import lru_cache
 
 from sysmlc.logic import domains
@@ -15,12 +15,6 @@ _CACHED_ANSWERS = 1 << 16
 """Cache size: similar machines ask the same questions."""
 _MAX_VALUATIONS_REDUNDANCY = 300
 """Most valuations tried to decide whether a part of a formula is redundant."""
-_TEMPORAL = frozenset(
-    [
-        *(Op.NEXT, Op.ALWAYS, Op.EVENTUALLY, Op.UNTIL, Op.RELEASE, Op.WEAK_UNTIL),
-        *(Op.PREVIOUS, Op.ONCE, Op.HISTORICALLY, Op.SINCE),
-    ]
-)
 _OPPOSITE = {
     Op.EQ: Op.NE,
     Op.NE: Op.EQ,
@@ -46,11 +40,11 @@ def rebuild(op: Op, args: tuple[Formula, ...]) -> Formula:
     """Apply the operator to the operands and fold constants."""
     if all(isinstance(arg, Const) for arg in args) and op not in FUTURE and op not in PAST:
         return Const(value_of(Apply(op, args), {}))
-    if op in _CONNECTIVES:
-        return _CONNECTIVES[op](*args)
+    if op is Op.IFF:
+        return f.fold_iff(*args)
     if op is Op.MOD and args[1] == Const(1):
         return Const(0)  # the values are whole numbers
-    return _move_constant_right(op, args) if op in _OPPOSITE else Apply(op, args)
+    return _move_constant_right(op, args) if op in _OPPOSITE else f.apply(op, args)
 
 
 def _move_constant_right(op: Op, args: tuple[Formula, ...]) -> Formula:
@@ -305,12 +299,3 @@ def _select_facts(
             selected_variables |= variables
             chosen.append(part)
     return f.both(*chosen)
-
-
-_CONNECTIVES: dict[Op, Callable[..., Formula]] = {
-    Op.AND: f.both,
-    Op.OR: f.either,
-    Op.NOT: f.negate,
-    Op.IMPLIES: f.implies,
-    Op.IFF: f.fold_iff,
-}

@@ -52,7 +52,7 @@ def formalize_persisted(steps: int, condition: Formula, inside: Formula) -> Form
     """Return that a condition holds now and held in the last *steps* steps of the interval."""
     formula = held = f.both(inside, condition)
     for _ in range(steps):
-        formula = f.both(held, _previous(formula))
+        formula = f.both(held, f.previous(formula))
     return formula
 
 
@@ -60,7 +60,7 @@ def formalize_occurred(steps: int, condition: Formula, inside: Formula) -> Formu
     """Return that a condition holds now or held in one of the last *steps* of the interval."""
     formula = now = f.both(inside, condition)
     for _ in range(steps):
-        formula = f.either(now, f.both(inside, _previous(formula)))
+        formula = f.either(now, f.both(inside, f.previous(formula)))
     return formula
 
 
@@ -92,7 +92,7 @@ def formalize(sentence: Sentence) -> Formula:
 def _find_trigger(sentence: Sentence, inside: Formula) -> Formula:
     trigger = inside if sentence.condition is None else f.both(inside, sentence.condition)
     if not sentence.is_continual or sentence.condition is None:
-        trigger = f.both(trigger, f.negate(_previous(trigger)))
+        trigger = f.both(trigger, f.negate(f.previous(trigger)))
     return trigger
 
 
@@ -107,7 +107,7 @@ def _demand_finally(sentence: Sentence, inside: Formula, end: Formula) -> Formul
     is_due = inside
     if sentence.condition is not None:
         is_due = Apply(Op.SINCE, (inside, _find_trigger(sentence, inside)))
-    return f.always(f.implies(f.both(end, _previous(is_due)), _previous(response)))
+    return f.always(f.implies(f.both(end, f.previous(is_due)), f.previous(response)))
 
 
 def _stepwise_demand(sentence: Sentence) -> Formula | None:
@@ -137,7 +137,7 @@ class _Interval(NamedTuple):
 
 def _recognise_intervals(scope: str, mode: Formula) -> _Interval:
     """Return the intervals of a scope, or for "only" those of its complement."""
-    has_left = _once(f.both(f.negate(mode), _previous(mode)))
+    has_left = _once(f.both(f.negate(mode), f.previous(mode)))
     intervals = {
         "": _Interval(f.TRUE, f.FALSE),
         "in": _Interval(mode, f.negate(mode)),
@@ -256,11 +256,6 @@ _NEGATED_TIMINGS: dict[str, _Demand] = {
 
 
 # -- operators -------------------------------------------------------------------------------------
-
-
-def _previous(formula: Formula) -> Formula:
-    """The formula held one step ago; false in the first step."""
-    return Apply(Op.PREVIOUS, (formula,))
 
 
 def _once(formula: Formula) -> Formula:

@@ -180,20 +180,18 @@ def _insert_end_places(net: Net) -> None:
         move.takes = {end}
 
 
-def _index_producers(net: Net) -> dict[str, list[NetTransition]]:
+def _index_moves(
+    net: Net,
+) -> tuple[dict[str, list[NetTransition]], dict[str, list[NetTransition]]]:
+    """Return the transitions that give to each place, and those that take from it."""
     producers: dict[str, list[NetTransition]] = {place: [] for place in net.places}
+    consumers: dict[str, list[NetTransition]] = {place: [] for place in net.places}
     for move in net.moves:
         for place in sorted(move.gives):
             producers[place].append(move)
-    return producers
-
-
-def _index_consumers(net: Net) -> dict[str, list[NetTransition]]:
-    consumers: dict[str, list[NetTransition]] = {place: [] for place in net.places}
-    for move in net.moves:
         for place in sorted(move.takes):
             consumers[place].append(move)
-    return consumers
+    return producers, consumers
 
 
 def _mark_fired(net: Net, place: str, nodes: set[str], producers: Iterable[NetTransition]) -> None:
@@ -211,7 +209,7 @@ def _drop_self_loops(net: Net) -> bool:
         for loop in net.moves
         if len(loop.takes) == 1 and loop.takes == loop.gives and not loop.is_end
     ]
-    producers = _index_producers(net)
+    producers, _ = _index_moves(net)
     for move in loops:
         (place,) = move.takes
         net.busy.add(place)
@@ -233,7 +231,7 @@ def _merge_parallel_transitions(net: Net) -> bool:
 
 def _merge_parallel_places(net: Net) -> bool:
     """Merge places with the same producers, consumers and initial marking."""
-    producers, consumers = _index_producers(net), _index_consumers(net)
+    producers, consumers = _index_moves(net)
     representatives: dict[tuple[object, ...], str] = {}
     duplicates = []
     for place in net.places:
@@ -261,7 +259,7 @@ def _remove_place(net: Net, place: str) -> None:
 
 def _fuse_series_places(net: Net) -> bool:
     """Fuse the places of p -> transition -> q if p has no other consumer."""
-    producers, consumers = _index_producers(net), _index_consumers(net)
+    producers, consumers = _index_moves(net)
     # The indexes are not updated, so that a place takes part in one fusion for each call.
     touched: set[str] = set()
     fused: list[NetTransition] = []
@@ -295,7 +293,7 @@ def _fuse_series_transitions(net: Net) -> bool:
 
     The consumer must take from p only.
     """
-    producers, consumers = _index_producers(net), _index_consumers(net)
+    producers, consumers = _index_moves(net)
     touched: list[NetTransition] = []
     fused: list[NetTransition] = []
     for place in list(net.places):

@@ -56,22 +56,9 @@ def rewrite_atoms(formula: Formula, rewrite: Rewrite) -> Formula:
     """Replace every atom of the formula: each comparison, Boolean variable and constant."""
     match formula:
         case Apply(op, args) if op not in COMPARISONS:
-            return _build(op, tuple(rewrite_atoms(arg, rewrite) for arg in args))
+            return f.apply(op, tuple(rewrite_atoms(arg, rewrite) for arg in args))
         case _:
             return rewrite(formula)
-
-
-_BUILDERS: dict[Op, Callable[..., Formula]] = {
-    Op.AND: f.both,
-    Op.OR: f.either,
-    Op.NOT: f.negate,
-    Op.IMPLIES: f.implies,
-}
-
-
-def _build(op: Op, args: tuple[Formula, ...]) -> Formula:
-    """Apply the operator; Boolean connectives are flattened and their constants folded."""
-    return _BUILDERS[op](*args) if op in _BUILDERS else Apply(op, args)
 
 
 def rewrite_contract_atoms(
@@ -109,7 +96,7 @@ def eliminate_weak_until(formula: Formula) -> Formula:
             stay, goal = eliminate_weak_until(left), eliminate_weak_until(right)
             return Apply(Op.RELEASE, (goal, f.either(stay, goal)))
         case Apply(op, args):
-            return _build(op, tuple(map(eliminate_weak_until, args)))
+            return f.apply(op, tuple(map(eliminate_weak_until, args)))
         case _:
             return formula
 

@@ -112,12 +112,11 @@ def list_competing(
     of the guards as written, by transition: the contract may treat each of them as an input.
     """
     is_state = vertex.kind == "state"
-    can_meet = _have_equal_trigger if by_one_occurrence else _can_coincide
     competing: dict[str, Transition] = {}
     for left, right in combinations(outgoing, 2):
         if left.id in competing and right.id in competing:
             continue
-        are_excluded = is_state and not can_meet(left, right)
+        are_excluded = is_state and not _can_coincide(left, right, by_one_occurrence)
         if are_excluded or terms[left.id].excludes(terms[right.id]):
             continue
         if comparison.are_compatible(left, right):
@@ -125,27 +124,18 @@ def list_competing(
     return [transition for transition in outgoing if transition.id in competing]
 
 
-def _have_equal_trigger(left_transition: Transition, right_transition: Transition) -> bool:
-    """Whether a single occurrence can trigger both transitions."""
-    if not left_transition.occurrences or not right_transition.occurrences:
-        return not left_transition.occurrences and not right_transition.occurrences
-    pairs = [
-        (left, right)
-        for left in left_transition.occurrences
-        for right in right_transition.occurrences
-    ]
-    return any(type(a) is type(b) and _can_share_step(a, b) for a, b in pairs)
-
-
-def _can_coincide(left_transition: Transition, right_transition: Transition) -> bool:
+def _can_coincide(
+    left_transition: Transition, right_transition: Transition, by_one_occurrence: bool = False
+) -> bool:
     """Whether two transitions with the same source can be triggered in one step.
 
     A completion transition and a triggered transition never compete: the completion goes first.
+    With *by_one_occurrence*, a single occurrence has to trigger both.
     """
     if not left_transition.occurrences or not right_transition.occurrences:
         return not left_transition.occurrences and not right_transition.occurrences
     return any(
-        _can_share_step(left, right)
+        _can_share_step(left, right) and not (by_one_occurrence and type(left) is not type(right))
         for left in left_transition.occurrences
         for right in right_transition.occurrences
     )

@@ -114,8 +114,12 @@ def explore_machine(graph: Graph, machine: Machine, sink: Sink) -> Exploration |
 def _add_firing_condition(
     machine: Machine, domains: Mapping[str, Domain], move: Move, moves: list[Move]
 ) -> Move:
-    fires = remove_redundant(_firing_condition(machine, move, moves), domains)
-    return replace(move, fires=fires, before=tuple(_find_preempting(machine, move, moves)))
+    """Add the condition that the move is enabled, not preempted, and chosen by its source."""
+    source = machine.vertices[move.transition.source]
+    choice = is_chosen_formula(source.pick, move.transition.literal) if source.pick else f.TRUE
+    before = tuple(_find_preempting(machine, move, moves))
+    fires = f.both(move.enabled, *(f.negate(other.enabled) for other in before), choice)
+    return replace(move, fires=remove_redundant(fires, domains), before=before)
 
 
 def _enable_joins(machine: Machine, domains: Mapping[str, Domain], moves: list[Move]) -> list[Move]:
@@ -256,17 +260,6 @@ def trigger_condition(machine: Machine, state: Vertex, occurrence: Occurrence) -
             return f.both(truth, f.negate(f.var(memory)))
         case OnInput(variable):
             return f.var(variable)
-
-
-def _firing_condition(machine: Machine, move: Move, moves: list[Move]) -> Formula:
-    """Return the condition that the move is enabled, not preempted, and chosen by its source."""
-    source = machine.vertices[move.transition.source]
-    choice = is_chosen_formula(source.pick, move.transition.literal) if source.pick else f.TRUE
-    return f.both(
-        move.enabled,
-        *(f.negate(other.enabled) for other in _find_preempting(machine, move, moves)),
-        choice,
-    )
 
 
 def _find_preempting(machine: Machine, move: Move, moves: list[Move]) -> Iterator[Move]:

@@ -6,7 +6,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.logic import formula as f
-from sysmlc.logic.classification import classify
+from sysmlc.logic.classification import add_temporal_operators, classify
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner, drop_trivial
 from sysmlc.logic.formula import Apply, Formula, Op, Var, has_past, has_primes, variable_names
 from sysmlc.logic.printing import print_formula
@@ -130,11 +130,7 @@ def is_gr1(conjunct: Conjunct) -> bool:
 
 def as_ltl(conjunct: Conjunct) -> Formula:
     """Return the formula with the temporal operators that its class implies."""
-    if conjunct.class_ is Class.SAFETY:
-        return f.always(conjunct.formula)
-    if conjunct.class_ is Class.LIVENESS:
-        return f.always(f.eventually(conjunct.formula))
-    return conjunct.formula
+    return add_temporal_operators(conjunct.class_, conjunct.formula)
 
 
 def add_history_bits(contract: Contract, taken: Iterable[str] = ()) -> Contract:

@@ -91,7 +91,7 @@ class FormulaReduction:
             return self._replace_past_of_next(formula.args[0])
         args = tuple(self.replace_past(arg) for arg in formula.args)
         if formula.op not in PAST:
-            return _apply(formula.op, args)
+            return f.apply(formula.op, args)
         if any(has_future(arg) or has_primes(arg) for arg in args):
             raise NotReducibleError(formula)
         history, origin = self._history, self._origin
@@ -120,7 +120,7 @@ class FormulaReduction:
             case Apply(Op.HISTORICALLY, (inner,)):
                 return f.both(self._replace_past_of_next(inner), self.replace_past(formula))
             case Apply(op, args) if has_past(formula) and op not in FUTURE:
-                return _apply(op, tuple(map(self._replace_past_of_next, args)))
+                return f.apply(op, tuple(map(self._replace_past_of_next, args)))
             case _:
                 return Apply(Op.NEXT, (self.replace_past(formula),))
 
@@ -270,7 +270,7 @@ class FormulaReduction:
             case Apply(Op.NEXT, (inner,)):
                 return self._look_back(inner, depth - 1)
             case Apply(op, args) if _next_depth(formula):
-                return _apply(op, tuple(self._look_back(arg, depth) for arg in args))
+                return f.apply(op, tuple(self._look_back(arg, depth) for arg in args))
             case _:
                 return self._shift_back(formula, depth - 1)
 
@@ -323,28 +323,13 @@ def _push_negation(body: Formula) -> Formula:
             left, right = negated
             return Apply(Op.UNTIL, (right, f.both(left, right)))
         case op:
-            return _apply(_DUAL[op], negated)
+            return f.apply(_DUAL[op], negated)
 
 
 def _check_unprimed(trigger: Formula, body: Formula) -> None:
     """Raise NotReducibleError if the trigger has primes, because no history bit can store it."""
     if has_primes(trigger):
         raise NotReducibleError(body)
-
-
-def _apply(op: Op, args: tuple[Formula, ...]) -> Formula:
-    """Apply an operator; connectives are flattened and fold constants."""
-    match op:
-        case Op.AND:
-            return f.both(*args)
-        case Op.OR:
-            return f.either(*args)
-        case Op.NOT:
-            return f.negate(args[0])
-        case Op.IMPLIES:
-            return f.implies(*args)
-        case _:
-            return Apply(op, args)
 
 
 def _next_depth(formula: Formula) -> int | None:
