@@ -4,7 +4,7 @@ The functions ``var``, ``eq``, ``both``, ``always`` and others build formulas; t
 and fold constants. The classes build exactly the formula that is given.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import lru_cache
@@ -281,15 +281,20 @@ def variable_names(*formulas: Formula) -> set[str]:
     return {variable.name for formula in formulas for variable in variables(formula)}
 
 
+def replace_leaves(formula: Formula, replace: Callable[[Const | Var], Formula]) -> Formula:
+    """Return the formula with *replace* applied to its constants and variables, unfolded."""
+    if isinstance(formula, Apply):
+        return Apply(formula.op, tuple(replace_leaves(arg, replace) for arg in formula.args))
+    return replace(formula)
+
+
 def rename_variables(formula: Formula, names: Mapping[str, str]) -> Formula:
     """Return the formula with renamed variables, primed ones included."""
-    match formula:
-        case Var(name, primed):
-            return Var(names.get(name, name), primed)
-        case Apply(op, args):
-            return Apply(op, tuple(rename_variables(arg, names) for arg in args))
-        case _:
-            return formula
+
+    def rename(leaf: Const | Var) -> Formula:
+        return Var(names.get(leaf.name, leaf.name), leaf.primed) if isinstance(leaf, Var) else leaf
+
+    return replace_leaves(formula, rename)
 
 
 def split_conjunction(formula: Formula) -> tuple[Formula, ...]:

@@ -22,9 +22,10 @@ from sysmlc.logic.feature_writes import WriterIndex, iter_writes
 from sysmlc.logic.formula import Const, Formula, rename_variables
 from sysmlc.logic.identifiers import identifier
 from sysmlc.logic.machines.derivation import (
+    Touches,
+    choice_formula,
     describe_exploration,
-    iter_change_conditions,
-    iter_choices_on_path,
+    list_changes,
 )
 from sysmlc.logic.machines.machine import Assign, Machine, Transition, Vertex, element_id
 from sysmlc.logic.machines.moves import (
@@ -32,7 +33,6 @@ from sysmlc.logic.machines.moves import (
     Move,
     explore_machine,
     is_active_formula,
-    is_chosen_formula,
 )
 from sysmlc.logic.machines.paths import Path
 from sysmlc.logic.machines.reader import MachineOptions, read_machine
@@ -158,10 +158,8 @@ class PlacedMachine(Struct, frozen=True):
 
     def _path_formula(self, move: Move, path: Path) -> Formula:
         """Return the formula that the machine takes a path of a move in this step."""
-        choices = (
-            is_chosen_formula(*pick) for pick in iter_choices_on_path(self.exploration, move, path)
-        )
-        return self.rename(f.both(move.fires, path.when, *choices))
+        choices = choice_formula(self.exploration, move, path)
+        return self.rename(f.both(move.fires, path.when, choices))
 
     def iter_reads(self) -> Iterator[Reads]:
         """Yield the properties with assumed ranges on which variables of the machine depend."""
@@ -214,14 +212,9 @@ class PlacedMachine(Struct, frozen=True):
             return f.TRUE
         return self._change_formula(transition.id, lambda path, id: id in path.passed)
 
-    def _change_formula(self, name: str, has_changed: Callable[[Path, str], bool]) -> Formula:
+    def _change_formula(self, name: str, has_changed: Touches) -> Formula:
         """A path on which *name*, a variable or an id, changes is taken in this step."""
-        changes = (
-            change
-            for move in self.exploration.moves
-            for change in iter_change_conditions(self.exploration, move, name, has_changed)
-        )
-        return self.rename(f.either(*changes))
+        return self.rename(f.either(*list_changes(self.exploration, name, has_changed)))
 
     def iter_elements(self, graph: Graph) -> Iterator[Element]:
         """Yield the machine, its submachines, and the states and transitions of both."""

@@ -122,9 +122,13 @@ def rename_reserved(contract: Contract, reserved: Iterable[str]) -> Contract:
         )
         for variable in contract.variables
     ]
-    return rewrite_contract_atoms(
-        contract, lambda formula: _rename(formula, names, literals), variables
-    )
+
+    def rename(leaf: Const | Var) -> Formula:
+        if isinstance(leaf, Var):
+            return Var(names[leaf.name], leaf.primed)
+        return Const(literals.get(leaf.value, leaf.value)) if isinstance(leaf.value, str) else leaf
+
+    return rewrite_conjuncts(contract, lambda formula: f.replace_leaves(formula, rename), variables)
 
 
 def rename_ambiguous_literals(contract: Contract) -> Contract:
@@ -161,18 +165,6 @@ def _rename_literals(domain: Domain, literals: Mapping[str, str]) -> Domain:
     if not isinstance(domain, EnumerationDomain):
         return domain
     return replace(domain, literals=tuple(literals[literal] for literal in domain.literals))
-
-
-def _rename(formula: Formula, names: Mapping[str, str], literals: Mapping[str, str]) -> Formula:
-    match formula:
-        case Var(name, primed):
-            return Var(names[name], primed)
-        case Const(str(value)):
-            return Const(literals.get(value, value))
-        case Apply(op, args):
-            return Apply(op, tuple(_rename(arg, names, literals) for arg in args))
-        case _:
-            return formula
 
 
 # -- comparisons -----------------------------------------------------------------------------------
@@ -226,10 +218,7 @@ def expand_comparison(
 
 @lru_cache(_CACHED_EXPANSIONS)
 def _expand(comparison: Formula, variables: tuple[tuple[Var, Domain], ...], limit: int) -> Formula:
-    count = 1
-    for _, domain in variables:
-        count *= domains.size(domain)
-    if count > limit:
+    if math.prod(domains.size(domain) for _, domain in variables) > limit:
         raise TooManyValuesError
     return _expand_variables(compile_evaluation(comparison), variables, {}, {})
 

@@ -13,7 +13,7 @@ from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Domain
 from sysmlc.logic.evaluate import value_of
-from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
+from sysmlc.logic.formula import Const, Formula, Op, Var
 from sysmlc.logic.infix import BOOLEAN, NUMBER, FormulaReader, Term, kind_of
 from sysmlc.logic.reduction.history import History
 from sysmlc.logic.syntax import (
@@ -344,10 +344,4 @@ _OPERATOR_READERS: dict[str, Callable[[SpectraReader, Token], Term]] = {
 
 def _replace(formula: Formula, variable: Var, value: Formula) -> Formula:
     """Return the formula with a value in place of a variable."""
-    match formula:
-        case Var() if formula == variable:
-            return value
-        case Apply(op, args):
-            return Apply(op, tuple(_replace(arg, variable, value) for arg in args))
-        case _:
-            return formula
+    return f.replace_leaves(formula, lambda leaf: value if leaf == variable else leaf)

@@ -7,7 +7,17 @@ from msgspec import Struct
 from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.formats.draft import SIDES
 from sysmlc.logic.formats.lowering import TooManyValuesError
-from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var, has_primes, variables
+from sysmlc.logic.formula import (
+    Apply,
+    Const,
+    Formula,
+    Literal,
+    Op,
+    Var,
+    has_primes,
+    replace_leaves,
+    variables,
+)
 from sysmlc.logic.printing import print_formula, print_literal
 from sysmlc.logic.reduction.contract_reduction import (
     is_gr1,
@@ -108,13 +118,7 @@ def print_ltl_conjunct(format_name: str, notation: Notation, conjunct: Conjunct)
 
 def remove_primes(formula: Formula) -> Formula:
     """Return the formula with current values in place of next values."""
-    match formula:
-        case Var(name):
-            return Var(name)
-        case Apply(op, args):
-            return Apply(op, tuple(map(remove_primes, args)))
-        case _:
-            return formula
+    return replace_leaves(formula, lambda leaf: Var(leaf.name) if isinstance(leaf, Var) else leaf)
 
 
 def convert_to_word(name: str) -> str:

@@ -39,7 +39,8 @@ from sysmlc.logic.machines.moves import (
 from sysmlc.logic.machines.paths import Path
 from sysmlc.logic.simplification import is_satisfiable, remove_redundant
 
-_Touches = Callable[[Path, str], bool]
+Touches = Callable[[Path, str], bool]
+"""Whether a path changes a variable or leaves, enters or passes what an id denotes."""
 
 
 def derive_contract(graph: Graph, machine: Machine, component: str, sink: Sink) -> Contract | None:
@@ -169,11 +170,7 @@ def _derive_transition(exploration: Exploration, move: Move) -> Iterator[Conjunc
     """Yield a conjunct for the effects of each path, and one that some path is taken."""
     origin = element_id(move.transition.id)
     for path in move.paths:
-        choices = [
-            is_chosen_formula(pick, literal)
-            for pick, literal in iter_choices_on_path(exploration, move, path)
-        ]
-        taken = remove_redundant(f.both(move.fires, path.when, *choices), exploration.domains)
+        taken = taken_formula(exploration, move, path)
         formula = f.implies(taken, f.both(*_effect_formulas(exploration, path)))
         if formula != f.TRUE:
             branch = remove_redundant(
@@ -186,17 +183,9 @@ def _derive_transition(exploration: Exploration, move: Move) -> Iterator[Conjunc
             yield Conjunct(formula, Class.SAFETY, origin, text)
     # The conjuncts above apply only if a choice variable names their branch. This conjunct excludes
     # a step that names no branch and therefore has no effect.
-    if any(list(iter_choices_on_path(exploration, move, path)) for path in move.paths):
-        branches = [
-            f.both(
-                path.when,
-                *(
-                    is_chosen_formula(*pick)
-                    for pick in iter_choices_on_path(exploration, move, path)
-                ),
-            )
-            for path in move.paths
-        ]
+    choices = [choice_formula(exploration, move, path) for path in move.paths]
+    if any(choice != f.TRUE for choice in choices):
+        branches = (f.both(path.when, c) for path, c in zip(move.paths, choices, strict=True))
         formula = f.implies(move.fires, f.either(*branches))
         yield Conjunct(formula, Class.SAFETY, origin, texts.describe_branches(move.transition))
 
@@ -208,12 +197,17 @@ def _find_overtaking(exploration: Exploration, move: Move, path: Path) -> Iterat
             yield other
 
 
-def iter_choices_on_path(
-    exploration: Exploration, move: Move, path: Path
-) -> Iterator[tuple[str, str]]:
-    """Yield the choices made at pseudostates on the path."""
+def choice_formula(exploration: Exploration, move: Move, path: Path) -> Formula:
+    """Return the formula that the choices at pseudostates lead along the path."""
     source_pick = exploration.machine.vertices[move.transition.source].pick
-    yield from ((pick, literal) for pick, literal in path.picked.items() if pick != source_pick)
+    picks = (pick for pick in path.picked.items() if pick[0] != source_pick)
+    return f.both(*(is_chosen_formula(*pick) for pick in picks))
+
+
+def taken_formula(exploration: Exploration, move: Move, path: Path) -> Formula:
+    """Return the formula that the move takes the path in this step."""
+    choices = choice_formula(exploration, move, path)
+    return remove_redundant(f.both(move.fires, path.when, choices), exploration.domains)
 
 
 def _effect_formulas(exploration: Exploration, path: Path) -> Iterator[Formula]:
@@ -266,16 +260,10 @@ def _derive_frames(exploration: Exploration) -> Iterator[Conjunct]:
             yield _derive_frame(exploration, vertex.pick, lambda path, name: name in path.picked)
 
 
-def _derive_frame(exploration: Exploration, name: str, touches: _Touches) -> Conjunct:
+def _derive_frame(exploration: Exploration, name: str, touches: Touches) -> Conjunct:
     """Return the frame condition of a variable: what it equals unless a move changes it."""
-    changes = [
-        change
-        for move in exploration.moves
-        for change in iter_change_conditions(exploration, move, name, touches)
-    ]
-    formula = f.either(*changes, _frame_formula(exploration, name))
-    if changes:
-        formula = f.implies(f.negate(f.either(*changes)), _frame_formula(exploration, name))
+    change = f.either(*list_changes(exploration, name, touches))
+    formula = f.implies(f.negate(change), _frame_formula(exploration, name))
     return Conjunct(
         formula,
         Class.SAFETY,
@@ -297,19 +285,16 @@ def _frame_formula(exploration: Exploration, name: str) -> Formula:
     return _equality(exploration, name, f.var(name), is_primed=True)
 
 
-def iter_change_conditions(
-    exploration: Exploration, move: Move, name: str, touches: _Touches
-) -> Iterator[Formula]:
-    """Yield the conditions under which the move changes the variable."""
-    touching = [path for path in move.paths if touches(path, name)]
-    if touching and len(touching) == len(move.paths):
-        yield move.fires
-        return
-    for path in touching:
-        choices = [
-            is_chosen_formula(*pick) for pick in iter_choices_on_path(exploration, move, path)
-        ]
-        yield remove_redundant(f.both(move.fires, path.when, *choices), exploration.domains)
+def list_changes(exploration: Exploration, name: str, touches: Touches) -> list[Formula]:
+    """Return the formulas that a move changes *name*, a variable or an id, in this step."""
+    changes: list[Formula] = []
+    for move in exploration.moves:
+        touching = [path for path in move.paths if touches(path, name)]
+        if len(touching) == len(move.paths):
+            changes += [move.fires] if touching else []
+        else:
+            changes += (taken_formula(exploration, move, path) for path in touching)
+    return changes
 
 
 # -- clocks, memories, activities --------------------------------------------------------------
@@ -344,17 +329,9 @@ def _derive_clocks(exploration: Exploration) -> Iterator[Conjunct]:
 
 def _stay_condition(exploration: Exploration, state: Vertex) -> Formula:
     """Return the condition that a state is active and the step does not leave it."""
-    exits = [
-        change
-        for move in exploration.moves
-        for change in iter_change_conditions(
-            exploration, move, state.id, lambda path, id: id in path.left_states
-        )
-    ]
-    formula = f.both(
-        is_active_formula(exploration.machine, state.id),
-        *(f.negate(condition) for condition in exits),
-    )
+    exits = list_changes(exploration, state.id, lambda path, id: id in path.left_states)
+    is_active = is_active_formula(exploration.machine, state.id)
+    formula = f.both(is_active, *map(f.negate, exits))
     return remove_redundant(formula, exploration.domains)
 
 

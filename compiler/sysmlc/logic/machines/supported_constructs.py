@@ -87,13 +87,10 @@ def find_submachine(graph: Graph, state: Element) -> Element | None:
     """Return the state machine that *state* uses, if the model defines it."""
     if state.kind is not Kind.STATE:
         return None
-    submachine = graph.target(state, Edge.CALLS)
-    is_drawn = submachine is not None and submachine.kind is Kind.STATE_MACHINE
-    return (
-        submachine
-        if is_drawn and submachine is not None and not submachine.attrs.get("external")
-        else None
-    )
+    machine = graph.target(state, Edge.CALLS)
+    if machine is None or machine.kind is not Kind.STATE_MACHINE or machine.attrs.get("external"):
+        return None
+    return machine
 
 
 def list_behaviours(graph: Graph, element: Element, edge: Edge) -> list[Element]:
