@@ -208,6 +208,13 @@ def eq(left: Formula, right: Formula) -> Formula:
     return _apply(_EQ, (left, right))
 
 
+def has_value(variable: Var, value: Literal) -> Formula:
+    """Return the formula that a variable has a value."""
+    if isinstance(value, bool):
+        return variable if value else negate(variable)
+    return eq(variable, Const(value))
+
+
 def always(formula: Formula) -> Formula:
     """Return ``G formula``: it holds in the current step and in every later step."""
     return _apply(Op.ALWAYS, (formula,))

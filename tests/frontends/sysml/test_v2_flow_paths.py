@@ -33,10 +33,7 @@ def list_paths(graph):
 def list_linked_features(graph):
     """The ends that flows of the plant join, and of how many it is not clear what they do."""
     (plant,) = [element for element in graph if element.name == "Plant"]
-    ends = [
-        [f"{end.path}.{end.feature}" for side in sides for end in side]
-        for sides in iter_links(graph, plant)
-    ]
+    ends = [[f"{end.path}.{end.feature}" for end in link] for link in iter_links(graph, plant)]
     return ends, len(list(find_unclear_flows(graph, plant)))
 
 

@@ -5,13 +5,19 @@ make features of several objects equal.
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.logic.composition.structure import Channels, End, iter_links, iter_usages, join_path
+from sysmlc.logic.composition.structure import (
+    Channels,
+    iter_joined_names,
+    iter_links,
+    iter_usages,
+    join_path,
+)
 from sysmlc.logic.contract import Domain, Owner, Variable
 from sysmlc.logic.expressions.context import Context, context_of
 from sysmlc.logic.expressions.features import Feature
@@ -97,28 +103,17 @@ class ObjectTree:
             self._add_parts(part, enclosing | {usage.type_.id})
 
     def _join_features(self, owner: ComponentObject) -> None:
-        for left_ends, right_ends in iter_links(self.graph, owner.type_, owner.path):
-            for left in left_ends:
-                for right in right_ends:
-                    self.channels.connect(owner.path, left, right)
-                    self._join_ends(left, right)
-
-    def _join_ends(self, left: End, right: End) -> None:
-        if not (left.feature and right.feature):
-            return
-        suffixes = set(self._iter_suffixes(right))
-        for suffix in self._iter_suffixes(left):
-            if suffix in suffixes:
+        for left, right in iter_links(self.graph, owner.type_, owner.path):
+            self.channels.connect(owner.path, left, right)
+            for left_name, right_name in iter_joined_names(left, right, self._list_names):
                 self.joined.union(
-                    self._follow_parts(left.path, left.feature + suffix),
-                    self._follow_parts(right.path, right.feature + suffix),
+                    self._follow_parts(left.path, left_name),
+                    self._follow_parts(right.path, right_name),
                 )
 
-    def _iter_suffixes(self, end: End) -> Iterator[str]:
-        holder = self.find_object(end.path)
-        for name in () if holder is None else self.context(holder).variables:
-            if name == end.feature or name.startswith(f"{end.feature}."):
-                yield name[len(end.feature) :]
+    def _list_names(self, path: str) -> Iterable[str]:
+        holder = self.find_object(path)
+        return () if holder is None else self.context(holder).variables
 
     # -- objects -----------------------------------------------------------------------------------
 

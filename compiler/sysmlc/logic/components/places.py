@@ -12,7 +12,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.activities.step_formulas import StepFormulas
 from sysmlc.logic.components.machines import PlacedMachine
 from sysmlc.logic.composition.structure import join_path
-from sysmlc.logic.contract import BooleanDomain, Variable
+from sysmlc.logic.contract import Variable, equals
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines.descriptions import name_occurrence, name_transition
 from sysmlc.logic.machines.machine import Transition, element_id
@@ -86,8 +86,7 @@ def iter_places(
     yield from _merge_copies(_iter_guard_places(formulas))
     for name, variable in assigned:
         value = f.var(variable.name)
-        is_boolean = isinstance(variable.domain, BooleanDomain)
-        stays = f.iff(f.prime(value), value) if is_boolean else f.eq(f.prime(value), value)
+        stays = equals(variable, value, is_next=True)
         yield PlaceInBehaviour(name, variable.origin, f.negate(stays), PlaceKind.FEATURE)
 
 

@@ -13,6 +13,7 @@ from sysmlc.logic.composition.structure import (
     Channels,
     End,
     Usage,
+    iter_joined_names,
     iter_links,
     iter_performed_steps,
     iter_usages,
@@ -105,11 +106,9 @@ def _open_usage(block: Block, element: Element, path: str, enclosing: set[str]) 
             block.members.append(_share_block_features(block, element, path, member))
         elif usage.type_.id not in enclosing and usage.element.kind not in _ACTIONS:
             _open_usage(block, usage.type_, usage.path, enclosing | {usage.type_.id})
-    for left_ends, right_ends in iter_links(block.graph, element, path):
-        for left in left_ends:
-            for right in right_ends:
-                block.channels.connect(path, left, right)
-                _join_ends(block, left, right)
+    for left, right in iter_links(block.graph, element, path):
+        block.channels.connect(path, left, right)
+        _join_ends(block, left, right)
     # A binding states which action performs a step; otherwise the only suitable action does.
     for step, action in iter_performed_steps(block.graph, element, path):
         if not block.features.has_merged((step.path, step.feature)):
@@ -187,14 +186,10 @@ def _join_ends(block: Block, left: End, right: End) -> None:
     left, right = (
         _resolve_step_end(block, end, opposite) for end, opposite in ((left, right), (right, left))
     )
-    if not (left.feature and right.feature):
-        return
-    suffixes = set(_iter_suffixes(block, right))
-    for suffix in _iter_suffixes(block, left):
-        if suffix in suffixes:
-            block.features.union(
-                (left.path, left.feature + suffix), (right.path, right.feature + suffix)
-            )
+    for left_name, right_name in iter_joined_names(
+        left, right, lambda path: block.names.get(path, ())
+    ):
+        block.features.union((left.path, left_name), (right.path, right_name))
 
 
 def _resolve_step_end(block: Block, end: End, opposite: End) -> End:
@@ -208,10 +203,3 @@ def _resolve_step_end(block: Block, end: End, opposite: End) -> End:
         if step.feature and (step.path, step_end.feature) in block.steps:
             return step_end if step is end else End(end.path, end.feature or EXECUTED)
     return end
-
-
-def _iter_suffixes(block: Block, end: End) -> Iterator[str]:
-    """Yield the suffixes that follow the feature of an end in dotted names of its usage."""
-    for name in block.names.get(end.path, ()):
-        if name == end.feature or name.startswith(f"{end.feature}."):
-            yield name[len(end.feature) :]

@@ -6,7 +6,8 @@ end. Without a binding, the action is the only one of the block that is, or spec
 that the step calls.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
+from itertools import combinations, product
 
 from msgspec import Struct
 
@@ -99,8 +100,8 @@ def join_path(path: str, name: str) -> str:
     return f"{path}.{name}" if path and name else path or name
 
 
-Link = tuple[list[End], list[End]]
-"""The ends at both sides of a connection. A side that leads to copies of a part has several."""
+Link = tuple[End, End]
+"""The ends of a connection. A connector that leads to copies of a part is several links."""
 
 
 class Channels:
@@ -133,7 +134,7 @@ class Channels:
 
 
 def iter_links(graph: Graph, block: Element, path: str = ITSELF) -> Iterator[Link]:
-    """Yield the pairs of sides that connectors, bindings and flows of a block join."""
+    """Yield the pairs of ends that connectors, bindings and flows of a block join."""
     for owner in (block, *query.generals(graph, block)):
         for relation in graph.owned(owner):
             if relation.kind is Kind.CONNECTOR:
@@ -141,9 +142,8 @@ def iter_links(graph: Graph, block: Element, path: str = ITSELF) -> Iterator[Lin
                     list(_connector_ends(graph, block, end, path))
                     for end in query.ends(graph, relation)
                 ]
-                for index, left in enumerate(sides):
-                    for right in sides[index + 1 :]:
-                        yield left, right
+                for left, right in combinations(sides, 2):
+                    yield from product(left, right)
             elif relation.kind is Kind.ITEM_FLOW and not graph.targets(relation, Edge.REALIZING):
                 yield from _flow_link(graph, block, relation, path)
 
@@ -175,7 +175,29 @@ def _flow_link(graph: Graph, block: Element, flow: Element, path: str) -> Iterat
         else:
             sides.append(list(_find_holders(graph, block, feature, path)))
     if all(len(side) == 1 for side in sides):
-        yield sides[0], sides[1]
+        yield sides[0][0], sides[1][0]
+
+
+def iter_joined_names(
+    left: End, right: End, names: Callable[[str], Iterable[str]]
+) -> Iterator[tuple[str, str]]:
+    """Yield the pairs of dotted names of features that a link joins.
+
+    *names* returns those of the features of the usage with a path. A link of ports joins their
+    features of the same names.
+    """
+    if left.feature and right.feature:
+        suffixes = set(_iter_suffixes(right, names))
+        for suffix in _iter_suffixes(left, names):
+            if suffix in suffixes:
+                yield left.feature + suffix, right.feature + suffix
+
+
+def _iter_suffixes(end: End, names: Callable[[str], Iterable[str]]) -> Iterator[str]:
+    """Yield the suffixes that follow the feature of an end in dotted names of its usage."""
+    for name in names(end.path):
+        if name == end.feature or name.startswith(f"{end.feature}."):
+            yield name[len(end.feature) :]
 
 
 def _find_holders(graph: Graph, block: Element, feature: Element, path: str) -> Iterator[End]:

@@ -243,7 +243,7 @@ def _expand_variables(
         cases.append((value, case))
     if len({case for _, case in cases}) == 1:
         return cases[0][1]
-    return f.either(*(f.both(_build_equality(variable, value), case) for value, case in cases))
+    return f.either(*(f.both(f.has_value(variable, value), case) for value, case in cases))
 
 
 def separate_steps(
@@ -286,7 +286,7 @@ def separate_steps(
     for values in product(*(domains.values(domain) for _, domain in listed)):
         valuation = dict(zip((variable for variable, _ in listed), values, strict=True))
         rest = _fold_unreachable(_assign(comparison, valuation), variable_domains)
-        cases.append(f.both(*starmap(_build_equality, valuation.items()), rest))
+        cases.append(f.both(*starmap(f.has_value, valuation.items()), rest))
     return f.either(*cases)
 
 
@@ -332,10 +332,3 @@ def has_partial_division(formula: Formula) -> bool:
             return any(map(has_partial_division, args))
         case _:
             return False
-
-
-def _build_equality(variable: Var, value: Literal) -> Formula:
-    """Return the formula that a variable has a value."""
-    if isinstance(value, bool):
-        return variable if value else f.negate(variable)
-    return f.eq(variable, Const(value))

@@ -25,7 +25,7 @@ from sysmlc.logic.expressions.elaboration import ElaborationError, Fault, elabor
 from sysmlc.logic.expressions.parsing import tree_of
 from sysmlc.logic.feature_writes import WriterIndex
 from sysmlc.logic.formal_texts import describe_error, has_pattern_word, read_formal
-from sysmlc.logic.formula import Formula, Literal
+from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines.reader import MachineOptions, find_context_classifier
 from sysmlc.logic.printing import print_literal
 from sysmlc.logic.reduction.contract_reduction import add_history_bits
@@ -507,15 +507,9 @@ def state_initial_values(scope: Scope, names: set[str]) -> tuple[list[Conjunct],
     for feature in scope.context.features.values():
         if feature.variable in names and feature.default is not None and not feature.is_constant:
             text = f"'{feature.element.name}' starts with {print_literal(feature.default)}."
-            formula = _equals(feature.variable, feature.default)
+            formula = f.has_value(f.var(feature.variable), feature.default)
             conjunct = Conjunct(
                 formula, Class.INIT, feature.element.id, text, source=Source.DERIVED
             )
             (inputs if scope.is_about_inputs(formula) else outputs).append(conjunct)
     return inputs, outputs
-
-
-def _equals(variable: str, value: Literal) -> Formula:
-    if isinstance(value, bool):
-        return f.var(variable) if value else f.negate(f.var(variable))
-    return f.eq(f.var(variable), f.const(value))
