@@ -34,7 +34,7 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.expressions.context import context_of
 from sysmlc.logic.feature_writes import WriterIndex
-from sysmlc.logic.formal_texts import describe_error, is_formal, read_formal
+from sysmlc.logic.formal_texts import describe_error, is_formal_constraint, read_formal
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines import derivation as statemachine
 from sysmlc.logic.machines.reader import MachineOptions, read_machine
@@ -207,7 +207,7 @@ def _add_formulas(
     by_component = {contract.component: contract for contract in contracts}
     performed = _Performers(graph, contracts)
     for constraint in graph.of_kind(Kind.CONSTRAINT):
-        if not _is_formula(constraint):
+        if not is_formal_constraint(constraint):
             continue
         for component in _list_components(graph, constraint, performed):
             if component in by_component:
@@ -219,11 +219,6 @@ def _add_formulas(
             else:
                 _report_orphan(graph, constraint, component, sink)
     return list(by_component.values())
-
-
-def _is_formula(constraint: Element) -> bool:
-    body = str(constraint.attrs.get("body", ""))
-    return is_formal(str(constraint.attrs.get("language", "")), body)
 
 
 class _Performers:

@@ -9,7 +9,7 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.expressions import list_names
 from sysmlc.logic.contract import Contract
-from sysmlc.logic.formal_texts import is_formal
+from sysmlc.logic.formal_texts import is_formal_constraint
 
 RESTRICTION_NOT_READ = rule(
     "SM488",
@@ -32,7 +32,11 @@ def report_unread_restrictions(graph: Graph, contracts: Iterable[Contract], sink
     components = {contract.origin: contract.component for contract in contracts}
     for constraint in graph.of_kind(Kind.CONSTRAINT):
         is_asserted = constraint.attrs.get("asserted") is not False
-        if not is_asserted or graph.sources(constraint, Edge.GUARD) or _is_formula(constraint):
+        if (
+            not is_asserted
+            or graph.sources(constraint, Edge.GUARD)
+            or is_formal_constraint(constraint)
+        ):
             continue
         for element, component in _find_restricted(graph, constraint, components):
             what = _WORDS.get(constraint.subkind, constraint.subkind)
@@ -40,11 +44,6 @@ def report_unread_restrictions(graph: Graph, contracts: Iterable[Contract], sink
             subject = graph.subject(constraint)
             sink.report(RESTRICTION_NOT_READ, subject, what=what, element=name, component=component)
             break
-
-
-def _is_formula(constraint: Element) -> bool:
-    body = str(constraint.attrs.get("body", ""))
-    return is_formal(str(constraint.attrs.get("language", "")), body)
 
 
 def _find_restricted(

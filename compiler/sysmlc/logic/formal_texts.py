@@ -11,6 +11,7 @@ from collections.abc import Callable, Collection, Mapping
 
 from msgspec.structs import replace
 
+from sysmlc.ir import Element
 from sysmlc.logic import formula as f
 from sysmlc.logic import property_patterns as patterns
 from sysmlc.logic.contract import Domain
@@ -127,6 +128,12 @@ def is_formal(language: str, text: str) -> bool:
     if any(part in name for part in _LANGUAGES):
         return True
     return _is_sentence(text) or _is_requirement(text)
+
+
+def is_formal_constraint(constraint: Element) -> bool:
+    """Whether the text of a constraint is meant as a formula or as a sentence of a pattern."""
+    language, body = (str(constraint.attrs.get(key, "")) for key in ("language", "body"))
+    return is_formal(language, body)
 
 
 def _is_sentence(text: str) -> bool:

@@ -6,7 +6,7 @@ from msgspec import Struct
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic.contract import Contract
-from sysmlc.logic.formal_texts import is_formal
+from sysmlc.logic.formal_texts import is_formal, is_formal_constraint
 
 _SUBJECTS = (*query.CLASSIFIERS, *query.BEHAVIORS)
 
@@ -27,12 +27,12 @@ class Statement(Struct, frozen=True):
     @property
     def language(self) -> str:
         """The language of the constraint, in small letters."""
-        return str(self.constraint.attrs.get("language", "")).lower()
+        return _read_language(self.constraint)
 
     @property
     def is_temporal(self) -> bool:
         """Whether the constraint is temporal logic or a sentence of a property pattern."""
-        return is_formal(self.language, str(self.constraint.attrs.get("body", "")))
+        return is_formal_constraint(self.constraint)
 
 
 def collect_statements(graph: Graph) -> list[tuple[Element, list[Statement]]]:

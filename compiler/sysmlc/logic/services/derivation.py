@@ -37,7 +37,7 @@ from sysmlc.logic.expressions.elaboration import (
 )
 from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.expressions.parsing import tree_of
-from sysmlc.logic.formal_texts import is_formal
+from sysmlc.logic.formal_texts import is_formal_constraint
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.identifiers import Names
 from sysmlc.logic.simplification import simplify_constant, substitute
@@ -103,10 +103,7 @@ def _is_condition(constraint: Element) -> bool:
     body = constraint.attrs.get("body")
     if not isinstance(body, str) or constraint.subkind not in _KINDS:
         return False
-    language = str(constraint.attrs.get("language", ""))
-    if not language:
-        return True
-    return not is_formal(language, body)
+    return not constraint.attrs.get("language") or not is_formal_constraint(constraint)
 
 
 def _is_in_profile(graph: Graph, owner: Element) -> bool:
