@@ -15,7 +15,7 @@ from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.ir.expressions import ExpressionError, Send, name_of, print_expression
 from sysmlc.logic import formula as f
 from sysmlc.logic.components.objects import ComponentError, ComponentObject
-from sysmlc.logic.composition.members import Block, Member
+from sysmlc.logic.composition.members import Block, Member, Wire, name_in_composite
 from sysmlc.logic.composition.messages import (
     Receipt,
     derive_wiring,
@@ -24,7 +24,6 @@ from sysmlc.logic.composition.messages import (
     iter_listeners,
     iter_unsent,
 )
-from sysmlc.logic.composition.naming import Wire, name_in_composite
 from sysmlc.logic.composition.structure import ITSELF
 from sysmlc.logic.contract import (
     BooleanDomain,

@@ -18,13 +18,16 @@ from sysmlc.logic.composition.free_outputs import add_free_outputs
 from sysmlc.logic.composition.members import (
     Block,
     Member,
+    Wire,
     block_as_member,
     find_behaviour_contract,
     find_required_contract,
+    find_wires,
+    has_single_type,
     read_block,
+    rename_contract,
 )
 from sysmlc.logic.composition.messages import derive_exclusions, derive_wiring
-from sysmlc.logic.composition.naming import Wire, find_wires, has_single_type, rename_contract
 from sysmlc.logic.composition.structure import (
     find_drawn_activity,
     find_unclear_flows,

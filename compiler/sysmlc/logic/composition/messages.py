@@ -13,8 +13,7 @@ from msgspec import Struct
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic import formula as f
-from sysmlc.logic.composition.members import Block, Member
-from sysmlc.logic.composition.naming import Wire, name_in_composite
+from sysmlc.logic.composition.members import Block, Member, Wire, name_in_composite
 from sysmlc.logic.composition.structure import ITSELF, join_path
 from sysmlc.logic.contract import (
     BooleanDomain,

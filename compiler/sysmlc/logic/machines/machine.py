@@ -224,6 +224,10 @@ class Machine(Struct, frozen=True):
         """List all transitions, grouped by source."""
         return [transition for group in self.outgoing.values() for transition in group]
 
+    def list_incoming(self, vertex: str) -> list[Transition]:
+        """List the transitions that lead to a vertex, with their join partners apart."""
+        return [item for item in self.list_transitions() if item.target == vertex]
+
     def list_blockers(self, transition: Transition) -> list[str]:
         """List the variables that are true while entry or exit behaviours disable *transition*.
 

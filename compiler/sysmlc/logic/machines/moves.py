@@ -207,14 +207,17 @@ def _path_condition(
 
     It is the guard alone if the guard implies that some path is feasible.
     """
-    guard = (
-        f.TRUE if transition.guard is None else elaborate_condition(transition.guard, machine.scope)
-    )
+    guard = _guard_condition(machine, transition)
     condition_of_paths = f.either(*(path.when for path in paths))
     if condition_of_paths == guard:
         return simplify_constant(guard, domains)
     is_always_open = simplify_constant(f.implies(guard, condition_of_paths), domains) == f.TRUE
     return simplify_constant(guard if is_always_open else condition_of_paths, domains)
+
+
+def _guard_condition(machine: Machine, transition: Transition) -> Formula:
+    guard = transition.guard
+    return f.TRUE if guard is None else elaborate_condition(guard, machine.scope)
 
 
 def is_active_formula(machine: Machine, vertex: str) -> Formula:
@@ -310,10 +313,8 @@ def _report_faults(
     target = machine.vertices[transition.target] if transition.target else None
     if target is None or target.is_stable or transition.kind == "internal":
         return
-    guard = (
-        f.TRUE if transition.guard is None else elaborate_condition(transition.guard, machine.scope)
-    )
-    condition_of_paths = _path_condition(machine, domains, transition, paths)
-    if simplify_constant(f.implies(guard, condition_of_paths), domains) != f.TRUE:
+    path_condition = _path_condition(machine, domains, transition, paths)
+    is_covered = f.implies(_guard_condition(machine, transition), path_condition)
+    if simplify_constant(is_covered, domains) != f.TRUE:
         vertex_name = graph[element_id(target.id)].name or target.kind
         sink.report(BLOCKED, subject, transition=name, vertex=vertex_name)

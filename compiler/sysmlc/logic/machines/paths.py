@@ -289,9 +289,7 @@ class PathExplorer(Struct, frozen=True):
         others.
         """
         variable = self.machine.regions[region].variable
-        candidates = [
-            v for v in self.machine.vertices.values() if v.region == region and v.is_stable
-        ]
+        candidates = self._stable_vertices(region)
         literal = path.config.get(variable)
         if literal is not None:
             candidates = [state for state in candidates if state.literal == literal]

@@ -206,7 +206,10 @@ def find_active_vertices(
     machine: Machine, store: Mapping[str, Literal], region: str
 ) -> list[Vertex]:
     """Return the vertex that is active in a region; none if the region is inactive."""
-    literal = store[machine.regions[region].variable]
+    return _list_vertices(machine, region, store[machine.regions[region].variable])
+
+
+def _list_vertices(machine: Machine, region: str, literal: Literal) -> list[Vertex]:
     vertices = [vertex for vertex in machine.vertices.values() if vertex.region == region]
     return [vertex for vertex in vertices if vertex.is_stable and vertex.literal == literal]
 
@@ -272,9 +275,7 @@ def _last_active_vertices(
     machine: Machine, past: Mapping[str, Literal], region: str
 ) -> list[Vertex]:
     """Return the active vertex of a region, or the last active vertex of an inactive region."""
-    last = last_literal(past, machine.regions[region])
-    vertices = [vertex for vertex in machine.vertices.values() if vertex.region == region]
-    return [vertex for vertex in vertices if vertex.is_stable and vertex.literal == last]
+    return _list_vertices(machine, region, last_literal(past, machine.regions[region]))
 
 
 def _reenter(

@@ -54,14 +54,11 @@ def is_supported(graph: Graph, machine: Element, sink: Sink) -> bool:
     elements = [
         element for owner in collect_submachines(graph, machine) for element in graph.subtree(owner)
     ]
-    unsupported = [
-        (element, description)
+    descriptions = (
+        (element, _describe_unsupported(graph, element) or _describe_recursion(graph, element))
         for element in elements
-        for description in [
-            _describe_unsupported(graph, element) or _describe_recursion(graph, element)
-        ]
-        if description
-    ]
+    )
+    unsupported = [(element, description) for element, description in descriptions if description]
     broken = [element for element in elements if _is_broken(graph, machine, element, sink)]
     for element, description in unsupported:
         # The finding about a region that cannot start counts its initial pseudostates.
@@ -113,21 +110,13 @@ def _describe_recursion(graph: Graph, state: Element) -> str:
 
 def _enclosing_machines(graph: Graph, state: Element) -> list[Element]:
     """Return the state machines that contain *state*, directly or through submachine states."""
-    machines = [
-        ancestor for ancestor in graph.ancestors(state) if ancestor.kind is Kind.STATE_MACHINE
-    ]
-    for ancestor in machines:
-        for user_state in graph.sources(ancestor, Edge.CALLS):
-            ancestors = [
-                ancestor
-                for ancestor in graph.ancestors(user_state)
-                if ancestor.kind is Kind.STATE_MACHINE
-            ]
-            machines += (
-                ancestor
-                for ancestor in ancestors
-                if user_state.kind is Kind.STATE and ancestor not in machines
-            )
+    machines: list[Element] = []
+    states = [state]
+    for user in states:
+        for machine in graph.ancestors(user):
+            if machine.kind is Kind.STATE_MACHINE and machine not in machines:
+                machines.append(machine)
+                states += (s for s in graph.sources(machine, Edge.CALLS) if s.kind is Kind.STATE)
     return machines
 
 

@@ -258,14 +258,10 @@ def _expand_else(graph: Graph, transitions: list[Transition]) -> tuple[Transitio
     """Replace each guard ``else`` by the negation of the other guards."""
     return tuple(
         replace(transition, guard=_negate_siblings(transition, transitions))
-        if _is_else(graph, transition)
+        if _guard_text(graph, graph[element_id(transition.id)]) == "else"
         else transition
         for transition in transitions
     )
-
-
-def _is_else(graph: Graph, transition: Transition) -> bool:
-    return _guard_text(graph, graph[element_id(transition.id)]) == "else"
 
 
 def _negate_siblings(transition: Transition, transitions: list[Transition]) -> Expression | None:
@@ -302,17 +298,10 @@ def combine_joins(graph: Graph, machine: Machine, sink: Sink) -> bool:
     is_valid = True
     for vertex in tuple(machine.vertices.values()):
         if vertex.kind == "fork":
-            _move_to_outer_region(
-                machine,
-                vertex,
-                [transition.target for transition in machine.outgoing.get(vertex.id, ())],
-            )
+            targets = [transition.target for transition in machine.outgoing.get(vertex.id, ())]
+            _move_to_outer_region(machine, vertex, targets)
             continue
-        incoming = [
-            transition
-            for transition in machine.list_transitions()
-            if transition.target == vertex.id
-        ]
+        incoming = machine.list_incoming(vertex.id)
         if _is_joining_exit_point(machine, vertex, incoming):
             machine.vertices[vertex.id] = vertex = replace(vertex, kind="join")
         if vertex.kind == "join" and _can_combine(machine, incoming):

@@ -182,14 +182,9 @@ def _report_malformed(graph: Graph, machine: Machine, sink: Sink) -> Iterator[st
         if vertex.kind == "fork":
             reason = _explain_bad_fork(machine, machine.outgoing[vertex.id])
         elif vertex.kind == "join":
-            incoming = [
-                transition
-                for transition in machine.list_transitions()
-                if transition.target == vertex.id
-            ]
-            reason = _explain_bad_join(machine, incoming) or _explain_join_exits(
-                machine.outgoing[vertex.id]
-            )
+            reason = _explain_bad_join(machine, machine.list_incoming(vertex.id))
+            if not reason and len(machine.outgoing[vertex.id]) != 1:
+                reason = "more than one transition leaves it"
         if reason:
             element = graph[element_id(vertex.id)]
             name = element.name or vertex.kind
@@ -217,11 +212,6 @@ def _explain_bad_join(machine: Machine, incoming: list[Transition]) -> str:
     if not _are_orthogonal(machine, [transition.source for transition in incoming]):
         return "its transitions do not come from different regions of one state"
     return ""
-
-
-def _explain_join_exits(outgoing: tuple[Transition, ...]) -> str:
-    """Return why the exit of a join is invalid, or an empty text."""
-    return "" if len(outgoing) == 1 else "more than one transition leaves it"
 
 
 def _are_orthogonal(machine: Machine, vertices: list[str]) -> bool:
