@@ -27,7 +27,6 @@ from sysmlc.logic.formats.writing import (
     add_prime,
     apply_lowering,
     convert_to_word,
-    print_ltl_conjunct,
 )
 from sysmlc.logic.formula import Op
 from sysmlc.logic.infix import BOOLEAN, FormulaReader, Term
@@ -209,7 +208,7 @@ class _ChaseReader(FormulaReader):
 # -- writing ---------------------------------------------------------------------------------------
 
 
-_NOTATION = Notation(LTL_WORDS | {Op.DIV: "/"}, add_prime)
+_NOTATION = Notation(LTL_WORDS | {Op.DIV: "/"}, add_prime, format_name="CHASE")
 
 
 def lower(contract: Contract, format_name: str) -> Contract:
@@ -249,4 +248,4 @@ def _print_declaration(variable: Variable) -> str:
 def _iter_lines(conjuncts: tuple[Conjunct, ...]) -> Iterator[str]:
     # The grammar of CHASE demands a formula in each section.
     for conjunct in conjuncts or (Conjunct(f.TRUE, Class.INIT, ""),):
-        yield f"        {print_ltl_conjunct('CHASE', _NOTATION, conjunct)};"
+        yield f"        {_NOTATION.print_ltl_conjunct(conjunct)};"

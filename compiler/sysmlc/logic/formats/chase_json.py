@@ -25,7 +25,6 @@ from sysmlc.logic.formats.writing import (
     Notation,
     add_prime,
     convert_to_word,
-    print_ltl_conjunct,
 )
 from sysmlc.logic.infix import parse_formula
 from sysmlc.logic.syntax import FormulaError
@@ -33,7 +32,7 @@ from sysmlc.support.output import encode_json
 
 __all__ = ["lower", "read", "write"]
 _OWNERS = {"inputs": Owner.ENVIRONMENT, "outputs": Owner.SYSTEM}
-_NOTATION = Notation(LTL_WORDS, add_prime)
+_NOTATION = Notation(LTL_WORDS, add_prime, format_name="chase JSON")
 
 
 def read(file: SpecificationFile) -> tuple[Contract, ...]:
@@ -97,4 +96,4 @@ def _encode_type(variable: Variable) -> object:
 
 
 def _list_formulas(conjuncts: Iterable[Conjunct]) -> list[str]:
-    return [print_ltl_conjunct("chase JSON", _NOTATION, conjunct) for conjunct in conjuncts]
+    return list(map(_NOTATION.print_ltl_conjunct, conjuncts))

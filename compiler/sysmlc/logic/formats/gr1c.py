@@ -16,7 +16,6 @@ from sysmlc.logic.formats.writing import (
     add_prime,
     apply_lowering,
     conjuncts_of,
-    print_conjunct,
     reduce_to_gr1,
 )
 from sysmlc.logic.formula import Op
@@ -51,7 +50,7 @@ _SECTIONS = {
     "SYSGOAL": (Owner.SYSTEM, Class.LIVENESS),
 }
 _OPERATORS = {Class.INIT: "", Class.SAFETY: "[]", Class.LIVENESS: "[]<>"}
-_NOTATION = Notation(LTL_WORDS, add_prime, str)
+_NOTATION = Notation(LTL_WORDS, add_prime, str, "gr1c")
 _RESERVED = frozenset({*_DECLARATIONS, *_SECTIONS, *SYNTAX.booleans})
 
 
@@ -130,5 +129,5 @@ def _print_declaration(variable: Variable) -> str:
 
 def _iter_lines(contract: Contract, owner: Owner, class_: Class) -> Iterator[str]:
     for index, conjunct in enumerate(conjuncts_of(contract, owner, class_)):
-        text = print_conjunct("gr1c", _NOTATION.print, conjunct)
+        text = _NOTATION.print_conjunct(conjunct)
         yield f"\n{'& ' if index else '  '}{_OPERATORS[class_]}({text})"

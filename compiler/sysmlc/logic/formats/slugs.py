@@ -40,7 +40,6 @@ from sysmlc.logic.formats.writing import (
     add_prime,
     apply_lowering,
     conjuncts_of,
-    print_conjunct,
     reduce_to_gr1,
 )
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
@@ -322,7 +321,7 @@ def _print_literal(value: Literal) -> str:
     return {True: "TRUE", False: "FALSE"}[value] if isinstance(value, bool) else str(value)
 
 
-_NOTATION = Notation(LTL_WORDS, add_prime, _print_literal)
+_NOTATION = Notation(LTL_WORDS, add_prime, _print_literal, "structured")
 
 
 def lower(contract: Contract, format_name: str) -> Contract:
@@ -374,7 +373,7 @@ def write(contract: Contract, format_name: str) -> str:
     return _print_sections(
         lowered,
         _print_declaration,
-        lambda conjunct: print_conjunct(format_name, _NOTATION.print, conjunct),
+        _NOTATION.print_conjunct,
     )
 
 

@@ -45,7 +45,6 @@ from sysmlc.logic.formats.writing import (
     convert_to_word,
     is_recurring,
     is_step,
-    print_ltl_conjunct,
     remove_primes,
 )
 from sysmlc.logic.formula import Apply, Formula, Literal, Op, Var
@@ -271,12 +270,12 @@ def write(contract: Contract, format_name: str) -> str:
     if not steps or len(claims) == 1:
         groups = [(name, claims)]
     if not groups:
-        lines += (f"-- assumed: {print_ltl_conjunct(format_name, _NOTATION, a)}" for a in assumed)
+        lines += (f"-- assumed: {_NOTATION.print_ltl_conjunct(a)}" for a in assumed)
     for title, group in groups:
         viewpoints = {"", *(item.viewpoint for item in group)}
         needed = tuple(item for item in assumed if item.viewpoint in viewpoints)
         formula = replace(lowered, assumptions=needed, guarantees=group)
-        specification = print_implication(formula, _NOTATION, format_name)
+        specification = print_implication(formula, _NOTATION)
         lines.append(f"LTLSPEC NAME {title} := {specification};")
     return "\n".join([*lines, ""])
 
@@ -320,5 +319,5 @@ def _print_literal(value: Literal) -> str:
     return str(value).upper() if isinstance(value, bool) else str(value)
 
 
-_NOTATION = _SmvNotation({**LTL_WORDS, Op.RELEASE: "V"}, add_next_operator, _print_literal)
+_NOTATION = _SmvNotation({**LTL_WORDS, Op.RELEASE: "V"}, add_next_operator, _print_literal, "smv")
 _MODEL = Notation(LTL_WORDS, lambda name: f"next({name})", _print_literal)

@@ -18,7 +18,6 @@ from sysmlc.logic.formats.writing import (
     Notation,
     add_next_operator,
     apply_lowering,
-    print_ltl_conjunct,
 )
 from sysmlc.logic.formula import Formula, Op, Var
 from sysmlc.logic.infix import BOOLEAN, FormulaReader, Term
@@ -53,7 +52,7 @@ SYNTAX = Syntax(
 _PARTITION_LINE = re.compile(r"^[ \t]*\.(inputs|outputs)\b[ \t:]*([^\n]*)$", re.MULTILINE)
 _NAME = re.compile(r"[^\s,]+")
 _OWNERS = {"inputs": Owner.ENVIRONMENT, "outputs": Owner.SYSTEM}
-_NOTATION = Notation(LTL_WORDS, add_next_operator)
+_NOTATION = Notation(LTL_WORDS, add_next_operator, format_name="Spot")
 _RESERVED = frozenset({*SYNTAX.prefix, *SYNTAX.infix, *SYNTAX.booleans, "M", "xor"})
 
 
@@ -157,7 +156,7 @@ def lower(contract: Contract, format_name: str) -> Contract:
 def write(contract: Contract, format_name: str) -> str:
     """Return the contract as one formula over bits with the owners of the bits below it."""
     lowered = lower(contract, format_name)
-    formula = print_implication(lowered, _NOTATION, "Spot")
+    formula = print_implication(lowered, _NOTATION)
     return "\n".join([formula, *list_partition(lowered), ""])
 
 
@@ -170,18 +169,15 @@ def list_partition(contract: Contract) -> list[str]:
     return lines
 
 
-def print_implication(contract: Contract, notation: Notation, format_name: str) -> str:
+def print_implication(contract: Contract, notation: Notation) -> str:
     """Return ``(assumptions) -> (guarantees)``, or the guarantees alone if nothing is assumed."""
-    guarantees = _print_conjunction(contract.guarantees, notation, format_name)
-    assumptions = _print_conjunction(contract.assumptions, notation, format_name)
+    guarantees = _print_conjunction(contract.guarantees, notation)
+    assumptions = _print_conjunction(contract.assumptions, notation)
     if assumptions == notation.print(f.TRUE):
         return guarantees
     return f"({assumptions}) {notation.words[Op.IMPLIES]} ({guarantees})"
 
 
-def _print_conjunction(conjuncts: Iterable[Conjunct], notation: Notation, format_name: str) -> str:
-    texts = [
-        f"({print_ltl_conjunct(format_name, notation, conjunct)})"
-        for conjunct in drop_trivial(conjuncts)
-    ]
+def _print_conjunction(conjuncts: Iterable[Conjunct], notation: Notation) -> str:
+    texts = [f"({notation.print_ltl_conjunct(item)})" for item in drop_trivial(conjuncts)]
     return f" {notation.words[Op.AND]} ".join(texts) or notation.print(f.TRUE)

@@ -33,7 +33,6 @@ from sysmlc.logic.formats.writing import (
     add_next_operator,
     apply_lowering,
     conjuncts_of,
-    print_ltl_conjunct,
 )
 from sysmlc.logic.formula import Formula, Op, Var
 from sysmlc.logic.infix import MAX_DEPTH
@@ -252,7 +251,7 @@ def _find_start(tree: Tree) -> int:
 
 # -- writing ---------------------------------------------------------------------------------------
 
-_NOTATION = Notation(LTL_WORDS | {Op.AND: "&&", Op.OR: "||"}, add_next_operator)
+_NOTATION = Notation(LTL_WORDS | {Op.AND: "&&", Op.OR: "||"}, add_next_operator, format_name="TLSF")
 _WRITTEN_SECTIONS = {
     "INITIALLY": (Owner.ENVIRONMENT, (Class.INIT,)),
     "PRESET": (Owner.SYSTEM, (Class.INIT,)),
@@ -300,4 +299,4 @@ def _iter_formulas(contract: Contract, owner: Owner, classes: tuple[Class, ...])
             # The section implies "always" for safety; only liveness needs its operators.
             if class_ is not Class.LIVENESS:
                 conjunct = replace(conjunct, class_=Class.OTHER)
-            yield print_ltl_conjunct("TLSF", _NOTATION, conjunct)
+            yield _NOTATION.print_ltl_conjunct(conjunct)

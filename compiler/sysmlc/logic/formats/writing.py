@@ -60,6 +60,8 @@ class Notation(Struct, frozen=True):
     next_value: Callable[[str], str]
     """Spells the value of a variable in the next step."""
     literal: Callable[[Literal], str] = print_literal
+    format_name: str = ""
+    """What messages call the format."""
 
     def print(self, formula: Formula) -> str:
         """Return the formula as text. Raises KeyError for an operator without a word."""
@@ -76,11 +78,23 @@ class Notation(Struct, frozen=True):
                 word = f"{space}{self.words[op]}{space}"
                 return word.join(self._print_operand(op, arg) for arg in args)
 
-    def print_with_class(self, formula: Formula, class_: Class) -> str:
-        """Return the formula behind the temporal operators of its class: G, or G F."""
+    def print_conjunct(self, conjunct: Conjunct) -> str:
+        """Return the formula of a conjunct as text. Raises NotExpressibleError."""
+        try:
+            return self.print(conjunct.formula)
+        except KeyError as error:
+            reason = f"there is no word for {error}"
+            raise NotExpressibleError(self.format_name, reason, conjunct) from None
+
+    def print_ltl_conjunct(self, conjunct: Conjunct) -> str:
+        """Return a conjunct behind the temporal operators of its class: G, or G F.
+
+        Raises NotExpressibleError.
+        """
         operators = {Class.SAFETY: (Op.ALWAYS,), Class.LIVENESS: (Op.ALWAYS, Op.EVENTUALLY)}
-        prefix = " ".join(self.words[op] for op in operators.get(class_, ()))
-        return f"{prefix}({self.print(formula)})" if prefix else self.print(formula)
+        prefix = " ".join(self.words[op] for op in operators.get(conjunct.class_, ()))
+        text = self.print_conjunct(conjunct)
+        return f"{prefix}({text})" if prefix else text
 
     def _print_operand(self, op: Op, formula: Formula) -> str:
         text = self.print(formula)
@@ -94,26 +108,6 @@ class Notation(Struct, frozen=True):
         else:
             is_clear = formula.op in COMPARISONS and op not in (*_PREFIX, *COMPARISONS)
         return text if is_clear else f"({text})"
-
-
-def print_conjunct(
-    format_name: str, print_text: Callable[[Formula], str], conjunct: Conjunct
-) -> str:
-    """Return the conjunct's formula as text. Raises NotExpressibleError."""
-    try:
-        return print_text(conjunct.formula)
-    except KeyError as error:
-        reason = f"there is no word for {error}"
-        raise NotExpressibleError(format_name, reason, conjunct) from None
-
-
-def print_ltl_conjunct(format_name: str, notation: Notation, conjunct: Conjunct) -> str:
-    """Return the conjunct with the temporal operators of its class. Raises NotExpressibleError."""
-    return print_conjunct(
-        format_name,
-        lambda formula: notation.print_with_class(formula, conjunct.class_),
-        conjunct,
-    )
 
 
 def remove_primes(formula: Formula) -> Formula:
