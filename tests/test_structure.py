@@ -23,7 +23,7 @@ LONG_MODULES: dict[str, str] = {}
 """Modules with more lines, and why they have one subject."""
 MAX_FIELDS = 12
 """Fields of an object that modules pass to one another."""
-MODULE_CHANGES = {"guard": 110, "requirement": 105, "recipe": 80}
+MODULE_CHANGES = {"guard": 105, "requirement": 98, "recipe": 79}
 """Calls that hand a value to another module, from the file to the result; they may only shrink."""
 WIDE_OBJECTS = {
     "sysmlc.backends.aml.context.Context": 13,
@@ -290,7 +290,9 @@ def test_participles_are_told_from_verbs():
 
 @pytest.mark.parametrize(("value", "bound"), MODULE_CHANGES.items())
 def test_a_reader_who_follows_a_value_seldom_changes_the_module(value: str, bound: int):
-    assert len(count_module_changes.list_changes(count_module_changes.WALKS[value])) <= bound
+    changes = count_module_changes.list_changes(count_module_changes.WALKS[value])
+    assert len(changes) <= bound
+    assert len(changes) > 50, "the walk ends before the result"
 
 
 def test_the_architecture_page_shows_the_packages_and_modules_that_exist():
