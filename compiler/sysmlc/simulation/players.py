@@ -285,15 +285,15 @@ class MachinePlayer(Struct, frozen=True, dict=True):
 
     @property
     def pulses(self) -> frozenset[str]:
-        return frozenset(
-            variable.name
+        origins = {
+            variable.name: self.graph.get(variable.origin)
             for variable in machine_interpreter.list_inputs(self.machine)
-            if not self._is_lasting(variable)
+        }
+        return frozenset(
+            name
+            for name, element in origins.items()
+            if element is None or element.kind not in _LASTING_KINDS
         )
-
-    def _is_lasting(self, variable: Variable) -> bool:
-        element = self.graph.get(variable.origin)
-        return element is not None and element.kind in _LASTING_KINDS
 
     def initial(self, inputs: Mapping[str, Literal]) -> list[Valuation]:
         return machine_interpreter.initial_steps(self.machine, inputs)

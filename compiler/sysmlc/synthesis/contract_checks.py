@@ -1,6 +1,6 @@
 """Checks of the contracts of a model: each by itself, and behaviours against requirements."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from msgspec import Struct
 from msgspec.structs import replace
@@ -179,7 +179,7 @@ def check_contracts(
     for contract in chosen:
         component = contract.component
         behaviour = all_by_component.get(component.removesuffix(SUFFIX))
-        if _is_requirement_contract(contract) and behaviour is not None:
+        if component.endswith(SUFFIX) and behaviour is not None:
             checked = behaviours.get(behaviour.component) or ComponentBehaviour(behaviour)
             verdict = _decide_consistency(contract, checked, setting)
             yield CheckedContract(verdict, is_checked_by_behaviour=True)
@@ -208,10 +208,6 @@ def check_contracts(
                 checks.append((checked, requirements, result.findings))
             yield result
     report_unreachable(checks, place, sink)
-
-
-def _is_requirement_contract(contract: Contract) -> bool:
-    return contract.component.endswith(SUFFIX)
 
 
 def _lint_within_limits(
@@ -268,7 +264,7 @@ def _complete(
         conjunct for conjunct in behaviour.contract.assumptions if conjunct.is_derived
     )
     names = {variable.name for variable in requirements.variables}
-    read = {variable.name for item in assumptions for variable in f.variables(item.formula)}
+    read = f.variable_names(*(item.formula for item in assumptions))
     variables = (
         *requirements.variables,
         *(variable for variable in behaviour.contract.variables if variable.name in read - names),
@@ -285,15 +281,12 @@ def _complete(
                 conjunct
                 for conjunct in requirements.assumptions
                 # The initial value of such a feature is no assumption about an input.
-                if not (conjunct.is_derived and _reads(conjunct, features))
+                if not conjunct.is_derived
+                or features.isdisjoint(f.variable_names(conjunct.formula))
             ),
             *assumptions,
         ),
     )
-
-
-def _reads(conjunct: Conjunct, names: Set[str]) -> bool:
-    return any(variable.name in names for variable in f.variables(conjunct.formula))
 
 
 def _check_requirements(

@@ -106,7 +106,9 @@ def _check_ownership(contract: Contract) -> Iterator[LintFinding]:
     for conjunct in contract.guarantees:
         if _sole_owner(conjunct, owners) is Owner.ENVIRONMENT:
             yield _find_wrong_owner(conjunct, "promises", "the environment")
-        elif conjunct.class_ is Class.INIT and Owner.ENVIRONMENT in _owners_of(conjunct, owners):
+        elif conjunct.class_ is Class.INIT and Owner.ENVIRONMENT in map(
+            owners.get, variable_names(conjunct.formula)
+        ):
             yield LintFinding(rules.INITIAL_INPUT, conjunct)
     for conjunct in (*contract.assumptions, *contract.guarantees):
         if conjunct.class_ is Class.LIVENESS and _primed_names(conjunct.formula):
@@ -131,10 +133,6 @@ def _sole_owner(conjunct: Conjunct, owners: dict[str, Owner]) -> Owner | None:
     return next(iter(found_owners)) if len(found_owners) == 1 and is_immediate else None
 
 
-def _owners_of(conjunct: Conjunct, owners: dict[str, Owner]) -> set[Owner]:
-    return {owners[name] for name in variable_names(conjunct.formula) if name in owners}
-
-
 def _primed_names(formula: Formula) -> set[str]:
     return {variable.name for variable in variables(formula) if variable.primed}
 
@@ -156,7 +154,9 @@ def _check_games(contract: Contract, create_manager: ManagerFactory) -> Iterator
     elif (assumed or guaranteed) and is_won(_with_idle_outputs(contract), create_manager):
         yield LintFinding(rules.IDLE)
     elif assumed and guaranteed:
-        yield from _check_needless_fairness(contract, create_manager)
+        safety_assumptions = select_classes(contract.assumptions, *_NOT_LIVENESS)
+        if is_won(replace(contract, assumptions=safety_assumptions), create_manager):
+            yield LintFinding(rules.NEEDLESS)
     if is_forced(contract, create_manager):
         yield LintFinding(rules.NOT_SEPARATED, detail=_describe_culprits(contract, create_manager))
 
@@ -164,15 +164,6 @@ def _check_games(contract: Contract, create_manager: ManagerFactory) -> Iterator
 def is_won(contract: Contract, create_manager: ManagerFactory) -> bool:
     """Whether the contract is realizable."""
     return solve(make_game(contract, create_manager()), is_complete=False).is_realizable
-
-
-def _check_needless_fairness(
-    contract: Contract, create_manager: ManagerFactory
-) -> Iterator[LintFinding]:
-    """Yield a finding if the contract is realizable without its liveness assumptions, too."""
-    safety_assumptions = select_classes(contract.assumptions, *_NOT_LIVENESS)
-    if is_won(replace(contract, assumptions=safety_assumptions), create_manager):
-        yield LintFinding(rules.NEEDLESS)
 
 
 def _with_idle_outputs(contract: Contract) -> Contract:
@@ -334,7 +325,7 @@ def _check_frame(game: Game, variable: Variable, states: Node) -> Iterator[LintF
         return  # such as the state of a machine with one state
     product = Product(game.manager, nodes_of(game.assumptions), game.next_inputs)
     unconstrained = _states_without_frame(game, variable)
-    if _is_quantity(variable):
+    if isinstance(variable.domain, IntegerDomain) and size(variable.domain) >= _MIN_QUANTITY_VALUES:
         condition = states & product(unconstrained)
         is_free = condition != game.manager.false
     else:
@@ -346,11 +337,6 @@ def _check_frame(game: Game, variable: Variable, states: Node) -> Iterator[LintF
             f"where {_describe_state(game, condition)}" if condition != states else "in any step"
         )
         yield LintFinding(rules.NO_FRAME, name=variable.name, detail=condition_text)
-
-
-def _is_quantity(variable: Variable) -> bool:
-    domain = variable.domain
-    return isinstance(domain, IntegerDomain) and size(domain) >= _MIN_QUANTITY_VALUES
 
 
 def _states_without_frame(game: Game, variable: Variable) -> Node:

@@ -54,7 +54,8 @@ class Universe:
         """
         self.manager = manager
         self.symbols = Symbols(manager, merge_variables(contracts), list_related(related))
-        self._ranges = self._compute_ranges()
+        nodes = map(self.symbols.domain, self.symbols.variables)
+        self._ranges = tuple(node for node in nodes if node != self.manager.true)
 
     def system(self, conjuncts: Iterable[Conjunct], *, looks_ahead: bool = True) -> FairSystem:
         """Return the system whose runs satisfy all conjuncts and keep variables in their ranges.
@@ -92,10 +93,6 @@ class Universe:
             return self.symbols.bdd(conjunct.formula)
         except SymbolError as problem:
             raise OutsideGr1Error(conjunct, str(problem)) from None
-
-    def _compute_ranges(self) -> tuple[Node, ...]:
-        nodes = (self.symbols.domain(name) for name in self.symbols.variables)
-        return tuple(node for node in nodes if node != self.manager.true)
 
 
 def merge_variables(contracts: Iterable[Contract]) -> tuple[Variable, ...]:

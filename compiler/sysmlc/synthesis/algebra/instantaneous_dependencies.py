@@ -20,7 +20,6 @@ from sysmlc.logic.contract import (
     select_classes,
 )
 from sysmlc.synthesis.algebra.fair_systems import Runs, Universe
-from sysmlc.synthesis.bdd.manager import Node
 
 
 class Dependency(Struct, frozen=True):
@@ -82,15 +81,14 @@ def _restricted_together(contract: Contract, universe: Universe) -> frozenset[st
     """
     system = universe.system(select_classes(contract.guarantees, Class.SAFETY))
     live_states = Runs(system).states_with_infinite_runs
+    symbols, manager = universe.symbols, universe.manager
+    # The states allow every value of a variable that they do not restrict.
     names = (variable.name for variable in contract.variables)
-    return frozenset(name for name in names if _is_restricted(name, live_states, universe))
-
-
-def _is_restricted(name: str, states: Node, universe: Universe) -> bool:
-    """Whether the states do not allow every value of the variable."""
-    symbols = universe.symbols
-    any_value = universe.manager.exist(symbols.bits(name), states) & symbols.domain(name)
-    return any_value != states
+    return frozenset(
+        name
+        for name in names
+        if manager.exist(symbols.bits(name), live_states) & symbols.domain(name) != live_states
+    )
 
 
 class DependencyGraph(Struct, frozen=True):

@@ -67,7 +67,12 @@ class Entailment:
         states = _find_violating_states(self.runs, conjunct.class_, violation)
         if states == self.runs.manager.false:
             return None
-        return _TRACE_BUILDERS[conjunct.class_](self.runs, states, violation)
+        if conjunct.class_ is Class.SAFETY:
+            return _build_step_violation(self.runs, states, violation)
+        if conjunct.class_ is Class.INIT:
+            return build_lasso(self.runs, [pick_state(self.runs, states)], self.runs.fair)
+        # A fair run that violates the condition forever from some step on.
+        return build_lasso(self.runs, shortest_path(self.runs, states), states)
 
     def entails(self, conjunct: Conjunct) -> bool:
         """Whether the conjunct holds in all runs. Raises OutsideGr1Error as ``find_violation``."""
@@ -99,10 +104,6 @@ def _begin_steps(runs: Runs, violation: Node) -> Node:
     return runs.predecessors_among_reachable(targets, violation)
 
 
-def _build_initial_violation(runs: Runs, states: Node, _: Node) -> Trace:
-    return build_lasso(runs, [pick_state(runs, states)], runs.fair)
-
-
 def _build_step_violation(runs: Runs, states: Node, violation: Node) -> Trace:
     """Return a run through a reachable step that violates the conjunct."""
     path = shortest_path(runs, states)
@@ -111,18 +112,6 @@ def _build_step_violation(runs: Runs, states: Node, violation: Node) -> Trace:
     successors = symbols.unprime(runs.manager.exist(runs.bits, path[-1] & violation))
     path.append(pick_state(runs, runs.successors(path[-1]) & successors & runs.fair))
     return build_lasso(runs, path, runs.fair)
-
-
-def _build_fair_violation(runs: Runs, states: Node, _: Node) -> Trace:
-    """Return a fair run that violates the condition forever from some step on."""
-    return build_lasso(runs, shortest_path(runs, states), states)
-
-
-_TRACE_BUILDERS = {
-    Class.INIT: _build_initial_violation,
-    Class.SAFETY: _build_step_violation,
-    Class.LIVENESS: _build_fair_violation,
-}
 
 
 class RunSearch:

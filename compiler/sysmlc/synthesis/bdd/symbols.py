@@ -40,7 +40,10 @@ class Symbols:
         """
         self.manager = manager
         self.variables = {variable.name: variable for variable in variables}
-        self._bits = {name: _bit_names(variable) for name, variable in self.variables.items()}
+        self._bits = {
+            name: tuple(f"{name}.{index}" for index in range(domains.width(variable.domain)))
+            for name, variable in self.variables.items()
+        }
         self._nodes: dict[Formula, Node] = {}
         self._vectors: dict[Formula, Vector] = {}
         bit_order = order_bits(self.variables.values(), self._bits, edges, order)
@@ -262,10 +265,6 @@ def current_bit(bit: str) -> str:
 def is_next(bit: str) -> bool:
     """Whether a bit belongs to a next value."""
     return bit.endswith("'")
-
-
-def _bit_names(variable: Variable) -> tuple[str, ...]:
-    return tuple(f"{variable.name}.{index}" for index in range(domains.width(variable.domain)))
 
 
 def _decode_value(variable: Variable, bits: list[bool]) -> Literal:

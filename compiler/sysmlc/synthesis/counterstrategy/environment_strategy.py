@@ -164,16 +164,14 @@ class EnvironmentStrategy:
         rank = self.rank(state)
         # A goal state belongs to the rank only because an earlier rank can be forced from it.
         if self._holds(self.lost_game.goals[rank.goal], state):
-            return self._inputs_towards(state, self._earlier_states(rank)), 0
+            earlier = self.lost_game.ranks[: self.lost_game.ranks.index(rank)]
+            target = earlier[-1].states if earlier else self._arena.manager.false
+            return self._inputs_towards(state, target), 0
         if self._holds(self.lost_game.fairness[fair], state):
             return self._inputs_towards(state, rank.stay), (fair + 1) % len(self.lost_game.fairness)
         attractor = rank.fairness_layers[fair]
         index = next(layer for layer, states in enumerate(attractor) if self._holds(states, state))
         return self._inputs_towards(state, attractor[index - 1]), fair
-
-    def _earlier_states(self, rank: Rank) -> Node:
-        index = self.lost_game.ranks.index(rank)
-        return self.lost_game.ranks[index - 1].states if index else self._arena.manager.false
 
     def _inputs_towards(self, state: Bits, target: Node) -> Bits:
         """Return inputs after which all answers lead to *target*; unchanged inputs if possible."""

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import islice
 
-from sysmlc.logic.contract import Class, Conjunct, Contract, Owner, Variable
+from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.domains import values
 from sysmlc.logic.evaluate import is_true
 from sysmlc.logic.formula import Literal, has_past, has_primes
@@ -91,7 +91,7 @@ class Player:
                 matching = [answer for answer in options if requested.items() <= answer[1].items()]
                 if matching:
                     answer_bits, outputs = max(
-                        matching, key=lambda answer: _count_unchanged(answer[1], previous)
+                        matching, key=lambda answer: len(answer[1].items() & previous.items())
                     )
                     self._write(f"     {_print_values(outputs)}")
                     return answer_bits
@@ -125,12 +125,11 @@ class Player:
             if name not in variables:
                 self._write(f"'{name}' is not an output; the outputs are {', '.join(variables)}")
                 return None
-            value = _parse_value(variables[name], text)
-            if value is None:
-                all_values = ", ".join(map(print_literal, values(variables[name].domain)))
-                self._write(f"'{name}' is one of {all_values}")
+            values_by_text = {print_literal(v): v for v in values(variables[name].domain)}
+            if text not in values_by_text:
+                self._write(f"'{name}' is one of {', '.join(values_by_text)}")
                 return None
-            requested[name] = value
+            requested[name] = values_by_text[text]
         return requested
 
     def _explain_refusal(self, previous: Values, current: Values) -> None:
@@ -192,15 +191,6 @@ def _text_in_parentheses(conjunct: Conjunct) -> str:
     """Return the conjunct's text in parentheses, unless it repeats the formula."""
     is_new = conjunct.text not in ("", print_formula(conjunct.formula))
     return f" ({conjunct.text.removesuffix('.')})" if is_new else ""
-
-
-def _count_unchanged(outputs: Values, previous: Values) -> int:
-    return sum(previous.get(name) == value for name, value in outputs.items())
-
-
-def _parse_value(variable: Variable, text: str) -> Literal | None:
-    matches = (value for value in values(variable.domain) if print_literal(value) == text)
-    return next(matches, None)
 
 
 def _print_values(values: Values) -> str:

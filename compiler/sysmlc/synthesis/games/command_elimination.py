@@ -8,6 +8,7 @@ turn of the environment for its other inputs follows. The controllable predecess
 """
 
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import chain
 from typing import TypeVar
 
 from msgspec import Struct
@@ -100,7 +101,7 @@ class _TurnSplit(Struct, frozen=True):
         """
         game, symbols = self.game, self.game.symbols
         names = (*game.names(Owner.ENVIRONMENT), *game.names(Owner.SYSTEM))
-        effect = _flatten(self.plant.values())
+        effect = tuple(chain.from_iterable(self.plant.values()))
         plant_bits = symbols.all_bits(self.plant, primed=True)
         next_command_bits = symbols.all_bits(self.commands, primed=True)
         answer_bits = _without(game.next_outputs, next_command_bits)
@@ -239,7 +240,3 @@ _T = TypeVar("_T")
 def _without(items: Iterable[_T], removed: Iterable[_T]) -> tuple[_T, ...]:
     removed_items = frozenset(removed)
     return tuple(item for item in items if item not in removed_items)
-
-
-def _flatten(groups: Iterable[Iterable[Node]]) -> tuple[Node, ...]:
-    return tuple(node for group in groups for node in group)

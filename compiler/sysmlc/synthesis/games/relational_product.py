@@ -160,18 +160,12 @@ def _join_small_stages(stages: Iterable[_Stage], unread_bits: frozenset[str]) ->
     """Conjoin small neighbours; the first stage also quantifies the bits that no stage reads."""
     joined_stages: list[_Stage] = []
     for stage in stages:
-        conjunction = (
-            joined_stages[-1].node & stage.node
-            if joined_stages and _can_join(joined_stages[-1], stage)
-            else None
-        )
-        if conjunction is not None and len(conjunction) <= MAX_JOINED_STAGE_NODES:
-            joined_stages[-1] = _Stage(conjunction, joined_stages[-1].last_bits | stage.last_bits)
-        else:
-            joined_stages.append(stage)
+        last = joined_stages[-1] if joined_stages else None
+        if last is not None and len(last.node) + len(stage.node) <= MAX_JOINED_STAGE_NODES:
+            conjunction = last.node & stage.node
+            if len(conjunction) <= MAX_JOINED_STAGE_NODES:
+                joined_stages[-1] = _Stage(conjunction, last.last_bits | stage.last_bits)
+                continue
+        joined_stages.append(stage)
     first = [_Stage(stage.node, stage.last_bits | unread_bits) for stage in joined_stages[:1]]
     return first + joined_stages[1:]
-
-
-def _can_join(left: _Stage, right: _Stage) -> bool:
-    return len(left.node) + len(right.node) <= MAX_JOINED_STAGE_NODES

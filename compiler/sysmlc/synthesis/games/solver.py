@@ -262,12 +262,10 @@ class _Solver:
         layers: list[Layer] = []
         for layer in attractor.compute_layers(target):
             layers.append(layer)
-            self._report_progress(goal, len(layers))
+            activity = f"round {self._rounds}, goal {goal + 1}, layer {len(layers)}"
+            self.arena.manager.check(activity)
         self._layers[goal] = tuple(layers)
         return layers[-1].states if layers else self.arena.manager.false
-
-    def _report_progress(self, goal: int, layers: int) -> None:
-        self.arena.manager.check(f"round {self._rounds}, goal {goal + 1}, layer {layers}")
 
     def _build_solution(self, winning: Node, is_realizable: bool, is_complete: bool) -> Solution:
         return Solution(

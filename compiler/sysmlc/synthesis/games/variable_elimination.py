@@ -45,16 +45,13 @@ def eliminate_determined_variables(game: Game) -> Game:
 
 def _merge_parts(game: Game) -> Game:
     """Conjoin the constraints of each list that have the same support."""
-    return _replace_lists(
-        game, {name: _merge_by_support(game, getattr(game, name)) for name in _STEPS}
-    )
-
-
-def _merge_by_support(game: Game, parts: Iterable[Constraint]) -> list[Constraint]:
-    groups: dict[frozenset[str], list[Node]] = {}
-    for part in parts:
-        groups.setdefault(game.manager.support(part.node), []).append(part.node)
-    return [Constraint(game.manager.conjoin(nodes)) for nodes in groups.values()]
+    lists: dict[str, list[Constraint]] = {}
+    for name in _STEPS:
+        groups: dict[frozenset[str], list[Node]] = {}
+        for part in getattr(game, name):
+            groups.setdefault(game.manager.support(part.node), []).append(part.node)
+        lists[name] = [Constraint(game.manager.conjoin(nodes)) for nodes in groups.values()]
+    return _replace_lists(game, lists)
 
 
 class _Definition(Struct, frozen=True):
@@ -72,7 +69,7 @@ def _find_definition(game: Game, name: str) -> _Definition | None:
     own_bits = frozenset(symbols.bits(name, primed=True))
     is_input = symbols.variables[name].owner is Owner.ENVIRONMENT
     parts = _parts_over(game, game.assumptions if is_input else game.guarantees, own_bits)
-    parts = [part for part in parts if _is_about_next_step(game, part.node)]
+    parts = [part for part in parts if all(map(is_next, manager.support(part.node)))]
     relation = manager.conjoin_small((part.node for part in parts), MAX_DEFINITION_NODES)
     if not parts or relation is None:
         return None
@@ -159,7 +156,3 @@ def _replace_lists(game: Game, lists: Mapping[str, Iterable[Constraint]]) -> Gam
 
 def _parts_over(game: Game, parts: Iterable[Constraint], bits: frozenset[str]) -> list[Constraint]:
     return [part for part in parts if not bits.isdisjoint(game.manager.support(part.node))]
-
-
-def _is_about_next_step(game: Game, node: Node) -> bool:
-    return all(map(is_next, game.manager.support(node)))

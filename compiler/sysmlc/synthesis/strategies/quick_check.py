@@ -74,7 +74,10 @@ class QuickCheck:
             return False
         # State predicates have been checked for the first step. For later steps they are checked as
         # predicates of the next state, where dead variables have not been quantified away yet.
-        next_step_guarantees = [self._about_next_step(node) for node in self.safety_guarantees]
+        prime = self.closed_loop.symbols.prime
+        next_step_guarantees = [
+            prime(node) if node in state_predicates else node for node in self.safety_guarantees
+        ]
         is_in_parts = len(self.closed_loop.transitions) > MONOLITHIC_PARTS
         conjunctions = (
             self._conjunctions_by_support(next_step_guarantees)
@@ -121,9 +124,6 @@ class QuickCheck:
 
     def _is_state_predicate(self, node: Node) -> bool:
         return not any(map(is_next, self.manager.support(node)))
-
-    def _about_next_step(self, node: Node) -> Node:
-        return self.closed_loop.symbols.prime(node) if self._is_state_predicate(node) else node
 
     def _live_variables(self) -> frozenset[str]:
         """Return the live variables: those whose current value a later step reads."""

@@ -48,7 +48,9 @@ class _Exploration:
         self.strategy, self.manager, self.symbols = strategy, strategy.manager, strategy.symbols
         self.later = later
         self.allowed = self.manager.conjoin(map(self.symbols.prime, first))
-        self.names = self._remembered_names()
+        # The variables whose previous value some function or assumption reads.
+        read_nodes = [*later, *_functions_of_modes(strategy)]
+        self.names = frozenset[str]().union(*map(self.symbols.names, read_nodes))
 
     def run(self) -> ReachableStrategy:
         """Compute the reachable memory of all modes as a least fixpoint."""
@@ -72,11 +74,6 @@ class _Exploration:
         return ReachableStrategy(
             strategy, self.allowed, tuple(can_continue(node) for node in reached_states)
         )
-
-    def _remembered_names(self) -> frozenset[str]:
-        """Return the variables whose previous value some function or assumption reads."""
-        read_nodes = [*self.later, *_functions_of_modes(self.strategy)]
-        return frozenset[str]().union(*map(self.symbols.names, read_nodes))
 
     def _successors(self, mode: Mode, parts: Sequence[Node], start: Node) -> list[Node]:
         """Return for each next mode the memory contents that one step from *start* leads to."""
