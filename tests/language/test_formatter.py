@@ -198,6 +198,47 @@ def test_long_expressions_are_broken_outside_parentheses():
     assert [line.strip()[0] for line in lines[1:]] == ["+"] * (len(lines) - 1)
 
 
+@pytest.mark.parametrize(
+    "operator",
+    [
+        *("and", "or", "xor", "implies", "??", "==", "!=", "===", "!==", "<", ">", "<=", ">="),
+        *("|", "&", "+", "-", "*", "/", "%"),
+    ],
+)
+def test_long_expressions_are_broken_before_an_operator(operator):
+    operand = "aRatherLongNameOfOneOperand" * 2
+    text = f"attribute total = {operand} {operator} {operand} {operator} {operand};"
+    line = f"        {operator} {operand}"
+    expected = f"attribute total = {operand}\n{line}\n{line};\n"
+    assert format_text(text, "sysml") == expected
+
+
+@pytest.mark.parametrize(
+    "word",
+    [
+        *("specializes", "subsets", "redefines", "references", "crosses"),
+        *(":>", ":>>", "::>", "=>"),
+    ],
+)
+def test_long_members_are_broken_before_a_clause(word):
+    name = "aRatherLongNameOfOneType" * 3
+    text = f"part x {word} {name} {word} {name};"
+    assert format_text(text, "sysml") == f"part x {word} {name}\n        {word} {name};\n"
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        *("part x = y [m];", "part x := y [m];", "part x default y [m];", "filter y [m];"),
+        *("while y [m] {}", "loop {} until y [m];", "if y [m] {}", "assign x := y [m];"),
+        *("accept when y [m];", "accept at y [m];", "accept after y [m];"),
+    ],
+)
+def test_a_bracket_in_a_value_has_a_space_before_it(statement):
+    text = f"action a {{\n    {statement}\n}}\n"
+    assert format_text(text.replace(" [", "["), "sysml") == text
+
+
 def test_long_body_expressions_have_a_line_for_each_member():
     text = (
         "attribute total = collection->select {in item : SomethingThatHasAWeight; "
