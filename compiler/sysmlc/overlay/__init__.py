@@ -124,14 +124,10 @@ def _build_refinement(top: Value, file: str) -> Refinement:
         allocations=tuple(
             sorted(
                 (_build_allocation(entry) for entry in top.list_items("allocations")),
-                key=_make_allocation_key,
+                key=lambda allocation: (allocation.source.text, allocation.target.text),
             )
         ),
     )
-
-
-def _make_allocation_key(allocation: Allocation) -> tuple[str, str]:
-    return allocation.source.text, allocation.target.text
 
 
 # -- entries -----------------------------------------------------------------------------------

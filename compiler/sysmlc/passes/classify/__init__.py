@@ -1,6 +1,5 @@
 """Pass ``classify``: the role of each element in SysML, and its level in a recipe."""
 
-from collections.abc import Iterator
 from typing import ClassVar
 
 from msgspec import Struct
@@ -86,7 +85,9 @@ class Classify(Struct, frozen=True):
         _give_roles(graph, _group_by_subject(graph, meanings))
         apply_tags(graph, meanings)
         link_units(graph, meanings)
-        _check_optional(graph, sink, meanings)
+        for parameter in find_optional_with_value(graph, meanings):
+            name = graph.qualified_name(parameter)
+            sink.report(OPTIONAL_WITH_VALUE, graph.subject(parameter), parameter=name)
         _give_levels(graph, lineages)
         _complete_attributes(graph)
         check_literals(graph, sink)
@@ -154,12 +155,6 @@ def _group_by_subject(graph: Graph, meanings: _Meanings) -> _Meanings:
     return by_subject
 
 
-def _check_optional(graph: Graph, sink: Sink, meanings: _Meanings) -> None:
-    for parameter in find_optional_with_value(graph, meanings):
-        name = graph.qualified_name(parameter)
-        sink.report(OPTIONAL_WITH_VALUE, graph.subject(parameter), parameter=name)
-
-
 def _has_unknown_stereotype(
     graph: Graph, application: Element, lineage: tuple[Ancestor, ...]
 ) -> bool:
@@ -211,7 +206,8 @@ def _give_levels(graph: Graph, lineages: dict[str, tuple[Ancestor, ...]]) -> Non
     levels_by_subject: dict[str, set[str]] = {}
     for id, lineage in lineages.items():
         for subject in graph.targets(graph[id], Edge.SUBJECT):
-            levels_by_subject.setdefault(subject.id, set()).update(_list_levels(lineage))
+            names = (a.name for a in lineage if a.family is Family.SYSMLC and a.name in LEVELS)
+            levels_by_subject.setdefault(subject.id, set()).update(LEVELS[name] for name in names)
     for id, levels in levels_by_subject.items():
         # Services often have the stereotype OpcUaCall too; the first level of the table counts.
         level = next((name for name in LEVELS.values() if name in levels), None)
@@ -235,12 +231,6 @@ def _inherit_levels(graph: Graph) -> None:
 def _level_of_general(graph: Graph, classifier: Element) -> AttrValue:
     generals = graph.targets(classifier, Edge.SPECIALIZES)
     return next(general.attrs["level"] for general in generals if "level" in general.attrs)
-
-
-def _list_levels(lineage: tuple[Ancestor, ...]) -> Iterator[str]:
-    for ancestor in lineage:
-        if ancestor.family is Family.SYSMLC and ancestor.name in LEVELS:
-            yield LEVELS[ancestor.name]
 
 
 def _complete_attributes(graph: Graph) -> None:

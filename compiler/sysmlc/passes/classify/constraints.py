@@ -48,19 +48,11 @@ def _check_usage(graph: Graph, sink: Sink, usage: Element) -> None:
         sink.report(NO_CONSTRAINT_BLOCK, graph.subject(usage), property=name)
     # In SysML v2 a value, such as another predicate, stands for the whole usage.
     if type_ is not None and "default" not in usage.attrs:
-        type_features = features(graph, type_)
-        unbound = [
-            feature
-            for feature in type_features
-            if _is_parameter(feature) and feature.name and not _is_bound(graph, usage, feature)
-        ]
+        parameters = (f for f in features(graph, type_) if f.role == "constraint parameter")
+        unbound = [p for p in parameters if p.name and not _is_bound(graph, usage, p)]
         if unbound:
-            names = ", ".join(f"'{feature.name}'" for feature in unbound)
+            names = ", ".join(f"'{parameter.name}'" for parameter in unbound)
             sink.report(UNBOUND_PARAMETER, graph.subject(usage), property=name, parameters=names)
-
-
-def _is_parameter(feature: Element) -> bool:
-    return feature.role == "constraint parameter"
 
 
 def _is_bound(graph: Graph, usage: Element, parameter: Element) -> bool:
@@ -74,7 +66,8 @@ def _is_bound(graph: Graph, usage: Element, parameter: Element) -> bool:
 
 def _check_units(graph: Graph, sink: Sink, left: Element, right: Element) -> None:
     unit, other_unit = unit_of(graph, left), unit_of(graph, right)
-    if unit is None or other_unit is None or _is_same_unit(unit, other_unit):
+    # For a unit that is only a text, the pass adds one element to each value type.
+    if unit is None or other_unit is None or unit.name == other_unit.name:
         return
     sink.report(
         UNITS_DIFFER,
@@ -84,12 +77,6 @@ def _check_units(graph: Graph, sink: Sink, left: Element, right: Element) -> Non
         other=graph.qualified_name(right),
         other_unit=other_unit.name,
     )
-
-
-def _is_same_unit(left: Element, right: Element) -> bool:
-    """Whether two units are the same element or have the same name."""
-    # For a unit that is only a text, the pass adds one element to each value type.
-    return left is right or left.name == right.name
 
 
 # -- binding connectors ------------------------------------------------------------------------

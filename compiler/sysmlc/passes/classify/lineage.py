@@ -129,20 +129,14 @@ class Profiles:
         return self._families[stereotype.id]
 
     def _find_family(self, stereotype: Element) -> Family:
+        profiles = self._profiles_of(stereotype)
+        uris, families = [self._uri_of(profile) for profile in profiles], _FAMILIES
         if stereotype.attrs.get("external"):
-            family = find_family(str(stereotype.attrs.get("href", "")))
-            return self._find_library_family(stereotype) if family is Family.CUSTOM else family
-        for profile in self._profiles_of(stereotype):
-            family = find_family(self._uri_of(profile))
-            if family is not Family.CUSTOM:
-                return family
-        names = (mangle(profile.name) for profile in self._profiles_of(stereotype))
-        return next((_FAMILIES[name] for name in names if name in _FAMILIES), Family.CUSTOM)
-
-    def _find_library_family(self, stereotype: Element) -> Family:
-        names = (mangle(profile.name) for profile in self._profiles_of(stereotype))
-        families = (_LIBRARY_FAMILIES[name] for name in names if name in _LIBRARY_FAMILIES)
-        return next(families, Family.CUSTOM)
+            uris, families = [str(stereotype.attrs.get("href", ""))], _LIBRARY_FAMILIES
+        by_uri = map(find_family, uris)
+        by_name = (families.get(mangle(profile.name), Family.CUSTOM) for profile in profiles)
+        candidates = (family for family in (*by_uri, *by_name) if family is not Family.CUSTOM)
+        return next(candidates, Family.CUSTOM)
 
     def _profiles_of(self, stereotype: Element) -> list[Element]:
         ancestors = self.graph.ancestors(stereotype)

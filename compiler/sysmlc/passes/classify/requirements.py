@@ -37,16 +37,8 @@ def complete_requirement(graph: Graph, requirement: Element) -> None:
     for attribute, tag_name in (("req_id", "id"), ("text", "text")):
         value = tag(graph, requirement, tag_name)
         if value is not None:
-            text = _strip_markup(value) if isinstance(value, str) else value
+            text = _extract_text(value) if isinstance(value, str) else value
             graph.set(requirement, **{attribute: text})
-
-
-def _strip_markup(text: str) -> str:
-    """Return a text without markup: MagicDraw stores formatted texts as HTML documents."""
-    if not text.lstrip()[:6].lower().startswith("<html"):
-        return text
-
-    return _extract_text(text)
 
 
 # -- rules -------------------------------------------------------------------------------------
@@ -100,7 +92,12 @@ _SILENT_TAGS = frozenset(["head", "style", "script"])
 
 
 def _extract_text(text: str) -> str:
-    """Return the text of an HTML document, with one line for each block element."""
+    """Return a text without markup: MagicDraw stores formatted texts as HTML documents.
+
+    The result has one line for each block element.
+    """
+    if not text.lstrip()[:6].lower().startswith("<html"):
+        return text
     parser = _TextExtractor()
     parser.feed(text)
     parser.close()

@@ -147,17 +147,13 @@ _OF_REQUIREMENTS = frozenset({"satisfy", "derive", "verify", "copy"})
 def add_relations(graph: Graph, sink: Sink) -> None:
     """Add an edge from each client to each supplier; the dependency's role gives its type."""
     for dependency in graph.of_kind(Kind.DEPENDENCY):
-        edge = _choose_edge(dependency)
+        edge = _EDGES.get(dependency.role) or _EDGES_OF_SUBKINDS.get(
+            dependency.subkind, Edge.DEPENDS
+        )
         for client in graph.targets(dependency, Edge.CLIENT):
             for supplier in graph.targets(dependency, Edge.SUPPLIER):
                 graph.connect(edge, client, supplier)
         _check_suppliers(graph, sink, dependency)
-
-
-def _choose_edge(dependency: Element) -> Edge:
-    if dependency.role in _EDGES:
-        return _EDGES[dependency.role]
-    return _EDGES_OF_SUBKINDS.get(dependency.subkind, Edge.DEPENDS)
 
 
 def _check_suppliers(graph: Graph, sink: Sink, dependency: Element) -> None:

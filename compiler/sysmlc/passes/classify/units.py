@@ -30,7 +30,9 @@ _VALUE_TYPE_NAME = re.compile(r"(?P<kind>[^\[\]]+)\[(?P<unit>[^\[\]]+)\]")
 
 def link_units(graph: Graph, meanings: Mapping[str, tuple[str, ...]]) -> None:
     """Set the roles of units and quantity kinds, and link value types to them; see docs/ir.md."""
-    _give_library_roles(graph)
+    for instance in graph.of_kind(Kind.INSTANCE):
+        if not instance.role:
+            graph.set(instance, role=_library_role(graph, instance))
     for unit in graph.of_kind(*_KINDS):
         if is_unit(unit) or is_quantity_kind(unit):
             _describe_unit(graph, unit)
@@ -43,12 +45,6 @@ def link_units(graph: Graph, meanings: Mapping[str, tuple[str, ...]]) -> None:
 
 
 # -- units and quantity kinds ------------------------------------------------------------------
-
-
-def _give_library_roles(graph: Graph) -> None:
-    for instance in graph.of_kind(Kind.INSTANCE):
-        if not instance.role:
-            graph.set(instance, role=_library_role(graph, instance))
 
 
 def _library_role(graph: Graph, instance: Element) -> str | None:
@@ -153,21 +149,13 @@ def _link_by_name(graph: Graph, value_type: Element) -> None:
     match = (
         _VALUE_TYPE_NAME.fullmatch(value_type.name) if value_type.attrs.get("external") else None
     )
-    if match is None or not _is_used_by_model(graph, value_type):
+    uses = (graph.sources(value_type, edge) for edge in (Edge.TYPED_BY, Edge.SPECIALIZES))
+    if match is None or all(user.attrs.get("external") for users in uses for user in users):
         return
     if not any(map(is_unit, graph.targets(value_type, Edge.REFERENCES))):
         for kind, name in ((Kind.UNIT, match["unit"]), (Kind.QUANTITY_KIND, match["kind"])):
             element = _ensure_named(graph, value_type.id, value_type, kind, name.strip())
             graph.connect(Edge.REFERENCES, value_type, element)
-
-
-def _is_used_by_model(graph: Graph, value_type: Element) -> bool:
-    return any(not user.attrs.get("external") for user in _list_users(graph, value_type))
-
-
-def _list_users(graph: Graph, value_type: Element) -> Iterator[Element]:
-    yield from graph.sources(value_type, Edge.TYPED_BY)
-    yield from graph.sources(value_type, Edge.SPECIALIZES)
 
 
 def _give_symbols(graph: Graph) -> None:

@@ -83,29 +83,20 @@ def _resolve_value(resolver: Resolver, holder: Element, value: AttrValue) -> Att
     return value
 
 
-_FLOW_ENDS = (Edge.FLOW_SOURCE, Edge.FLOW_TARGET)
-
-
 def _keep_first_ends(graph: Graph, sink: Sink) -> None:
     """Reduce each control flow, object flow and transition to one source and one target.
 
     Reports the flows for which a file gives several.
     """
     for flow in graph.of_kind(Kind.CONTROL_FLOW, Kind.OBJECT_FLOW, Kind.TRANSITION):
-        for edge in _FLOW_ENDS:
+        for edge in (Edge.FLOW_SOURCE, Edge.FLOW_TARGET):
             ends = graph.targets(flow, edge)
             if len(ends) > 1:
-                _keep_first_end(graph, sink, flow, edge, ends)
-
-
-def _keep_first_end(
-    graph: Graph, sink: Sink, flow: Element, edge: Edge, ends: list[Element]
-) -> None:
-    graph.replace_targets(edge, flow, ends[:1])
-    sink.report(
-        SEVERAL_TARGETS,
-        graph.subject(flow),
-        relation=edge.value,
-        element=graph.qualified_name(flow),
-        count=len(ends),
-    )
+                graph.replace_targets(edge, flow, ends[:1])
+                sink.report(
+                    SEVERAL_TARGETS,
+                    graph.subject(flow),
+                    relation=edge.value,
+                    element=graph.qualified_name(flow),
+                    count=len(ends),
+                )

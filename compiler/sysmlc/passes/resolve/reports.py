@@ -65,7 +65,7 @@ def report_unresolved(graph: Graph, sink: Sink, unresolved: list[Use]) -> None:
         if len(uses) <= _MAX_SINGLE_REPORTS:
             for use in uses:
                 _report_broken(graph, sink, use)
-        if len(uses) > _MAX_SINGLE_REPORTS:
+        else:
             _report_many(graph, sink, uses)
 
 

@@ -220,8 +220,12 @@ class Resolver:
             href = self._find_canonical_href(target, external[target])
             self._stubs[target] = stub_id(href)
             self.external.setdefault(href, []).extend(external[target])
-        for href in sorted(self.external):
-            self._add_external(href, self.external[href])
+        for href, href_groups in sorted(self.external.items()):
+            if href in self.library_elements:
+                origin = _find_origin(href_groups)
+                add_stub(self.graph, self.library_elements[href], origin)
+            else:
+                _add_unknown_stub(self.graph, href, href_groups)
 
     def get(self, file: str, target: str) -> Element | None:
         """Return the element or stub to which *target* leads from a file, or None."""
@@ -253,12 +257,6 @@ class Resolver:
             return PRIMITIVE_TYPES + element.name
         self.library_elements[element.href] = element
         return element.href
-
-    def _add_external(self, href: str, groups: list[UseGroup]) -> None:
-        if href in self.library_elements:
-            add_stub(self.graph, self.library_elements[href], _find_origin(groups))
-        else:
-            _add_unknown_stub(self.graph, href, groups)
 
 
 def stub_id(href: str) -> str:
