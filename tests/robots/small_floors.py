@@ -4,11 +4,13 @@ import os
 import re
 from pathlib import Path
 
+from compact_contracts import compact_contract
+
 from sysmlc.logic.printing import print_formula
 from sysmlc.robots.environment_contract import Sharing, environment_contract
 from sysmlc.robots.robot_contract import robot_contract
 from sysmlc.robots.study import Grid, Order, Robot, Study, Target
-from sysmlc.robots.system_contract import Encoding, system_contract
+from sysmlc.robots.system_contract import system_contract
 
 CORPUS = Path(os.environ.get("SYSMLC_CORPUS", "")) / "gr1" / "robots"
 _SHARING = {
@@ -16,7 +18,7 @@ _SHARING = {
     "assume": Sharing.ASSUMED,
     "arbitrated": Sharing.ARBITRATED,
 }
-_ENCODING = {"thesis": Encoding.THESIS, "smart": Encoding.COMMANDS, "move": Encoding.MOVES}
+_ENCODING = {"smart": "commands", "move": "moves"}
 _WORDS = {
     "pos": "position",
     "tgt": "target",
@@ -60,7 +62,9 @@ def build_contract(name):
     study = floor(int(cells**0.5), *(None,) * robots, within=within)
     if kind == "env":
         return environment_contract(study, _SHARING[rest[1]])
-    return system_contract(study, _ENCODING[rest[1]])
+    if rest[1] in _ENCODING:
+        return compact_contract(study, _ENCODING[rest[1]])
+    return system_contract(study)
 
 
 def list_conjuncts(contract):

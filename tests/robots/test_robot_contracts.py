@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from compact_contracts import compact_contract
 from small_floors import CORPUS, build_contract, floor, list_conjuncts, rename_variables
 
 from sysmlc.diagnostics import Sink, Subject
@@ -11,7 +12,6 @@ from sysmlc.robots.environment_contract import Sharing, environment_contract
 from sysmlc.robots.mission_contract import mission_contract
 from sysmlc.robots.robot_contract import robot_contract
 from sysmlc.robots.schedule import shortest_travel_times
-from sysmlc.robots.system_contract import Encoding, system_contract
 from sysmlc.synthesis.decision import Options, decide
 
 FILES = sorted(CORPUS.glob("*.json")) if CORPUS.parent.name else []
@@ -92,7 +92,7 @@ def test_the_shared_contract_assumes_a_way_that_leads_nearer():
 @pytest.mark.parametrize(("within", "expected"), [(6, False), (7, True)])
 def test_a_robot_on_16_cells_reaches_each_target_within_7_steps(within, expected):
     study = floor(4, None, within=within)
-    contract = system_contract(study, Encoding.COMMANDS)
+    contract = compact_contract(study, "commands")
     guarantees = robot_contract(study, study.robots[0]).guarantees
     stays = next(conjunct for conjunct in guarantees if "stays for a step" in conjunct.text)
     assert is_realizable(contract.__class__(*_add_guarantee(contract, stays))) is expected
@@ -111,7 +111,7 @@ def _add_guarantee(contract, conjunct):
 
 @pytest.mark.parametrize(("within", "expected"), [(3, False), (4, True)])
 def test_two_robots_on_9_cells_reach_each_target_within_4_steps(within, expected):
-    contract = system_contract(floor(3, None, None, within=within), Encoding.MOVES)
+    contract = compact_contract(floor(3, None, None, within=within), "moves")
     assert is_realizable(contract) is expected
 
 

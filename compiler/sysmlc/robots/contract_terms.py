@@ -226,17 +226,6 @@ def hold_target_by_cell(study: Study, robot: Robot) -> Iterator[Conjunct]:
         )
 
 
-def hold_target(robot: Robot) -> Conjunct:
-    """State that a target stays until it is reached, with a comparison of positions."""
-    text = f"The target of '{robot.name}' stays until it is reached."
-    target_value = f.var(target(robot))
-    return safety_conjunct(
-        f.implies(is_away_from_target(robot), f.eq(f.prime(target_value), target_value)),
-        robot.origin,
-        text,
-    )
-
-
 def require_sensor_obedience(robot: Robot) -> Iterator[Conjunct]:
     """State that a robot moves only in directions that its sensors offer."""
     for way in WAYS:

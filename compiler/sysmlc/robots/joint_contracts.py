@@ -14,7 +14,7 @@ from sysmlc.robots import contract_terms as terms
 from sysmlc.robots.environment_contract import environment_contract
 from sysmlc.robots.mission_contract import NONE, mission_contract
 from sysmlc.robots.robot_contract import robot_contract
-from sysmlc.robots.schedule import TravelTimes, shortest_travel_times
+from sysmlc.robots.schedule import shortest_travel_times
 from sysmlc.robots.study import WAYS, Robot, Study
 from sysmlc.robots.system_contract import count_timers, system_contract
 
@@ -159,11 +159,11 @@ def _keep_goal(robot: Robot, cell: int) -> Conjunct:
 # -- contracts as files ------------------------------------------------------------------------
 
 
-def study_contracts(study: Study, travel: TravelTimes | None = None) -> Iterator[Contract]:
+def study_contracts(study: Study) -> Iterator[Contract]:
     """Yield all contracts of a floor: C_S, C_E, C_R of each robot in two versions, and C_M.
 
-    C_R is yielded for a robot alone on the floor and for one among others. C_M needs targets; if no
-    travel times were measured, it assumes those of shortest paths.
+    C_R is yielded for a robot alone on the floor and for one among others. C_M needs targets;
+    it assumes the travel times of shortest paths.
     """
     yield system_contract(study)
     yield environment_contract(study)
@@ -171,4 +171,4 @@ def study_contracts(study: Study, travel: TravelTimes | None = None) -> Iterator
         yield robot_contract(study, robot)
         yield robot_contract(study, robot, is_alone=False)
     if study.targets:
-        yield mission_contract(study, travel or shortest_travel_times(study))
+        yield mission_contract(study, shortest_travel_times(study))

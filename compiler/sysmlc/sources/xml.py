@@ -35,12 +35,12 @@ def make_parser() -> Parser:
     return _configure(expat.ParserCreate(namespace_separator=SEPARATOR))
 
 
-def make_plain_parser(names: dict[str, str] | None = None) -> Parser:
+def make_plain_parser() -> Parser:
     """Return an expat parser that does not resolve namespaces, for XML with unbound prefixes.
 
-    Handlers receive names as they are written, or the value of the name in *names* if it has one.
+    Handlers receive names as they are written.
     """
-    return _configure(expat.ParserCreate(intern={} if names is None else names))
+    return _configure(expat.ParserCreate())
 
 
 def _configure(parser: Parser) -> Parser:
