@@ -128,13 +128,9 @@ def _format_value(value: Scalar) -> str:
 def check_names(model: Model, tables: Tables) -> Iterator[Finding]:
     """REC006: variables are declared, and set before they are read; bindings fit."""
     for graph in model.graphs:
-        for element, problem in (*_iter_name_problems(graph), *_iter_misfits(graph, tables)):
+        problems = (*_iter_undeclared(graph), *_iter_unset(graph), *_iter_misfits(graph, tables))
+        for element, problem in problems:
             yield Finding(UNDECLARED, element, {"graph": graph.id, "problem": problem})
-
-
-def _iter_name_problems(graph: FlowGraph) -> Iterator[tuple[str, str]]:
-    yield from _iter_undeclared(graph)
-    yield from _iter_unset(graph)
 
 
 def _iter_uses(graph: FlowGraph) -> Iterator[tuple[str, str, Expression]]:
@@ -152,13 +148,12 @@ def _iter_uses(graph: FlowGraph) -> Iterator[tuple[str, str, Expression]]:
             yield node.element, f"<{node.id}", node.expression
 
 
-def _collect_literals(graph: FlowGraph) -> set[str]:
-    types = (parameter.type for parameter in graph.parameters.values())
-    return {name for type_ in types if isinstance(type_, EnumType) for name in type_.literals}
-
-
 def _iter_undeclared(graph: FlowGraph) -> Iterator[tuple[str, str]]:
-    declared = set(graph.parameters) | _collect_literals(graph)
+    declared = set(graph.parameters)
+    types = (parameter.type for parameter in graph.parameters.values())
+    declared.update(
+        name for type_ in types if isinstance(type_, EnumType) for name in type_.literals
+    )
     for element, _, expression in _iter_uses(graph):
         for name in iter_variables(expression):
             base = name.split(".")[0]

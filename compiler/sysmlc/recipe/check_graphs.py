@@ -1,6 +1,7 @@
 """Checks of flow graphs: paths, loops and forks (REC003, REC004)."""
 
 from collections.abc import Iterator
+from itertools import takewhile
 
 from sysmlc.diagnostics import Severity, rule
 from sysmlc.ir.algorithms import sort_topologically
@@ -68,14 +69,9 @@ def _select_causes(nodes: list[Node], pairs: list[tuple[str, str]]) -> list[Node
 def check_nesting(model: Model, tables: Tables) -> Iterator[Finding]:
     """REC004: every cycle has a loop node, and every fork is closed by a join."""
     for graph in model.graphs:
-        for element, problem in _iter_nesting_problems(graph):
+        for element, problem in (*_iter_endless_cycles(graph), *_iter_fork_problems(graph)):
             facts = {"graph": graph.id, "problem": problem}
             yield Finding(BAD_NESTING, element or graph.element, facts)
-
-
-def _iter_nesting_problems(graph: FlowGraph) -> Iterator[tuple[str, str]]:
-    yield from _iter_endless_cycles(graph)
-    yield from _iter_fork_problems(graph)
 
 
 def _iter_endless_cycles(graph: FlowGraph) -> Iterator[tuple[str, str]]:
@@ -129,12 +125,8 @@ def _merge(branches: list[_Branch]) -> tuple[_Branch, str]:
 
 
 def _common_prefix(branches: list[_Branch]) -> _Branch:
-    shortest = min(branches, key=len)
-    return next(
-        shortest[:n]
-        for n in range(len(shortest), -1, -1)
-        if all(branch[:n] == shortest[:n] for branch in branches)
-    )
+    levels = takewhile(lambda level: len(set(level)) == 1, zip(*branches, strict=False))
+    return tuple(level[0] for level in levels)
 
 
 def _local_name(id: str) -> str:

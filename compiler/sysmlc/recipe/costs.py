@@ -81,12 +81,10 @@ class Measures:
         for branch in branches:
             total = total + branch
         low = max((branch.low[0] for branch in branches), default=0)
-        low = max(low, *(self._share_work(total, machines) for machines in self._list_unions()))
+        unions = [frozenset[str](), *self._work, frozenset().union(*self._work)]
+        low = max(low, *(self._share_work(total, machines) for machines in unions))
         high = max((self.bound_branch(n, branches) for n in range(len(branches))), default=0)
         return Cost((low, *total.low[1:]), (high, *total.high[1:]))
-
-    def _list_unions(self) -> list[frozenset[str]]:
-        return [frozenset(), *self._work, frozenset().union(*self._work)]
 
     def _share_work(self, cost: Cost, machines: frozenset[str]) -> float:
         """Return the time that *machines* need for the work that no other machine can do."""

@@ -124,9 +124,11 @@ def find_same_machine_groups(graph: FlowGraph, tables: Tables) -> tuple[SameMach
     A service belongs to the group of a resource if it acquires, holds, uses or releases it and can
     run after its acquisition and before its release. Groups that share a service are merged.
     """
+    functions = [f for node in graph.nodes for f in list_functions(node, tables)]
+    resources = sorted({resource.id for f in functions for resource in f.resources})
     groups = [
         group
-        for resource in _list_resources(graph, tables)
+        for resource in resources
         for group in _iter_groups(graph, tables, resource)
         if len(group[0]) > 1
     ]
@@ -136,11 +138,6 @@ def find_same_machine_groups(graph: FlowGraph, tables: Tables) -> tuple[SameMach
         for nodes, because in _merge_groups(groups)
     ]
     return tuple(sorted(merged, key=lambda group: order[group.nodes[0]]))
-
-
-def _list_resources(graph: FlowGraph, tables: Tables) -> list[str]:
-    functions = [f for node in graph.nodes for f in list_functions(node, tables)]
-    return sorted({resource.id for f in functions for resource in f.resources})
 
 
 def list_functions(node: Node, tables: Tables) -> list[Function]:

@@ -179,14 +179,8 @@ def _find_helper_duration(node: Node, tables: Tables, machines: tuple[str, ...])
     if graph is None:
         # Nothing bounds how often a helper calls itself.
         return Range(0, None) if node.ref in tables.open_graphs else _NO_DURATION
-    compute = partial(_compute_helper_duration, graph, tables, machines)
+    compute = partial(_compute_functions_duration, graph, tables.without_graph(graph.id), machines)
     return tables.memoise_duration(("call", node.ref, *machines), compute)
-
-
-def _compute_helper_duration(
-    graph: FlowGraph, tables: Tables, machines: tuple[str, ...]
-) -> Range | None:
-    return _compute_functions_duration(graph, tables.without_graph(graph.id), machines)
 
 
 # -- graphs ------------------------------------------------------------------------------------

@@ -112,15 +112,11 @@ def _find_next_loop(
     nodes = [node.id for node in graph.nodes if node.id in active]
     for cycle in find_cycles(nodes, edges):
         inside = set(cycle)
-        decisions = [n.id for n in graph.nodes if n.id in inside and n.kind == kind]
-        leaving = [id for id in decisions if _can_leave(graph, id, inside)]
+        exits = {e.source for e in graph.edges if e.target not in inside}
+        leaving = [n.id for n in graph.nodes if n.id in inside & exits and n.kind == kind]
         if leaving:
             return _select_loop(graph, leaving, cycle), inside
     return None
-
-
-def _can_leave(graph: FlowGraph, decision: str, cycle: set[str]) -> bool:
-    return any(e.target not in cycle for e in graph.edges if e.source == decision)
 
 
 def _select_loop(graph: FlowGraph, leaving: list[str], cycle: list[str]) -> str:

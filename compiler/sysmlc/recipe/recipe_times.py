@@ -1,6 +1,7 @@
 """The time of a whole recipe, and verdicts on the times that requirements state."""
 
 from collections.abc import Iterable, Iterator, Mapping
+from math import inf
 from typing import Literal as OneOf
 
 from msgspec import Struct
@@ -152,21 +153,12 @@ def decide_limit(limit: TimeLimit, derived: Derived | None) -> Verdict:
     duration = None if derived is None else find_full_duration(derived)
     if duration is None:
         return "not-decided"
-    is_too_long = limit.most is not None and duration.min > limit.most
-    is_too_short = limit.least is not None and _is_below(duration.max, limit.least)
-    if is_too_long or is_too_short:
+    longest = inf if duration.max is None else duration.max
+    least = 0 if limit.least is None else limit.least
+    most = inf if limit.most is None else limit.most
+    if duration.min > most or longest < least:
         return "broken"
-    keeps_most = limit.most is None or _is_at_most(duration.max, limit.most)
-    keeps_least = limit.least is None or duration.min >= limit.least
-    return "holds" if keeps_most and keeps_least else "not-decided"
-
-
-def _is_below(maximum: Number | None, limit: Number) -> bool:
-    return maximum is not None and maximum < limit
-
-
-def _is_at_most(maximum: Number | None, limit: Number) -> bool:
-    return maximum is not None and maximum <= limit
+    return "holds" if longest <= most and duration.min >= least else "not-decided"
 
 
 class LimitVerdict(Struct, frozen=True):
@@ -188,13 +180,11 @@ def decide_limits(models: Iterable[Model]) -> dict[str, LimitVerdict]:
             for limit in owner.limits:
                 verdict = _explain_limit(owner, limit)
                 previous = verdicts.get(limit.element, verdict)
-                verdicts[limit.element] = max(previous, verdict, key=_rank_verdict)
+                order = ("holds", "not-decided", "broken")
+                verdicts[limit.element] = max(
+                    previous, verdict, key=lambda item: order.index(item.verdict)
+                )
     return verdicts
-
-
-def _rank_verdict(verdict: LimitVerdict) -> int:
-    order: tuple[Verdict, ...] = ("holds", "not-decided", "broken")
-    return order.index(verdict.verdict)
 
 
 def _explain_limit(owner: Recipe | Task, limit: TimeLimit) -> LimitVerdict:

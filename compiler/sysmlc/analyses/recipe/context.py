@@ -69,8 +69,6 @@ class Context(Struct, frozen=True):
     """Types of values by the id of the type element."""
     parameters: dict[str, Parameter] = field(default_factory=dict)
     """Parameters of recipes by the id of the parameter, pin or property."""
-    kinds: dict[tuple[str, str], str] = field(default_factory=dict)
-    """Kinds of recipe nodes by id and level of the activity."""
     refined: dict[str, Element | None] = field(default_factory=dict)
     """The refining activity by the id of the definition."""
     refinements: dict[tuple[str, str], Refinement] = field(default_factory=dict)
@@ -127,7 +125,6 @@ class Context(Struct, frozen=True):
             _elements_by_level={},
             types={},
             parameters={},
-            kinds={},
             refinements={},
         )
 

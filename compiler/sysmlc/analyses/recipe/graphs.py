@@ -1,6 +1,6 @@
 """Graphs of tasks, whose nodes are services, and graphs of services, whose nodes are functions."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from itertools import pairwise
 
@@ -171,11 +171,10 @@ def _add_ends(context: Context, activity: Element, draft: Draft) -> None:
     if not kinds & {"final", "flowFinal"}:
         draft.nodes.append(Node(f"{id}::final", "final"))
         last = [node for node in top_nodes if node.id not in sources]
-        draft.edges.extend(_edge_to_final(node, f"{id}::final") for node in last)
-
-
-def _edge_to_final(node: Node, final: str) -> FlowEdge:
-    return FlowEdge(node.id, final, role="exit" if node.kind == "forEach" else "")
+        draft.edges.extend(
+            FlowEdge(node.id, f"{id}::final", role="exit" if node.kind == "forEach" else "")
+            for node in last
+        )
 
 
 def _add_results(context: Context, activity: Element, data: DataFlow, draft: Draft) -> None:
@@ -230,11 +229,7 @@ def _add_nodes(context: Context, node: Element, kind: str, data: DataFlow, draft
     draft.nodes.extend(new_nodes)
     draft.first[node.id], draft.last[node.id] = new_nodes[0].id, new_nodes[-1].id
     if kind != "block":
-        draft.edges.extend(_chain(new_nodes, node.id))
-
-
-def _chain(nodes: Sequence[Node], element: str) -> list[FlowEdge]:
-    return [FlowEdge(a.id, b.id, element=element) for a, b in pairwise(nodes)]
+        draft.edges.extend(FlowEdge(a.id, b.id, element=node.id) for a, b in pairwise(new_nodes))
 
 
 # -- edges -------------------------------------------------------------------------------------

@@ -260,7 +260,11 @@ def _add_machine_variables(context: Context, model: Model) -> Model:
     """Return the model with, for each machine, the variables that expressions refer to."""
     names_by_machine: dict[str, set[str]] = {}
     for parameters, expressions in _list_scopes(model):
-        machines = dict(_machine_parameters(parameters))
+        machines = {
+            parameter.name: parameter.type.name
+            for parameter in parameters
+            if isinstance(parameter.type, ReferenceType) and parameter.type.to == "machine"
+        }
         for name in (name for expression in expressions for name in iter_variables(expression)):
             head, _, rest = name.partition(".")
             if rest and head in machines:
@@ -275,13 +279,6 @@ def _add_machine_variables(context: Context, model: Model) -> Model:
         for machine in model.machines
     )
     return replace(model, machines=machines_of_model)
-
-
-def _machine_parameters(parameters: Iterable[Parameter]) -> Iterator[tuple[str, str]]:
-    """Yield the name and the machine id of each parameter whose type is a machine."""
-    for parameter in parameters:
-        if isinstance(parameter.type, ReferenceType) and parameter.type.to == "machine":
-            yield parameter.name, parameter.type.name
 
 
 def _list_scopes(model: Model) -> Iterator[tuple[tuple[Parameter, ...], list[Expression]]]:
@@ -333,7 +330,9 @@ def _add_variable(
         _add_variable(context, type_, element, variables_by_name)
     if owner is not None and owner.attrs.get("property_specific"):
         for part_feature in query.features(context.graph, owner):
-            if part_feature.kind is Kind.PROPERTY and _has_data(context, part_feature):
+            default = literal_default(context, part_feature)
+            has_data = default is not None or find_opcua_node(context, part_feature)
+            if part_feature.kind is Kind.PROPERTY and has_data:
                 _add_variable(context, type_, f"{name}.{part_feature.name}", variables_by_name)
 
 
@@ -349,10 +348,6 @@ def _list_elements(context: Context, type_: Element, feature: Element) -> tuple[
         if _NAME.fullmatch(element_name) and find_member(context, type_, element_name)
     ]
     return tuple(features) if len(features) == len(names) else ()
-
-
-def _has_data(context: Context, feature: Element) -> bool:
-    return literal_default(context, feature) is not None or bool(find_opcua_node(context, feature))
 
 
 def _build_variable(

@@ -1,6 +1,6 @@
 """Nodes of recipe graphs: services, functions, control nodes and other steps of an activity."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 from msgspec.structs import replace
 
@@ -12,37 +12,24 @@ from sysmlc.ir import Edge, Element, Kind, query
 from sysmlc.recipe.model import Node
 from sysmlc.support.units import read_time
 
-CONTROL_KINDS = {
-    "initial": "initial",
-    "final": "final",
-    "flow-final": "flowFinal",
-    "decision": "decision",
-    "merge": "merge",
-    "fork": "fork",
-    "join": "join",
-}
+_CONTROL_KINDS = frozenset(["initial", "final", "flowFinal", "decision", "merge", "fork", "join"])
 _HELPERS = ("opaque", "function")
 
 
-def step_kind(context: Context, node: Element, activity_level: str) -> str:
+def step_kind(  # noqa: PLR0911 - a table
+    context: Context, node: Element, activity_level: str
+) -> str:
     """Return the kind of the recipe node for an activity node, or "" for a buffer of data.
 
     *activity_level* is ``task`` or ``service``. In a task, a called element without a level is a
     service, and in a service it is a machine function or a helper.
     """
-    kind = context.kinds.get((node.id, activity_level))
-    if kind is None:
-        kind = context.kinds[node.id, activity_level] = _find_step_kind(
-            context, node, activity_level
-        )
-    return kind
-
-
-def _find_step_kind(context: Context, node: Element, activity_level: str) -> str:  # noqa: PLR0911 - a table
     if node.kind is Kind.CONTROL:
-        return CONTROL_KINDS.get(node.subkind, "action")
+        kind = "flowFinal" if node.subkind == "flow-final" else node.subkind
+        return kind if kind in _CONTROL_KINDS else "action"
     if node.kind is Kind.STRUCTURED:
-        return _region_kind(context, node)
+        inlined_kind = "forEach" if is_for_each(node) else "block"
+        return inlined_kind if context.is_inlined(node) else "action"
     level = context.level(node)
     if level in SERVICES:
         return "service"
@@ -104,12 +91,6 @@ def _search_refinement(context: Context, definition: Element) -> Element | None:
     return None
 
 
-def _region_kind(context: Context, node: Element) -> str:
-    if is_for_each(node):
-        return "forEach"
-    return "block" if context.is_inlined(node) else "action"
-
-
 def is_by_position(context: Context, node: Element, kind: str) -> bool:
     """Whether the node is a service or function only because of the activity that calls it."""
     return kind in ("service", "function") and not context.level(node)
@@ -118,28 +99,22 @@ def is_by_position(context: Context, node: Element, kind: str) -> bool:
 def _plain_kind(context: Context, node: Element) -> str:
     if node.subkind == "opaque" and read_assignments(str(node.attrs.get("body", ""))):
         return "assign"
-    trigger = next(_list_triggers(context, node), None) if node.subkind == "accept" else None
+    trigger = _find_trigger(context, node) if node.subkind == "accept" else None
     if trigger is None:
         return "wait" if node.subkind == "accept" else "action"
     return "delay" if trigger.subkind == "time" else "wait"
 
 
-def _list_triggers(context: Context, node: Element) -> Iterator[Element]:
-    for trigger in context.graph.targets(node, Edge.TRIGGER):
-        yield trigger
-    for trigger in context.graph.owned(node):
-        if trigger.kind is Kind.TRIGGER:
-            yield trigger
+def _find_trigger(context: Context, node: Element) -> Element | None:
+    owned = (element for element in context.graph.owned(node) if element.kind is Kind.TRIGGER)
+    return next(iter((*context.graph.targets(node, Edge.TRIGGER), *owned)), None)
 
 
 def build_nodes(context: Context, node: Element, kind: str, data: DataFlow) -> list[Node]:
     """Return the recipe nodes for one activity node: several for a block or several assignments."""
     recipe_node = Node(context.name(node), kind, element=node.id)
-    return _MAKERS.get(kind, _build_bare)(context, node, recipe_node, data)
-
-
-def _build_bare(context: Context, node: Element, base: Node, data: DataFlow) -> list[Node]:
-    return [base]
+    build = _MAKERS.get(kind)
+    return [recipe_node] if build is None else build(context, node, recipe_node, data)
 
 
 def _build_call(context: Context, node: Element, base: Node, data: DataFlow) -> list[Node]:
@@ -148,13 +123,13 @@ def _build_call(context: Context, node: Element, base: Node, data: DataFlow) -> 
     if base.kind == "call":
         definition = find_refinement(context, definition) or definition
     ref = context.name(node if definition is None else definition)
-    return [_change(base, ref=ref, bind=data.bind_inputs(node), assign=data.assign_outputs(node))]
+    return [replace(base, ref=ref, bind=data.bind_inputs(node), assign=data.assign_outputs(node))]
 
 
 def _build_assignments(context: Context, node: Element, base: Node, data: DataFlow) -> list[Node]:
     body = str(node.attrs.get("body", ""))
     return [
-        _change(
+        replace(
             base,
             id=f"{base.id}#{number}" if number > 1 else base.id,
             variable=variable,
@@ -166,16 +141,16 @@ def _build_assignments(context: Context, node: Element, base: Node, data: DataFl
 
 def _build_action(context: Context, node: Element, base: Node, data: DataFlow) -> list[Node]:
     text = str(node.attrs.get("body", "") or node.name or node.subkind)
-    return [_change(base, text=text, bind=data.bind_inputs(node), assign=data.assign_outputs(node))]
+    return [replace(base, text=text, bind=data.bind_inputs(node), assign=data.assign_outputs(node))]
 
 
 def _build_wait(context: Context, node: Element, base: Node, data: DataFlow) -> list[Node]:
-    trigger = next(_list_triggers(context, node), None)
+    trigger = _find_trigger(context, node)
     event = None if trigger is None else context.graph.target(trigger, Edge.TYPED_BY)
     condition = "" if trigger is None else str(trigger.attrs.get("condition", ""))
     text = condition or (node.name if event is None else context.name(event))
     return [
-        _change(
+        replace(
             base, expression=read_optional(condition), text=text, assign=data.assign_outputs(node)
         )
     ]
@@ -183,7 +158,7 @@ def _build_wait(context: Context, node: Element, base: Node, data: DataFlow) -> 
 
 def _build_block(context: Context, node: Element, base: Node, data: DataFlow) -> list[Node]:
     """Return the merge nodes at the start and at the end of a block."""
-    return [_change(base, kind="merge"), _change(base, kind="merge", id=f"{base.id}::end")]
+    return [replace(base, kind="merge"), replace(base, kind="merge", id=f"{base.id}::end")]
 
 
 def _build_for_each(context: Context, node: Element, base: Node, data: DataFlow) -> list[Node]:
@@ -194,7 +169,7 @@ def _build_for_each(context: Context, node: Element, base: Node, data: DataFlow)
     collection = data.read(str(node.attrs.get("collection", "")))
     least, most = data.find_sizes(collection)
     return [
-        _change(
+        replace(
             base,
             variable=name,
             expression=collection,
@@ -207,14 +182,10 @@ def _build_for_each(context: Context, node: Element, base: Node, data: DataFlow)
 def _build_delay(context: Context, node: Element, base: Node, data: DataFlow) -> list[Node]:
     duration = next((value for _, value in data.bind_inputs(node)), None)
     if duration is not None:
-        return [_change(base, expression=duration)]
-    trigger = next(_list_triggers(context, node), None)
+        return [replace(base, expression=duration)]
+    trigger = _find_trigger(context, node)
     time = read_time("after ") if trigger is None else query.time_of(trigger)
-    return [_change(base, expression=read_delay(time), text=time.text)]
-
-
-def _change(node: Node, **changes: object) -> Node:
-    return replace(node, **changes)
+    return [replace(base, expression=read_delay(time), text=time.text)]
 
 
 _Maker = Callable[[Context, Element, Node, DataFlow], list[Node]]

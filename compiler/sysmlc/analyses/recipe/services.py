@@ -28,7 +28,8 @@ def build_service(context: Context, definition: Element, callers: list[Element])
     A service without a level is a machine service if a machine offers it, or else an infrastructure
     service.
     """
-    level = context.level(definition) or _level_of_callers(context, callers)
+    levels = (context.level(definition), *map(context.own_level, callers))
+    level = next(filter(None, levels), "")
     is_machine = level == "machine service"
     offers = build_providers(context, find_service_relations(context, definition, callers))
     is_machine = is_machine or (not level and bool(offers))
@@ -53,10 +54,6 @@ def build_service(context: Context, definition: Element, callers: list[Element])
     )
 
 
-def _level_of_callers(context: Context, callers: list[Element]) -> str:
-    return next((level for caller in callers if (level := context.own_level(caller))), "")
-
-
 def _find_holder(
     context: Context, definition: Element, callers: list[Element], stereotype: str
 ) -> Element:
@@ -74,18 +71,14 @@ def find_service_relations(
     The first of these sources with a result counts: dependencies of the definition, its owner,
     dependencies of its callers, partitions of its callers, its machine parameters.
     """
-    relations = list(relations_by_dependency(context, definition)) or list(
-        relations_by_owner(context, definition)
+    sources = (
+        relations_by_dependency(context, definition),
+        relations_by_owner(context, definition),
+        (relation for node in callers for relation in relations_by_dependency(context, node)),
+        (relation for node in callers for relation in relations_by_partition(context, node)),
+        relations_by_parameters(context, definition),
     )
-    if not relations:
-        relations = [
-            relation for node in callers for relation in relations_by_dependency(context, node)
-        ]
-    if not relations:
-        relations = [
-            relation for node in callers for relation in relations_by_partition(context, node)
-        ]
-    yield from relations or relations_by_parameters(context, definition)
+    yield from next((relations for source in sources if (relations := list(source))), ())
 
 
 def _build_constants(context: Context, definition: Element) -> tuple[Parameter, ...]:
