@@ -4,7 +4,6 @@ It writes one file ``platform.json`` for a unit that has recipes and a plant.
 """
 
 from collections.abc import Iterator, Mapping
-from typing import Protocol
 
 from msgspec import Struct
 
@@ -61,19 +60,6 @@ def _iter_places(graph: Graph, platform: Platform) -> Iterator[Place]:
             yield Place(element.source, element.ordinal)
 
 
-class _PlantElement(Protocol):
-    """The attributes that used and unused elements of the plant have in common."""
-
-    @property
-    def id(self) -> str: ...
-    @property
-    def name(self) -> str: ...
-    @property
-    def type(self) -> str: ...
-    @property
-    def element(self) -> str: ...
-
-
 class _Writer(Struct, frozen=True):
     """Converts a platform to JSON; *located* maps places to places with line and column."""
 
@@ -95,7 +81,7 @@ class _Writer(Struct, frozen=True):
             ],
         }
 
-    def _describe_plant_element(self, element: _PlantElement) -> Json:
+    def _describe_plant_element(self, element: Used) -> Json:
         return {
             "id": element.id,
             "qualified_name": element.name,

@@ -6,9 +6,8 @@ networkx offers all of them, but its import takes longer than compiling most mod
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from graphlib import TopologicalSorter
 from heapq import heappop, heappush
-from typing import TypeVar
+from typing import Generic, TypeVar
 
-Successors = Mapping[str, Iterable[str]]
 _Node = TypeVar("_Node", bound=Hashable)
 
 
@@ -26,7 +25,9 @@ def find_reachable(
     return reached
 
 
-def strongly_connected_components(successors: Successors) -> Iterator[list[str]]:
+def strongly_connected_components(
+    successors: Mapping[_Node, Iterable[_Node]],
+) -> Iterator[list[_Node]]:
     """Iterate over the strongly connected components, each after those that it leads to.
 
     Every node is a key of *successors*. A node that is on no cycle is a component of its own.
@@ -37,16 +38,16 @@ def strongly_connected_components(successors: Successors) -> Iterator[list[str]]
             yield from search.run(node)
 
 
-class _TarjanSearch:
+class _TarjanSearch(Generic[_Node]):
     """The algorithm of R. E. Tarjan (1972), without recursion because paths may be long."""
 
-    def __init__(self, successors: Successors) -> None:
+    def __init__(self, successors: Mapping[_Node, Iterable[_Node]]) -> None:
         self._successors = successors
-        self.index: dict[str, int] = {}
-        self._low_link: dict[str, int] = {}
-        self._stack: dict[str, None] = {}
+        self.index: dict[_Node, int] = {}
+        self._low_link: dict[_Node, int] = {}
+        self._stack: dict[_Node, None] = {}
 
-    def run(self, root: str) -> Iterator[list[str]]:
+    def run(self, root: _Node) -> Iterator[list[_Node]]:
         """Iterate over the components reachable from *root* that no earlier run has visited."""
         index, low_link, stack = self.index, self._low_link, self._stack
         path = [(root, self._visit(root))]
@@ -66,13 +67,13 @@ class _TarjanSearch:
                 if low_link[node] == index[node]:
                     yield self._pop_component(node)
 
-    def _visit(self, node: str) -> Iterator[str]:
+    def _visit(self, node: _Node) -> Iterator[_Node]:
         self.index[node] = self._low_link[node] = len(self.index)
         self._stack[node] = None
         return iter(self._successors[node])
 
-    def _pop_component(self, root: str) -> list[str]:
-        component: list[str] = []
+    def _pop_component(self, root: _Node) -> list[_Node]:
+        component: list[_Node] = []
         while not component or component[-1] != root:
             component.append(self._stack.popitem()[0])
         return component

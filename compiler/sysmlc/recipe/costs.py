@@ -186,17 +186,12 @@ def _arrive(arrivals: dict[_S, Cost], target: _S, cost: Cost) -> None:
 
 def _sort_components(useful: set[_S], transitions: _Transitions[_S]) -> list[list[_S]]:
     """Return the strongly connected components in topological order."""
-    ordered = [situation for situation in transitions if situation in useful]
-    names = {situation: str(number) for number, situation in enumerate(ordered)}
     successors = {
-        names[situation]: [names[s.target] for s in transitions[situation] if s.target in useful]
-        for situation in ordered
+        situation: [step.target for step in steps if step.target in useful]
+        for situation, steps in transitions.items()
+        if situation in useful
     }
-    components = [
-        [ordered[int(name)] for name in component]
-        for component in strongly_connected_components(successors)
-    ]
-    return components[::-1]
+    return list(strongly_connected_components(successors))[::-1]
 
 
 def _is_cycle(component: Sequence[_S], transitions: _Transitions[_S]) -> bool:

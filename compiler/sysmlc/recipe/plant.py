@@ -205,7 +205,7 @@ class Offer(Struct, frozen=True):
 
 
 class Used(Struct, frozen=True):
-    """An element of the plant that recipes use; ``element`` is its id in the graph."""
+    """An element of the plant, which recipes use; ``element`` is its id in the graph."""
 
     id: str
     name: str
@@ -213,13 +213,9 @@ class Used(Struct, frozen=True):
     element: str
 
 
-class Unused(Struct, frozen=True):
+class Unused(Used, frozen=True):
     """An element of the plant that no recipe uses; ``contents`` counts the elements below it."""
 
-    id: str
-    name: str
-    type: str
-    element: str
     contents: int
 
 

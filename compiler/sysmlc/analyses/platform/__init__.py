@@ -46,8 +46,8 @@ def _describe_platform(
         bindings=tuple(sorted(bindings, key=lambda entry: (entry.machine, entry.plant))),
         offers=tuple(sorted(offers, key=lambda entry: (entry.service, entry.machine, entry.plant))),
         unused=tuple(_list_unused(context, used)),
-        machines=tuple(context.list_machine_uses()),
-        services=tuple(context.list_service_uses()),
+        machines=tuple(context.list_uses(context.machines.values())),
+        services=tuple(context.list_uses(context.services.values())),
     )
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
@@ -48,6 +48,11 @@ SHARED = rule(
     help="merge these machines, or allocate them to different elements",
 )
 _OVERLAY = ".overlay.yaml"
+
+
+_Part = TypeVar("_Part", Machine, Service)
+Use = tuple[str, tuple[str, ...], str]
+"""The id of a machine or service, the ids of the recipes that use it, and its element."""
 
 
 class Statement(NamedTuple):
@@ -125,28 +130,26 @@ class Context:
     @cached_property
     def machines(self) -> dict[str, Machine]:
         """The machines of all recipes by id, sorted."""
-        by_id = {machine.id: machine for model in self.models for machine in model.machines}
-        return {id: by_id[id] for id in sorted(by_id) if by_id[id].element in self.graph}
+        return self._index(machine for model in self.models for machine in model.machines)
 
     @cached_property
     def services(self) -> dict[str, Service]:
         """The services of all recipes by id, sorted; services with equal ids are the same."""
-        by_id = {service.id: service for model in self.models for service in model.services}
+        return self._index(service for model in self.models for service in model.services)
+
+    def _index(self, parts: Iterable[_Part]) -> dict[str, _Part]:
+        by_id = {part.id: part for part in parts}
         return {id: by_id[id] for id in sorted(by_id) if by_id[id].element in self.graph}
 
-    def list_machine_uses(self) -> Iterator[tuple[str, tuple[str, ...], str]]:
-        """Yield for each machine its id, the recipes that use it, and its element."""
-        uses = _collect_uses(
-            (machine.id, model.recipe.id) for model in self.models for machine in model.machines
-        )
-        return ((id, uses[id], machine.element) for id, machine in self.machines.items())
-
-    def list_service_uses(self) -> Iterator[tuple[str, tuple[str, ...], str]]:
-        """Yield for each service its id, the recipes that use it, and its element."""
-        uses = _collect_uses(
-            (service.id, model.recipe.id) for model in self.models for service in model.services
-        )
-        return ((id, uses[id], service.element) for id, service in self.services.items())
+    def list_uses(self, parts: Iterable[Machine | Service]) -> Iterator[Use]:
+        """Yield for each machine or service its id, the recipes that use it, and its element."""
+        used_ids = [
+            (model.recipe.id, {m.id for m in model.machines} | {s.id for s in model.services})
+            for model in self.models
+        ]
+        for part in parts:
+            users = {recipe for recipe, ids in used_ids if part.id in ids}
+            yield part.id, tuple(sorted(users)), part.element
 
     def has_plant(self) -> bool:
         """Whether the unit has a plant in AutomationML, or binds a machine to another structure."""
@@ -195,13 +198,6 @@ class Context:
         ]
         several = list(dict.fromkeys(suggestions))[:3]
         return f"did you mean {' or '.join(several)}?"
-
-
-def _collect_uses(pairs: Iterable[tuple[str, str]]) -> dict[str, tuple[str, ...]]:
-    recipes_by_id: dict[str, set[str]] = {}
-    for id, recipe in pairs:
-        recipes_by_id.setdefault(id, set()).add(recipe)
-    return {id: tuple(sorted(recipes)) for id, recipes in recipes_by_id.items()}
 
 
 # -- binding -----------------------------------------------------------------------------------
@@ -273,12 +269,8 @@ def report_misplaced_services(context: Context) -> None:
         element = context.graph[service.element]
         for target, _, source in list_allocations(context.graph, element):
             is_known = context.is_machine(target) or context.find_plant_elements(target)
-            if not is_known and not _is_operation(context, target.id):
+            if not is_known and target.kind not in (Kind.OPERATION, Kind.RECEPTION):
                 _report_misplaced(context, service.id, element, target, source)
-
-
-def _is_operation(context: Context, id: str) -> bool:
-    return context.graph[id].kind in ("Operation", "Reception")
 
 
 # -- findings ----------------------------------------------------------------------------------

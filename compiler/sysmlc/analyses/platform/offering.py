@@ -180,7 +180,9 @@ def _report_mismatches(
                 element=context.plant.qualified_name(site.element),
                 difference=problem,
             )
-    if not offers and not mismatches and sites and _needs_offer(service):
+    # Databases and the like are not part of a plant; services of machines are (thesis 3.5.2).
+    is_of_plant = service.kind == "machine" or bool(service.providers)
+    if not offers and not mismatches and sites and is_of_plant:
         context.sink.report(
             NOBODY_OFFERS,
             subject,
@@ -188,14 +190,6 @@ def _report_mismatches(
             service=service.id,
             advice=_advise(context, service, sites),
         )
-
-
-def _needs_offer(service: Service) -> bool:
-    """Whether the plant must offer the service.
-
-    Databases and the like are not part of a plant; services of machines are (thesis 3.5.2).
-    """
-    return service.kind == "machine" or bool(service.providers)
 
 
 def _advise(context: Context, service: Service, sites: list[_Site]) -> str:
