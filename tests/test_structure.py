@@ -44,7 +44,6 @@ WIDE_OBJECTS = {
     "sysmlc.logic.machines.machine.Machine": 16,
     "sysmlc.logic.machines.machine.Vertex": 15,
     "sysmlc.logic.machines.paths.Path": 14,
-    "sysmlc.analyses.recipe.context.Context": 18,
     "sysmlc.recipe.model.Recipe": 14,
     "sysmlc.recipe.model.Service": 14,
     "sysmlc.recipe.model.Task": 15,

@@ -1,6 +1,7 @@
 """The context of the recipe analysis: graph, recipe levels, ids, and memoised results."""
 
 from collections.abc import Iterator, Mapping
+from functools import cached_property
 
 from msgspec import Struct, field
 from msgspec.structs import replace
@@ -15,7 +16,7 @@ from sysmlc.analyses.recipe.profile import (
     read_tags,
 )
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.recipe.model import FlowGraph, Parameter, ValueType
+from sysmlc.recipe.model import FlowGraph
 
 SERVICES = ("machine service", "infrastructure service")
 
@@ -41,7 +42,7 @@ class Refinement(Struct, frozen=True):
     decisions: tuple[tuple[str, str], ...]
 
 
-class Context(Struct, frozen=True):
+class Context(Struct, frozen=True, dict=True):
     """The graph with the levels given by options, model and stereotypes.
 
     The fields with a leading underscore, and those from ``types`` on, memoise results.
@@ -53,22 +54,12 @@ class Context(Struct, frozen=True):
     """Levels by id that elements do not take over from others, derived levels included."""
     candidates: frozenset[str] = frozenset()
     """Ids of elements that may have a level; most elements of a model have none."""
-    derived: Mapping[str, str] = field(default_factory=dict)
-    """Levels by id that ``derived_levels`` concludes; stated levels override them."""
     stereotypes: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """Stereotypes of the shipped profile, and those with such generals, by application."""
-    stereotyped: frozenset[str] = frozenset()
-    """Ids of elements to which one of ``stereotypes`` is applied."""
     _segments: dict[str, str] = field(default_factory=dict)
     _names: dict[str, str] = field(default_factory=dict)
     _levels: dict[str, str] = field(default_factory=dict)
-    _elements_by_level: dict[str, list[Element]] = field(default_factory=dict)
-    _literals: list[dict[str, str]] = field(default_factory=list)
     _activities: dict[str, ActivityGraph] = field(default_factory=dict)
-    types: dict[str, ValueType] = field(default_factory=dict)
-    """Types of values by the id of the type element."""
-    parameters: dict[str, Parameter] = field(default_factory=dict)
-    """Parameters of recipes by the id of the parameter, pin or property."""
     refined: dict[str, Element | None] = field(default_factory=dict)
     """The refining activity by the id of the definition."""
     refinements: dict[tuple[str, str], Refinement] = field(default_factory=dict)
@@ -82,17 +73,11 @@ class Context(Struct, frozen=True):
         bare = cls(graph, levels)
         stereotypes = find_profile_stereotypes(graph)
         stated = find_stated_levels(graph, stereotypes, levels, bare._segment)
-        applications = (graph[application] for application in stereotypes)
         return replace(
             bare,
             stated=stated,
             candidates=frozenset(find_followers(graph, stated)),
             stereotypes=stereotypes,
-            stereotyped=frozenset(
-                subject.id
-                for application in applications
-                for subject in graph.targets(application, Edge.SUBJECT)
-            ),
         )
 
     # -- levels --------------------------------------------------------------------------------
@@ -120,27 +105,34 @@ class Context(Struct, frozen=True):
             self,
             stated={**derived, **self.stated},
             candidates=self.candidates | changed,
-            derived=derived,
             _levels=unaffected,
-            _elements_by_level={},
-            types={},
-            parameters={},
             refinements={},
         )
 
     def elements_of_level(self, level: str) -> list[Element]:
         """Return all elements of a level, in the order of the graph."""
-        if self.candidates and not self._elements_by_level:
-            for element in (element for element in self.graph if element.id in self.candidates):
-                self._elements_by_level.setdefault(self.level(element), []).append(element)
         return self._elements_by_level.get(level, [])
+
+    @cached_property
+    def _elements_by_level(self) -> dict[str, list[Element]]:
+        elements: dict[str, list[Element]] = {}
+        for element in self.graph if self.candidates else ():
+            if element.id in self.candidates:
+                elements.setdefault(self.level(element), []).append(element)
+        return elements
 
     def find_literal(self, name: str) -> Element | None:
         """Return the literal ``Enumeration::literal``, or None if several have this name."""
-        if not self._literals:
-            self._literals.append(_index_literals(self.graph))
-        id = self._literals[0].get(_last_two(name))
-        return self.graph.get(id) if id else None
+        return self.graph.get(self._literal_ids.get(_last_two(name)))
+
+    @cached_property
+    def _literal_ids(self) -> dict[str, str]:
+        """Ids of enumeration literals by the last two parts of their names; "" for several."""
+        ids: dict[str, str] = {}
+        for literal in self.graph.of_kind(Kind.ENUMERATION_LITERAL):
+            name = _last_two(self.graph.qualified_name(literal))
+            ids[name] = "" if name in ids else literal.id
+        return ids
 
     def _find_level(self, element: Element) -> str:
         level = self.own_level(element)
@@ -195,8 +187,6 @@ class Context(Struct, frozen=True):
 
     def find_application(self, element: Element, stereotype: str) -> Element | None:
         """Return the application of *stereotype*, or of a stereotype that specialises it."""
-        if not self.may_have_stereotype(element):
-            return None
         applications = query.applications(self.graph, element)
         return next(
             (
@@ -206,10 +196,6 @@ class Context(Struct, frozen=True):
             ),
             None,
         )
-
-    def may_have_stereotype(self, element: Element) -> bool:
-        """Whether a stereotype of the profile is applied to the element; most have none."""
-        return element.id in self.stereotyped
 
     def tags(self, element: Element, stereotype: str) -> Tags:
         """Return the tagged values of a stereotype of the profile; empty if it is not applied."""
@@ -244,18 +230,6 @@ class Context(Struct, frozen=True):
             siblings = self.graph.roots() if owner is None else self.graph.owned(owner)
             self._segments.update(_number_siblings(siblings))
         return self._segments[element.id]
-
-
-def _index_literals(graph: Graph) -> dict[str, str]:
-    """Return ids of enumeration literals by the last two parts of their qualified names.
-
-    The id is empty if two literals have the same parts.
-    """
-    ids: dict[str, str] = {}
-    for literal in graph.of_kind(Kind.ENUMERATION_LITERAL):
-        name = _last_two(graph.qualified_name(literal))
-        ids[name] = "" if name in ids else literal.id
-    return ids
 
 
 def _last_two(name: str) -> str:

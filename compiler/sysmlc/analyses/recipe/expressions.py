@@ -199,12 +199,8 @@ def find_member(context: Context, type_: Element, name: str) -> Element | None:
 
 def build_parameter(context: Context, element: Element) -> Parameter:
     """Return the recipe parameter for a parameter, pin or property."""
-    parameter = context.parameters.get(element.id)
-    if parameter is None:
-        unit, value = read_default(context, element)
-        parameter = Parameter(context.label(element), value_type(context, element), unit, value)
-        context.parameters[element.id] = parameter
-    return parameter
+    unit, value = read_default(context, element)
+    return Parameter(context.label(element), value_type(context, element), unit, value)
 
 
 def read_default(
@@ -245,9 +241,7 @@ def value_type(context: Context, element: Element) -> ValueType | None:
     type_ = query.type_of(context.graph, element)
     if type_ is None:
         return None
-    single = context.types.get(type_.id)
-    if single is None:
-        single = context.types[type_.id] = _build_type(context, type_)
+    single = _build_type(context, type_)
     limits = query.bounds(element.attrs.get("multiplicity"))
     many = limits is not None and (limits[1] is None or limits[1] > 1)
     return ListType(single) if many else single

@@ -322,8 +322,6 @@ def _find_item(context: Context, flow: Element) -> str:
 def _read_loop_bounds(context: Context, activity: Element, draft: Draft) -> dict[str, int]:
     bounds: dict[str, int] = {}
     for element in context.contents(activity):
-        if not context.may_have_stereotype(element):
-            continue
         bound = context.tags(element, "Loop").integer("maxIterations")
         if bound is not None and bound > 0:
             bounds[draft.first.get(element.id, element.id)] = bound

@@ -206,8 +206,6 @@ _ADDRESS_SPACE_TAGS = ("parentNodeId", "nodeId")
 
 
 def _find_opcua_application(context: Context, element: Element) -> Element | None:
-    if not context.may_have_stereotype(element):
-        return None
     application = context.find_application(element, "OpcUaCall")
     for candidate in query.applications(context.graph, element):
         stereotype = context.graph.target(candidate, Edge.INSTANCE_OF)
