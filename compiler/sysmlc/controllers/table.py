@@ -6,13 +6,13 @@ values of all variables in the previous step, and a mode (the current goal). A t
 executable. Its size is that of the decision diagrams, which may describe very many states.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from itertools import islice
 
 from msgspec import Struct
 
 from sysmlc.logic import domains
 from sysmlc.logic.contract import Variable
-from sysmlc.logic.domains import width
 from sysmlc.logic.formula import Literal
 
 
@@ -59,17 +59,15 @@ class Table(Struct, frozen=True):
         """
         entry = self.modes[state - 1] if state else self.first
         variables = (*self.inputs, *self.outputs)
-        before = {
-            variable.name: _encode_value(variable, last[variable.name])
-            for variable in variables
-            if last
+        before = {v.name: domains.encode(v.domain, last[v.name]) for v in variables if last}
+        inputs = {v.name: domains.encode(v.domain, now[v.name]) for v in self.inputs}
+        bits = (bool(self.evaluate(position, before, inputs)) for position in entry.outputs)
+        outputs = {
+            v.name: domains.decode(v.domain, islice(bits, domains.width(v.domain)))
+            for v in self.outputs
         }
-        inputs = {
-            variable.name: _encode_value(variable, now[variable.name]) for variable in self.inputs
-        }
-        bits = [bool(self.evaluate(position, before, inputs)) for position in entry.outputs]
-        is_next = [bool(self.evaluate(position, before, inputs)) for position in entry.successors]
-        return dict(_decode_row(self.outputs, bits)), is_next.index(True) + 1
+        is_next = [self.evaluate(position, before, inputs) for position in entry.successors]
+        return outputs, is_next.index(1) + 1
 
     def evaluate(
         self, position: int, last: Mapping[str, Sequence[bool]], now: Mapping[str, Sequence[bool]]
@@ -84,23 +82,3 @@ class Table(Struct, frozen=True):
             values = last if bit.is_before else now
             position = high if values[bit.variable][bit.position] else low
         return position
-
-
-def _encode_value(variable: Variable, value: Literal) -> tuple[bool, ...]:
-    """Return the bits of a value of a variable, the most significant one first."""
-    index = domains.values(variable.domain).index(value)
-    return tuple(
-        bool(index >> position & 1) for position in reversed(range(width(variable.domain)))
-    )
-
-
-def _decode_row(
-    variables: Sequence[Variable], bits: Sequence[bool]
-) -> Iterator[tuple[str, Literal]]:
-    """Yield names and values of variables whose bits follow one another in *bits*."""
-    position = 0
-    for variable in variables:
-        own_bits = bits[position : position + width(variable.domain)]
-        number = sum(bit << bit_position for bit_position, bit in enumerate(reversed(own_bits)))
-        yield variable.name, domains.values(variable.domain)[number]
-        position += width(variable.domain)

@@ -1,6 +1,6 @@
 """Finite domains: their values, sizes and textual form."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import product
 
 from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, IntegerDomain
@@ -72,3 +72,19 @@ def width(domain: Domain) -> int:
     A variable with a single value has a bit too, so that the support of diagrams can show it.
     """
     return max(1, (size(domain) - 1).bit_length())
+
+
+def encode(domain: Domain, value: Literal) -> tuple[bool, ...]:
+    """Return the bits of the index of a value, the most significant one first."""
+    index = values(domain).index(value)
+    return tuple(bool(index >> position & 1) for position in reversed(range(width(domain))))
+
+
+def decode(domain: Domain, bits: Iterable[bool]) -> Literal:
+    """Return the value with these bits. Raises IndexError if they encode none."""
+    index = 0
+    for bit in bits:
+        index = index << 1 | bit
+    if index >= size(domain):
+        raise IndexError(f"no value with the code {index}")
+    return values(domain)[index]

@@ -119,9 +119,7 @@ class Symbols:
         domain = self.variables[name].domain
         if not domains.contains(domain, value):
             raise SymbolError(f"{name} cannot be {value}")
-        index = domains.values(domain).index(value)
-        bits = self.bits(name, primed)
-        return {bit: bool(index >> position & 1) for position, bit in enumerate(reversed(bits))}
+        return dict(zip(self.bits(name, primed), domains.encode(domain, value), strict=True))
 
     def decode(self, assignment: Mapping[str, bool], primed: bool = False) -> dict[str, Literal]:
         """Return the values of all variables whose bits are assigned.
@@ -132,7 +130,12 @@ class Symbols:
         for name, variable in self.variables.items():
             bits = self.bits(name, primed)
             if all(bit in assignment for bit in bits):
-                values[name] = _decode_value(variable, [assignment[bit] for bit in bits])
+                try:
+                    values[name] = domains.decode(
+                        variable.domain, (assignment[bit] for bit in bits)
+                    )
+                except IndexError as problem:
+                    raise SymbolError(f"{name} has {problem}") from None
         return values
 
     def bdd(self, formula: Formula) -> Node:
@@ -265,13 +268,6 @@ def current_bit(bit: str) -> str:
 def is_next(bit: str) -> bool:
     """Whether a bit belongs to a next value."""
     return bit.endswith("'")
-
-
-def _decode_value(variable: Variable, bits: list[bool]) -> Literal:
-    index = sum(bit << position for position, bit in enumerate(reversed(bits)))
-    if index >= domains.size(variable.domain):
-        raise SymbolError(f"{variable.name} has no value with the code {index}")
-    return domains.values(variable.domain)[index]
 
 
 _CONNECTIVES: dict[Op, Callable[[Manager, list[Node]], Node]] = {
