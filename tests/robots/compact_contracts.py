@@ -1,4 +1,6 @@
-"""Two encodings of C_S that are decided faster than that of the thesis (``system_contract``).
+"""Contracts of the corpus in other forms than those of the compiler.
+
+Two encodings of C_S are decided faster than that of the thesis (``system_contract``).
 
 ``commands`` omits sensors and free cells, which follow from the positions. In ``moves`` a robot
 chooses its next position directly instead of giving a command.
@@ -13,6 +15,7 @@ from sysmlc.logic.contract import Owner
 from sysmlc.logic.formula import Op
 from sysmlc.robots import contract_terms as terms
 from sysmlc.robots.contract_terms import forbid_obstacle_cells
+from sysmlc.robots.environment_contract import environment_contract
 from sysmlc.robots.robot_contract import count_steps
 from sysmlc.robots.study import STAY, WAYS
 from sysmlc.robots.system_contract import count_timers, promise_targets, system_contract
@@ -145,3 +148,30 @@ _PARTS = {
     "commands": (_command_assumptions, _command_guarantees),
     "moves": (_move_assumptions, _move_guarantees),
 }
+
+
+def assume_no_meeting(study):
+    """Return C_E of the thesis with the assumption that no two robots move to one cell."""
+    contract = environment_contract(study, is_literal=True)
+    assumptions = []
+    for first, second in combinations(study.robots, 2):
+        for cell in study.grid.cells:
+            meet = f.both(_moves_to(study, second, cell), _moves_to(study, first, cell))
+            assumptions.append(terms.safety_conjunct(f.negate(meet), second.origin, "no meeting"))
+    return replace(contract, assumptions=(*contract.assumptions, *assumptions))
+
+
+def _moves_to(study, robot, cell):
+    """Return the predicate that a robot will be in a cell after its command."""
+    entries = [
+        (neighbour, way)
+        for neighbour in study.grid.cells
+        for way in WAYS
+        if study.grid.cell_after(neighbour, way) == cell
+    ]
+    return f.either(
+        *(
+            f.both(terms.is_in_cell(robot, start), terms.equals(terms.command(robot), way))
+            for start, way in ((cell, STAY), *entries)
+        )
+    )

@@ -4,20 +4,15 @@ import os
 import re
 from pathlib import Path
 
-from compact_contracts import compact_contract
+from compact_contracts import assume_no_meeting, compact_contract
 
 from sysmlc.logic.printing import print_formula
-from sysmlc.robots.environment_contract import Sharing, environment_contract
+from sysmlc.robots.environment_contract import environment_contract
 from sysmlc.robots.robot_contract import robot_contract
 from sysmlc.robots.study import Grid, Order, Robot, Study, Target
 from sysmlc.robots.system_contract import system_contract
 
 CORPUS = Path(os.environ.get("SYSMLC_CORPUS", "")) / "gr1" / "robots"
-_SHARING = {
-    "literal": Sharing.LITERAL,
-    "assume": Sharing.ASSUMED,
-    "arbitrated": Sharing.ARBITRATED,
-}
 _ENCODING = {"smart": "commands", "move": "moves"}
 _WORDS = {
     "pos": "position",
@@ -61,7 +56,9 @@ def build_contract(name):
     within = int(rest[2][1:]) if len(rest) > 2 else None
     study = floor(int(cells**0.5), *(None,) * robots, within=within)
     if kind == "env":
-        return environment_contract(study, _SHARING[rest[1]])
+        is_assumed = rest[1] == "assume"
+        literal = assume_no_meeting(study) if is_assumed else environment_contract(study, True)
+        return environment_contract(study) if rest[1] == "arbitrated" else literal
     if rest[1] in _ENCODING:
         return compact_contract(study, _ENCODING[rest[1]])
     return system_contract(study)

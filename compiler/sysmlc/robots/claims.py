@@ -9,7 +9,7 @@ from msgspec.structs import replace
 from sysmlc.logic.contract import Conjunct, Contract
 from sysmlc.logic.formula import variable_names
 from sysmlc.robots import contract_terms as terms
-from sysmlc.robots.environment_contract import Sharing, environment_contract
+from sysmlc.robots.environment_contract import environment_contract
 from sysmlc.robots.joint_proof import Counterexample, JointProof, UndecidedError
 from sysmlc.robots.mission_contract import mission_contract
 from sysmlc.robots.robot_contract import robot_contract
@@ -63,7 +63,6 @@ def decide_claims(
 def _claim_procedures(study: Study, travel: TravelTimes) -> dict[str, _Procedure]:
     """Return the decision procedure of each claim; contracts are built on demand."""
     robot = study.robots[0]
-    literal, once = Sharing.LITERAL, Sharing.ARBITRATED
     safety, liveness = JointProof.find_safety_failure, JointProof.find_liveness_failure
     return {
         "C_S refines C_R": partial(_decide_refinement, study, lambda: robot_contract(study, robot)),
@@ -73,11 +72,11 @@ def _claim_procedures(study: Study, travel: TravelTimes) -> dict[str, _Procedure
         "C_S refines C_E": partial(_decide_refinement, study, lambda: environment_contract(study)),
         MISSION_CLAIM: partial(_decide_refinement, study, lambda: mission_contract(study, travel)),
         "C_E as the thesis defines it discharges what C_R assumes of it": partial(
-            _decide_discharge, study, literal, True
+            _decide_discharge, study, True, True
         ),
-        "C_E discharges what C_R assumes of it": partial(_decide_discharge, study, once, True),
+        "C_E discharges what C_R assumes of it": partial(_decide_discharge, study, False, True),
         "C_E discharges what C_R among others assumes of it": partial(
-            _decide_discharge, study, once, False
+            _decide_discharge, study, False, False
         ),
         "C_R, C_E and C_M together keep what C_S promises of each step": partial(
             _decide_jointly, study, (safety,)
@@ -115,22 +114,23 @@ def _decide_refinement(
 
 
 def _decide_discharge(
-    study: Study, sharing: Sharing, is_alone: bool, claim: str, new_manager: ManagerFactory
+    study: Study, is_literal: bool, is_alone: bool, claim: str, new_manager: ManagerFactory
 ) -> Claim:
     """Decide whether C_E entails the assumptions of the first robot about its environment.
 
     A violating run is searched with as few robots as possible, extended to all robots and checked.
     """
-    environment = environment_contract(study, sharing)
+    environment = environment_contract(study, is_literal)
     environment_conjuncts = (*environment.assumptions, *environment.guarantees)
     violation = None
     for smaller_study, others_stay in _iter_attempts(study):
-        violation = _find_undischarged(smaller_study, sharing, is_alone, new_manager(), others_stay)
+        violation = _find_undischarged(
+            smaller_study, is_literal, is_alone, new_manager(), others_stay
+        )
         if violation is None:
             continue
         conjunct, smaller_run = violation
-        is_exact = sharing is Sharing.LITERAL
-        for run in extend_to_all_robots(study, smaller_study.robots, smaller_run, is_exact):
+        for run in extend_to_all_robots(study, smaller_study.robots, smaller_run, is_literal):
             if not any(violated_conjuncts(run, environment_conjuncts)) and any(
                 violated_conjuncts(run, (conjunct,))
             ):
@@ -154,7 +154,7 @@ def _iter_attempts(study: Study) -> Iterator[tuple[Study, bool]]:
 
 
 def _find_undischarged(
-    study: Study, sharing: Sharing, is_alone: bool, manager: Manager, others_stay: bool
+    study: Study, is_literal: bool, is_alone: bool, manager: Manager, others_stay: bool
 ) -> tuple[Conjunct, Trace] | None:
     """Return an assumption of the first robot that C_E does not entail, with a violating run.
 
@@ -162,7 +162,7 @@ def _find_undischarged(
     them. Assumptions about offers read targets, too, but are checked.
     """
     target_names = {terms.target(other) for other in study.robots}
-    environment = environment_contract(study, sharing)
+    environment = environment_contract(study, is_literal)
     robot = robot_contract(study, study.robots[0], is_alone)
     target_assumptions = [
         assumption for assumption in robot.assumptions if _names_of(assumption) & target_names

@@ -1,11 +1,10 @@
 """The contract of the environment, C_E (MOOD4I thesis, 4.3.3): it moves robots, offers free cells.
 
 In the form of the thesis it is unrealizable for two or more robots: the sensors of two robots show
-the same free cell, both enter it, and C_E must exclude that. ``Sharing`` contains the remedies.
+the same free cell, both enter it, and C_E must exclude that. So a cell is offered to one of them.
 """
 
 from collections.abc import Iterator
-from enum import StrEnum
 from itertools import combinations, permutations
 
 from sysmlc.logic import formula as f
@@ -21,29 +20,21 @@ from sysmlc.robots.contract_terms import (
 from sysmlc.robots.study import STAY, WAYS, Robot, Study
 
 
-class Sharing(StrEnum):
-    """Treatment of a free cell next to two robots."""
+def environment_contract(study: Study, is_literal: bool = False) -> Contract:
+    """Return C_E: commands move the robots, sensors show free cells, no cell is shared.
 
-    LITERAL = "literal"
-    """The sensors of both robots show that it is free, as in the thesis."""
-    ASSUMED = "assumed"
-    """The sensors of both robots show that it is free; C_E assumes that not both enter it."""
-    ARBITRATED = "arbitrated"
-    """It is offered to one of the robots only."""
-
-
-def environment_contract(study: Study, sharing: Sharing = Sharing.ARBITRATED) -> Contract:
-    """Return C_E: commands move the robots, sensors show free cells, no cell is shared."""
-    is_exact = sharing is not Sharing.ARBITRATED
+    A free cell next to two robots is offered to one of them. With *is_literal* the sensors of both
+    show that it is free, as in the thesis.
+    """
     sensed = [
-        conjunct for robot in study.robots for conjunct in define_sensors(study, robot, is_exact)
+        conjunct for robot in study.robots for conjunct in define_sensors(study, robot, is_literal)
     ]
     rules = [*forbid_shared_cells(study), *define_free_cells(study), *sensed]
-    if not is_exact:
+    if not is_literal:
         rules += _offer_once(study)
     name = f"{study.component}.environment"
     return Contract(
-        name if sharing is Sharing.ARBITRATED else f"{name}.{sharing}",
+        f"{name}.literal" if is_literal else name,
         study.origin,
         (
             *(terms.declare_command(robot, Owner.ENVIRONMENT) for robot in study.robots),
@@ -54,7 +45,7 @@ def environment_contract(study: Study, sharing: Sharing = Sharing.ARBITRATED) ->
             ),
             *terms.declare_free_cells(study, Owner.SYSTEM),
         ),
-        tuple(_list_assumptions(study, sharing)),
+        tuple(_list_assumptions(study)),
         (
             *terms.define_starts(study.robots),
             *forbid_obstacle_cells(study),
@@ -64,12 +55,12 @@ def environment_contract(study: Study, sharing: Sharing = Sharing.ARBITRATED) ->
                 for robot in study.robots
                 for conjunct in terms.define_motion(study, robot, False)
             ),
-            *(() if is_exact else _guarantee_offers(study)),
+            *(() if is_literal else _guarantee_offers(study)),
         ),
     )
 
 
-def _list_assumptions(study: Study, sharing: Sharing) -> Iterator[Conjunct]:
+def _list_assumptions(study: Study) -> Iterator[Conjunct]:
     for robot in study.robots:
         text = f"At first '{robot.name}' stays."
         yield terms.initial_conjunct(terms.equals(terms.command(robot), STAY), robot.origin, text)
@@ -79,27 +70,6 @@ def _list_assumptions(study: Study, sharing: Sharing) -> Iterator[Conjunct]:
             text = f"'{robot.name}' goes {way} only when the way is free."
             formula = f.implies(moves, f.var(terms.sensor(robot, way)))
             yield terms.safety_conjunct(formula, robot.origin, text)
-    if sharing is Sharing.ASSUMED:
-        yield from _forbid_meeting(study)
-
-
-def _forbid_meeting(study: Study) -> Iterator[Conjunct]:
-    """State that no two robots move to one cell."""
-    for first, second in combinations(study.robots, 2):
-        text = f"'{first.name}' and '{second.name}' do not go to one cell."
-        for cell in study.grid.cells:
-            meet = f.both(_moves_to(study, second, cell), _moves_to(study, first, cell))
-            yield terms.safety_conjunct(f.negate(meet), second.origin, text)
-
-
-def _moves_to(study: Study, robot: Robot, cell: int) -> Formula:
-    """Return the predicate that a robot will be in a cell after its command."""
-    ways = [f.both(terms.is_in_cell(robot, cell), terms.equals(terms.command(robot), STAY))]
-    for neighbour, way in _entries_of(study, cell):
-        ways.append(
-            f.both(terms.is_in_cell(robot, neighbour), terms.equals(terms.command(robot), way))
-        )
-    return f.either(*ways)
 
 
 def _entries_of(study: Study, cell: int) -> Iterator[tuple[int, str]]:

@@ -17,7 +17,7 @@ from sysmlc.robots.allocation import (
 from sysmlc.robots.answers import Answers
 from sysmlc.robots.claims import Claim, decide_claims
 from sysmlc.robots.crew_cache import CrewCache, RobotCrew
-from sysmlc.robots.environment_contract import Sharing, environment_contract
+from sysmlc.robots.environment_contract import environment_contract
 from sysmlc.robots.mission_run import Moment, describe_moments, record_run
 from sysmlc.robots.robot_controller import (
     Times,
@@ -291,7 +291,7 @@ def _decide_shared_cell_claim(study: Study, options: Options) -> Claim:
     two_robots = replace(
         study, robots=tuple(replace(robot, start=None) for robot in study.robots[:2])
     )
-    literal = environment_contract(two_robots, Sharing.LITERAL)
+    literal = environment_contract(two_robots, is_literal=True)
     # The explanation is not shown, and computing it would take longer than everything else.
     unexplained = replace(options, is_explained=False)
     verdict = decide(literal, lambda origin: Subject(), Sink(), unexplained)
