@@ -238,3 +238,42 @@ def test_a_member_that_hides_an_inherited_one_is_reported_unless_it_redefines_it
         "'motor' of 'Big' hides the 'motor' that it inherits from 'Gate'",
         "'leaf' of 'big' hides the 'leaf' that it inherits from 'Big'",
     ]
+
+
+OPERATORS = "== != === !== < > <= >= and or xor & implies |"
+
+
+@pytest.mark.parametrize(
+    ("bound", "found"),
+    [
+        *((f"a {operator} a", "no number") for operator in OPERATORS.split()),
+        *((f"a {operator} b", "no number") for operator in ("istype", "hastype", "@", "@@")),
+        *((bound, "no number") for bound in ("not a", "@b", "c")),
+        *((bound, "true") for bound in ("true", "1 < 2", "2 > 1", "1 <= 1", "1 >= 1", "1 == 1")),
+        *((bound, "-1") for bound in ("-1", "1 - 2", "-2 + 1", "-1 * 1")),
+        ("1 != 1", "false"),
+        ("1.5", "1.5"),
+    ],
+)
+def test_a_bound_whose_value_is_no_natural_number_is_reported(bound, found):
+    text = "attribute a; attribute def b; attribute c : ScalarValues::String; part x[{}];"
+    message = f"the multiplicity of 'x' has a bound that is {found}"
+    assert list_messages(text.format(bound)) == [message]
+
+
+@pytest.mark.parametrize(
+    ("condition", "called"),
+    [
+        *((f"(1, 2)->{name} {{ true }}", name) for name in ("collect", "select", "selectOne")),
+        *((f"(1, 2)->{name} {{ true }}", name) for name in ("reject", "forAll", "exists")),
+        ("~true", "~"),
+        ("all Parts::Part", "all"),
+    ],
+)
+def test_a_condition_that_needs_a_running_system_is_reported(condition, called):
+    text = f"package P {{ private import ControlFunctions::*; filter {condition}; }}"
+    messages = list_messages(text)
+    message = (
+        f"the filter of 'P' uses '{called}', which cannot be evaluated without a running system"
+    )
+    assert message in messages

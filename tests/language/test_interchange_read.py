@@ -258,9 +258,10 @@ def test_implied_relationships_are_not_read():
     ]
 
 
-def test_the_root_element_may_be_xmi():
+@pytest.mark.parametrize("organisation", ["www.omg.org", "www.omg.org/spec", "schema.omg.org/spec"])
+def test_the_root_element_may_be_xmi(organisation):
     inner = write_file(write_member("Package", 'declaredName="P"'))
-    file = f'<xmi:XMI xmlns:xmi="http://www.omg.org/spec/XMI/20131001">{inner}</xmi:XMI>'
+    file = f'<xmi:XMI xmlns:xmi="http://{organisation}/XMI/20131001">{inner}</xmi:XMI>'
     document, messages = read_text(file)
     assert (outline(document.root), messages) == (["OwningMembership Package P"], [])
 

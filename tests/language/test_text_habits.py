@@ -7,6 +7,11 @@ import pytest
 from test_text_typos import MODEL, list_findings
 from tree_outlines import list_diagnostics
 
+from sysmlc.diagnostics import Sink
+from sysmlc.language.library import load_core
+from sysmlc.language.names import resolve
+from sysmlc.language.text import parse
+
 HABITS = {
     "Python: note of a line": (
         "# a comment",
@@ -643,3 +648,31 @@ def test_a_feature_that_redefines_an_inherited_one_is_no_assignment(tmp_path):
     text = """package P { attribute n : ScalarValues::Integer; action def C { in attribute n; }
     action c : C { in n = 3; } action d : C { attribute n redefines C::n = 4; } }"""
     assert [m for m, _ in list_findings(text, tmp_path) if "new feature" in m] == []
+
+
+@pytest.mark.parametrize(
+    ("text", "advice"),
+    [
+        ("part a : import B;", "write the import in a body: private import A::*;"),
+        ("attribute a : := 3;", "':=' gives an initial value, '=' binds for good, "),
+        ("part a, b;", "members end with ';', they are not separated by commas"),
+        ("part def A extends B;", "write ':>' or 'specializes' before a general type"),
+        ("part a is B;", "write ':>' or 'specializes' before a general type, and ':' before "),
+        ("requirement r id 'R5';", "write the short name after the keyword: requirement <'R5'> "),
+        ("connect a with b;", "ends of a connection are joined by 'to': connect a to b"),
+        ("transition first a when c then b;", "write 'accept when c' for a change, 'if c' for "),
+    ],
+)
+def test_an_unexpected_token_has_advice_wherever_it_stands(text, advice):
+    sink = Sink()
+    parse(text, "m.sysml", "sysml", sink)
+    assert next(iter(sink)).help.startswith(advice)
+
+
+@pytest.mark.parametrize(
+    ("member", "code"), [("part a : end;", "SM192"), ("part a : Öl;", "SM194"), ("foo", "SM195")]
+)
+def test_a_word_with_a_syntax_error_is_not_an_unknown_name_too(member, code):
+    sink = Sink()
+    resolve([parse(f"part def P {{ {member} }}", "m.sysml", "sysml", sink)], load_core(), sink)
+    assert [diagnostic.rule.code for diagnostic in sink] == [code]
