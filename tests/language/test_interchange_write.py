@@ -12,6 +12,8 @@ from sysml_metamodel import count_ids, count_with_metamodel
 from sysmlc.diagnostics import Sink
 from sysmlc.language.interchange import link, read
 from sysmlc.language.interchange.writer import interchange_path, write
+from sysmlc.language.library import load_core
+from sysmlc.language.names import resolve
 from sysmlc.language.text import parse
 from sysmlc.language.tree import Document, Node, Reference, Relation
 from sysmlc.sources import Source
@@ -285,6 +287,38 @@ def test_a_sequence_of_1000_nested_operators_is_written_and_read():
     after, messages = read_text(write_text(before)[0])
     assert messages == []
     assert len(list(after.root.walk())) == len(list(before.root.walk()))
+
+
+RELATIONSHIPS = """
+    standard library package L { abstract class A; class B; feature f { feature g; } feature g; }
+    class C :> L::A disjoint from L::B; class all D unions L::A, L::B intersects L::A, L::B;
+    class E differences L::A, L::B; class F conjugates L::A;
+    feature h : L::A [0..1] ordered nonunique :> L::f crosses L::f.g inverse of L::g;
+    derived const feature i chains L::f.g featured by L::A; feature j :>> L::f; feature k ::> L::f;
+    specialization S subtype L::A :> L::B; subclassifier L::A :> L::B; typing L::f : L::A;
+    subset L::f :> L::g; redefinition L::f :>> L::g; conjugate L::A ~ L::B;
+    disjoint L::A from L::B; inverse L::f of L::g; featuring of L::f by L::A;
+    dependency from L::A to L::B; alias M for L::A; private import L::**;
+    inv false n { true } feature o default := 1.5; feature p = "text"; composite feature q;
+    comment locale "de" /* a */ rep language "c" /* b */ portion var feature r;
+"""
+
+
+def test_relationships_of_kerml_are_written_and_read():
+    sink = Sink()
+    before = parse(RELATIONSHIPS, "m.kerml", "kerml", sink)
+    resolve([before], load_core(), sink)
+    after = read(Source("m.kermlx", write(before, [before], sink)), sink)
+    assert list_messages(sink) == []
+    for node, copy in zip(before.root.walk(), after.root.walk(), strict=True):
+        assert (node.kind, node.name, node.membership) == (copy.kind, copy.name, copy.membership)
+        assert node.attributes == copy.attributes
+        assert list_targets(node) == list_targets(copy)
+
+
+def list_targets(node):
+    targets = [(relation.kind, relation.reference.targets) for relation in node.relations]
+    return [(kind, [target.name for target in links or ()]) for kind, links in targets]
 
 
 @pytest.mark.parametrize(
