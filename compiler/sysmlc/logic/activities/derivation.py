@@ -84,7 +84,7 @@ def derive_token_updates(formulas: StepFormulas) -> Iterator[Conjunct]:
     for edge in graph.edges:
         if graph.can_hold(edge) and not formulas.is_chosen(edge):
             yield _derive_edge_update(formulas, edge)
-    for node in filter(formulas.graph.can_choose, formulas.graph.nodes):
+    for node in filter(graph.can_choose, graph.nodes):
         yield from _derive_choice(formulas, node)
 
 

@@ -151,9 +151,6 @@ class StepFormulas:
         between = self.graph.nodes_between(inner, outer)
         return f.either(*(self._final_formula(node.id) for node in between))
 
-    def _node_end_formula(self, around: TokenNode) -> Formula:
-        return f.both(f.var(around.run), self.complete_formula(around.id))
-
     # -- edges -----------------------------------------------------------------------------
 
     def present_formula(self, edge: TokenEdge) -> Formula:
@@ -302,7 +299,7 @@ class StepFormulas:
     def _completed_formula(self, region: str) -> Formula:
         """The region, or a region around it, is complete."""
         if region not in self._endings:
-            around = map(self._node_end_formula, self.graph.regions_around(region))
+            around = map(self.finish_formula, self.graph.regions_around(region))
             self._endings[region] = f.either(self.complete_formula(ACTIVITY_REGION), *around)
         return self._endings[region]
 
