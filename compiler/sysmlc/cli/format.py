@@ -134,7 +134,9 @@ def _list_folder(folder: Path) -> list[Path]:
     matches, files = list[Path](), list[Path]()
     for path, folders, names in os.walk(folder):
         folders[:] = [name for name in folders if not name.startswith(".")]
-        matches += (Path(path, name) for name in names if _has_language(name))
+        matches += (
+            Path(path, name) for name in names if Path(name).suffix[1:].lower() in _LANGUAGES
+        )
     for file in sorted(matches):
         name = escape_undecodable(file.as_posix())
         if file.is_symlink():
@@ -145,10 +147,6 @@ def _list_folder(folder: Path) -> list[Path]:
         else:
             files.append(file)
     return files or fail(f"{folder.as_posix()} holds no .sysml or .kerml file")
-
-
-def _has_language(name: str) -> bool:
-    return Path(name).suffix[1:].lower() in _LANGUAGES
 
 
 def _read(path: Path, language: str | None, *, fix: bool) -> _Text:

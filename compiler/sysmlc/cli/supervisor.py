@@ -100,7 +100,7 @@ def supervise(run: Run) -> NoReturn:
         shared.start_child()
         child = _fork(run, shared, handlers)
         _forward_signals(handlers, child)
-        code = _wait_for(child)
+        code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
         is_over = code >= 0 and code != OUT_OF_MEMORY
         if is_over or -code in _USER_SIGNALS:
             _end_as(code)
@@ -175,12 +175,6 @@ def _is_in_foreground() -> bool:
         return False
 
 
-def _wait_for(child: int) -> int:
-    """Wait for *child*; return its exit code, or minus the number of the signal that ended it."""
-    _, status = os.waitpid(child, 0)
-    return os.waitstatus_to_exitcode(status)
-
-
 def _end_as(code: int) -> NoReturn:
     """End this process as the child ended: with its exit code, or by the same signal."""
     if code < 0:
@@ -192,20 +186,16 @@ def _end_as(code: int) -> NoReturn:
 
 def _report_end(code: int, shared: SharedState) -> None:
     """Report why a child ended early; a child reports its memory limit itself."""
+    from sysmlc.driver import faults
+
     if -code == signal.SIGALRM:
-        _report_time_limit(shared.time_limit)
+        _report(faults.TIME_LIMIT, seconds=f"{shared.time_limit:g}")
     elif code < 0:
-        _report_crash(-code)
+        name = signal.Signals(-code).name if -code in signal.valid_signals() else str(-code)
+        _report(faults.CRASH, signal=name)
 
 
 # -- reports -----------------------------------------------------------------------------------
-
-
-def _report_time_limit(seconds: float) -> None:
-    """Report that the command reached its time limit."""
-    from sysmlc.driver import faults
-
-    _report(faults.TIME_LIMIT, seconds=f"{seconds:g}")
 
 
 _OWN_GIBIBYTES = 0.06
@@ -220,14 +210,6 @@ def report_memory_limit(gibibytes: float) -> None:
     is_small = 0 < gibibytes < _OWN_GIBIBYTES
     notes = (f"the interpreter and its libraries need up to {_OWN_GIBIBYTES} GiB",) * is_small
     _report(faults.MEMORY_LIMIT, notes, limit=limit)
-
-
-def _report_crash(number: int) -> None:
-    """Report that a signal has ended the command."""
-    from sysmlc.driver import faults
-
-    name = signal.Signals(number).name if number in signal.valid_signals() else str(number)
-    _report(faults.CRASH, signal=name)
 
 
 def _report(rule: "Rule", notes: tuple[str, ...] = (), **facts: str) -> None:

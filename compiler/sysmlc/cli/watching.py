@@ -6,7 +6,7 @@ Tools write a file in several steps. The size and time of the file show whether 
 import gc
 import stat
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -183,18 +183,14 @@ class Watch:
                 publish(unit, self._settings, self._keep_going)
         self._uncollected_builds += 1
         if self._uncollected_builds >= _MAX_UNCOLLECTED_BUILDS:
-            self._collect_garbage()
+            self.clean_up()
 
     def clean_up(self) -> None:
-        """Collect garbage while no file is being saved."""
-        if self._uncollected_builds:
-            self._collect_garbage()
-
-    def _collect_garbage(self) -> None:
         """Free graphs and syntax trees, whose nodes form cycles of references."""
         # Without this, each edit of the ICE laboratory left 14 MB in memory.
-        gc.collect()
-        self._uncollected_builds = 0
+        if self._uncollected_builds:
+            gc.collect()
+            self._uncollected_builds = 0
 
     def _compile_stable_inputs(self) -> "list[CompiledUnit]":
         """Compile until the inputs were completely saved; return the units."""
@@ -205,7 +201,10 @@ class Watch:
             # A file was saved during the compilation, so the units may mix two states.
             if read_stamps(before) != before:
                 continue
-            new = dict.fromkeys(path for unit in units for path in _list_inputs(unit.outcome))
+            outcomes = [unit.outcome for unit in units]
+            new = dict.fromkeys(
+                o.root / f.path.partition("!")[0] for o in outcomes for f in o.inputs
+            )
             self._watched_paths |= new
             # The stamps are those from before the compilation, so that later saves differ.
             self._built_stamps = {**read_stamps(new), **before}
@@ -310,12 +309,6 @@ def _list_messages(units: "list[CompiledUnit]") -> frozenset[tuple[str, str]]:
     """
     diagnostics = (finding.diagnostic for unit in units for finding in unit.outcome.findings)
     return frozenset((d.rule.code, d.message) for d in diagnostics)
-
-
-def _list_inputs(compilation: "Outcome") -> Iterator[Path]:
-    """Yield the files that a compilation read."""
-    for file in compilation.inputs:
-        yield compilation.root / file.path.partition("!")[0]
 
 
 def _unit_files(

@@ -103,11 +103,9 @@ def make_type_reports(files: Iterable[FileReport]) -> list[TypeReport]:
         )
         for name in names
     ]
-    return sorted(reports, key=_make_type_key)
-
-
-def _make_type_key(report: TypeReport) -> tuple[int | str, ...]:
-    return (*(-report.counts[verdict.value] for verdict in WORST_FIRST), report.name)
+    return sorted(
+        reports, key=lambda r: (*(-r.counts[verdict.value] for verdict in WORST_FIRST), r.name)
+    )
 
 
 def sort_by_coverage(files: Iterable[FileReport]) -> list[FileReport]:

@@ -233,7 +233,9 @@ class _CompilationRun:
         """Run all steps. After an internal fault no back end runs."""
         reading, inputs = self._reading, self._inputs
         is_broken = not self._read(reading)
-        self._validate(reading)
+        schemas = self._request.schemas
+        if schemas is not None:
+            self._run_guarded("schemas", lambda: validate(reading.recognised, schemas, self._sink))
         store_refinements(reading.overlays, self._graph)
         # all() stops at the first step with a fault: later steps rely on its result.
         is_broken = not all(map(self._refine, self._passes)) or is_broken
@@ -277,11 +279,6 @@ class _CompilationRun:
                     frontend, sources
                 )
         return self._check_graph("read") and succeeded
-
-    def _validate(self, reading: Reading) -> None:
-        schemas = self._request.schemas
-        if schemas is not None:
-            self._run_guarded("schemas", lambda: validate(reading.recognised, schemas, self._sink))
 
     def _read_diagrams(self, frontend: Frontend, sources: list[Source]) -> bool:
         return not isinstance(frontend, DiagramReader) or self._run_guarded(

@@ -27,11 +27,6 @@ COVERAGE = "coverage.json"
 TRACE = "trace.json"
 
 
-def _format_coverage(compilation: Compilation) -> str:
-    """Return the verdict on every element of the inputs."""
-    return encode_json({"format": "sysmlc-coverage/2", **compilation.coverage.as_json()})
-
-
 def format_trace(compilation: Compilation) -> str:
     """Return the elements that each file comes from, and where each stands in the inputs."""
     artefacts = compilation.list_published()
@@ -124,7 +119,11 @@ def summarize(compilation: Compilation, has_files: bool = True) -> Outcome:
 
     Locations are resolved to lines and columns.
     """
-    texts = _collect_texts(compilation) if has_files else {}
+    texts: dict[str, str] = {}
+    if has_files:
+        texts = {artefact.path: artefact.text for artefact in compilation.list_published()}
+        coverage = {"format": "sysmlc-coverage/2", **compilation.coverage.as_json()}
+        texts |= {COVERAGE: encode_json(coverage), TRACE: format_trace(compilation)}
     origins = {item.path: (item.backend, item.name) for item in compilation.artefacts}
     return Outcome(
         root=compilation.root,
@@ -152,11 +151,6 @@ def collect_results(
     return Outcome(root, tuple(inputs), (), tuple(files), texts, is_complete=False)
 
 
-def _collect_texts(compilation: Compilation) -> dict[str, str]:
-    texts = {artefact.path: artefact.text for artefact in compilation.list_published()}
-    return texts | {COVERAGE: _format_coverage(compilation), TRACE: format_trace(compilation)}
-
-
 def compute_text_digest(text: str) -> str:
     """Return the SHA-256, in hex, of a text as a file contains it."""
     return hashlib.sha256(text.encode("utf-8")).hexdigest()
@@ -179,7 +173,10 @@ def format_manifest(outcome: Outcome, kept: Mapping[str, str]) -> str:
                 for file in outcome.inputs
             ],
             "files": [_describe_file(file) for file in outcome.files],
-            "withheld": [_describe_withheld(file) for file in outcome.withheld],
+            "withheld": [
+                {"path": file.path, "because": [_describe_reason(error) for error in file.because]}
+                for file in outcome.withheld
+            ],
             "kept": [{"path": path, "sha256": digest} for path, digest in kept.items()],
         }
     )
@@ -188,10 +185,6 @@ def format_manifest(outcome: Outcome, kept: Mapping[str, str]) -> str:
 def _describe_file(file: OutputFile) -> dict[str, object]:
     name = {"name": file.name} if file.name else {}
     return {"path": file.path, **name, "backend": file.backend, "sha256": file.sha256}
-
-
-def _describe_withheld(file: Withheld) -> dict[str, object]:
-    return {"path": file.path, "because": [_describe_reason(error) for error in file.because]}
 
 
 def _describe_reason(error: Diagnostic) -> dict[str, str]:

@@ -56,7 +56,10 @@ def compute_tool_digest() -> str:
     It is computed once per process: later changes of the files do not affect loaded code.
     """
     versions = f"{__version__} {sys.version} {sys.platform}"
-    return _hash_texts([versions, *_digest_own_files(), *_digest_plug_ins()])
+    groups = (registry.FRONTEND_GROUP, registry.PASS_GROUP, registry.BACKEND_GROUP)
+    entries = (entry for group in groups for entry in registry.find_plug_ins(group).values())
+    plug_ins = (digest for entry in entries for digest in _digest_package(entry))
+    return _hash_texts([versions, *_digest_own_files(), *plug_ins])
 
 
 def _list_dependencies(
@@ -106,12 +109,6 @@ def _digest_own_files() -> Iterator[str]:
     yield from _digest_folder(_PACKAGE, PAGES)
     for name in _RESOURCES:
         yield from _digest_folder(resources.path(name))
-
-
-def _digest_plug_ins() -> Iterator[str]:
-    for group in (registry.FRONTEND_GROUP, registry.PASS_GROUP, registry.BACKEND_GROUP):
-        for entry_point in registry.find_plug_ins(group).values():
-            yield from _digest_package(entry_point)
 
 
 def _digest_package(entry_point: "EntryPoint") -> Iterator[str]:

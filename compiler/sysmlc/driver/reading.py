@@ -333,11 +333,9 @@ def _load(name: str, root: Path, roots: Roots, sink: Sink) -> Iterator[Source]:
     try:
         source = Source(file, read_whole(root / file, file, DEFAULT_LIMITS))
         yield from (
-            read_entries(source, lambda entry: _matches(entry, pattern)) if is_archive else [source]
+            read_entries(source, lambda entry: fnmatchcase(posixpath.basename(entry), pattern))
+            if is_archive
+            else [source]
         )
     except SourceError as problem:
         faults.report_unreadable(problem, sink)
-
-
-def _matches(entry: str, pattern: str) -> bool:
-    return fnmatchcase(entry.rpartition("/")[2], pattern)

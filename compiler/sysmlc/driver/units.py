@@ -194,7 +194,10 @@ def _own_files(unit: Sequence[Bundle]) -> list[ReadFile]:
 
 def _name_units(units: Sequence[Sequence[ReadFile]], base: Path) -> list[str]:
     """Name each unit after its folder, or after its first file where units share a folder."""
-    folders = [_common_folder(files) or base for files in units]
+    folders = [
+        Path(os.path.commonpath([file.path.parent for file in files])) if files else base
+        for files in units
+    ]
     paths = [
         files[0].path if files and folders.count(folder) > 1 else folder
         for folder, files in zip(folders, units, strict=True)
@@ -202,10 +205,6 @@ def _name_units(units: Sequence[Sequence[ReadFile]], base: Path) -> list[str]:
     qualified = [_qualify(path, base) for path in paths]
     names = assign_file_names(qualified)
     return [names[name] for name in qualified]
-
-
-def _common_folder(files: Sequence[ReadFile]) -> Path | None:
-    return Path(os.path.commonpath([file.path.parent for file in files])) if files else None
 
 
 def _qualify(path: Path, base: Path) -> str:

@@ -21,7 +21,9 @@ def write_roles(context: Context, node: Node, file: File, elements: Iterable[Ele
             if path := _make_role_path(context, role, file):
                 context.mark_edge(Edge.REALIZES, element, role)
                 _find_or_add_role(node, tag, path)
-        _write_unresolved_roles(element, node)
+        # References to unknown role classes stay as they were written.
+        for tag, path in iter_unresolved(element, *_TAGS):
+            _find_or_add_role(node, tag if node.tag == "InternalElement" else _SUPPORTED, path)
         _write_requirements(context, element, node)
 
 
@@ -45,12 +47,6 @@ def _find_or_add_role(node: Node, tag: str, path: str) -> Node:
         if child.tag == tag and child.attributes.get(_PATHS[tag]) == path:
             return child
     return node.add(Node(tag, {_PATHS[tag]: path}))
-
-
-def _write_unresolved_roles(element: Element, node: Node) -> None:
-    """Add the references to unknown role classes as they were written."""
-    for tag, path in iter_unresolved(element, *_TAGS):
-        _find_or_add_role(node, tag if node.tag == "InternalElement" else _SUPPORTED, path)
 
 
 def _write_requirements(context: Context, element: Element, node: Node) -> None:

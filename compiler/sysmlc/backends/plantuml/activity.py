@@ -118,15 +118,9 @@ def _look_of_object(graph: Graph, node: Element) -> Look:
         text = labels.format_typed(graph, source, node.name or typed.name)
         words = {Kind.ACTIVITY_PARAMETER: (f"parameter {direction}" if direction else "parameter",)}
     shape = "store" if node.kind is Kind.DATA_STORE else "object"
-    return Look(
-        shape, format_label(text), applied or words.get(node.kind, ()), _format_states(graph, node)
-    )
-
-
-def _format_states(graph: Graph, node: Element) -> tuple[str, ...]:
-    """Return the row with the states of the objects in this node."""
-    names = [s.name for s in graph.targets(node, Edge.REFERENCES) if s.kind is Kind.STATE]
-    return wrap_lines(f"[{', '.join(names)}]") if names else ()
+    states = [s.name for s in graph.targets(node, Edge.REFERENCES) if s.kind is Kind.STATE]
+    rows = wrap_lines(f"[{', '.join(states)}]") if states else ()
+    return Look(shape, format_label(text), applied or words.get(node.kind, ()), rows)
 
 
 def _look_of_action(graph: Graph, node: Element) -> Look:
@@ -217,11 +211,6 @@ TINTS = 6
 """Number of tints in ``_style.j2``; a seventh partition has the tint of the first."""
 
 
-def _choose_tint(number: int) -> str:
-    """Return the style of the nodes in the partition with this number, from 0."""
-    return f"lane{number % TINTS + 1}"
-
-
 FLOWS = (Kind.CONTROL_FLOW, Kind.OBJECT_FLOW)
 _CONTROL_FLOW = "-[dashed]->"
 _OBJECT_FLOW = "-->"
@@ -282,16 +271,13 @@ class _ActivityDrawing:
         top_nodes = [
             node for node in self._list_nodes(self.activity) if self._find_region(node) is None
         ]
-        self.tints = self._assign_tints()
+        partitions = (item for item in self.inside if item.kind is _PARTITION)
+        self.tints = {item.id: f"lane{n % TINTS + 1}" for n, item in enumerate(partitions)}
         nodes = (*self._iter_partition_boxes(), *map(self._make_node, top_nodes))
         note_boxes = make_notes(
             self.graph, self.activity, self.aliases, not self.signature, self.inside
         )
         return GraphView(nodes, (*self._iter_lines(), *self._iter_handler_lines()), note_boxes)
-
-    def _assign_tints(self) -> dict[str, str]:
-        partitions = (item for item in self.inside if item.kind is _PARTITION)
-        return {partition.id: _choose_tint(number) for number, partition in enumerate(partitions)}
 
     def _find_region(self, node: Element) -> Element | None:
         """Return the interruptible region that contains the node."""
@@ -299,15 +285,8 @@ class _ActivityDrawing:
         groups = self.graph.targets(node, Edge.IN_PARTITION)
         return next((item for item in groups if item.kind is Kind.STRUCTURED), None)
 
-    def _list_owned(self, owner: Element) -> list[Element]:
-        return self.graph.owned(owner)
-
     def _list_nodes(self, owner: Element) -> list[Element]:
-        return [item for item in self._list_owned(owner) if item.kind in ACTIVITY_NODES]
-
-    def _list_partitions(self, node: Element) -> list[Element]:
-        groups = self.graph.targets(node, Edge.IN_PARTITION)
-        return [group for group in groups if group.kind is Kind.PARTITION]
+        return [item for item in self.graph.owned(owner) if item.kind in ACTIVITY_NODES]
 
     def _iter_partition_boxes(self) -> Iterator[Node]:
         """Yield a box for each partition that appears in the title of no node."""
@@ -358,8 +337,10 @@ class _ActivityDrawing:
 
         The result is empty for control nodes: PlantUML prints no text in diamonds and bars.
         """
-        partitions = () if node.kind is Kind.CONTROL else self._list_partitions(node)
-        return {partition.id: self._format_partition(partition) for partition in partitions}
+        if node.kind is Kind.CONTROL:
+            return {}
+        groups = self.graph.targets(node, Edge.IN_PARTITION)
+        return {g.id: self._format_partition(g) for g in groups if g.kind is Kind.PARTITION}
 
     def _list_content(self, node: Element) -> tuple[Node, ...]:
         if node.kind is not Kind.STRUCTURED:
@@ -406,7 +387,7 @@ class _ActivityDrawing:
         if flow.attrs.get("interrupts"):
             arrow = _INTERRUPTING
         text = format_label(self._format_flow(flow, source, target), _FLOW_LABEL_WIDTH)
-        owned = [item.id for item in self._list_owned(flow) if item.kind is not Kind.APPLICATION]
+        owned = [item.id for item in self.graph.owned(flow) if item.kind is not Kind.APPLICATION]
         shows = (flow.id, *owned)
         return Line(
             self.alias_by_end[source.id], arrow, self.alias_by_end[target.id], text, shows=shows

@@ -33,7 +33,6 @@ from sysmlc.backends.plantuml.views import (
     Diagram,
     GraphView,
     InternalView,
-    Line,
     Node,
     Note,
     UseCaseView,
@@ -81,15 +80,11 @@ def draw_author_diagrams(graph: Graph, sink: Sink) -> Iterator[Diagram]:
     """Yield one diagram for each View of an author, in the order of the model."""
     drawer = _Drawer(graph)
     for view in graph.of_kind(Kind.VIEW):
-        if _is_author_view(view):
+        # Views in the sense of SysML are no diagrams.
+        if view.subkind == "diagram":
             diagram = drawer.draw(Selection(graph, view), sink)
             if diagram is not None:
                 yield diagram
-
-
-def _is_author_view(view: Element) -> bool:
-    """Whether a View is a diagram, not a view in the sense of SysML."""
-    return view.kind is Kind.VIEW and view.subkind == "diagram"
 
 
 @dataclass
@@ -133,7 +128,9 @@ class _Drawer:
             return _build_behaviour_view(selection, Kind.ACTIVITY)
         if kind == "stm":
             return _build_behaviour_view(selection, Kind.STATE_MACHINE)
-        return self._find_sequence_view(selection) if kind == "sd" else None
+        about = _find_behaviour(selection, Kind.INTERACTION) if kind == "sd" else None
+        diagram = self._sequences.get(about.id) if about is not None else None
+        return diagram.view if diagram is not None else None
 
     def _build_use_case_view(self, selection: Selection) -> View:
         figures = [element for element in selection.shown if element.kind in use_case.FIGURES]
@@ -144,11 +141,6 @@ class _Drawer:
         view = use_case.build_view(self.graph, cases, actors, inside)
         notes = (note for note in view.notes if not selection.ids.isdisjoint(note.shows))
         return replace(view, notes=tuple(notes))
-
-    def _find_sequence_view(self, selection: Selection) -> View | None:
-        about = _find_behaviour(selection, Kind.INTERACTION)
-        diagram = self._sequences.get(about.id) if about is not None else None
-        return diagram.view if diagram is not None else None
 
     def _build_parametric_view(self, selection: Selection) -> View | None:
         """Return the parametric view of the selection, or None if it contains no binding.
@@ -266,7 +258,11 @@ def _build_behaviour_view(selection: Selection, kind: Kind) -> GraphView:
     aliases = set(_iter_aliases(nodes))
     return GraphView(
         nodes,
-        tuple(line for line in whole.lines if _is_drawn(line, aliases, selection.ids)),
+        tuple(
+            line
+            for line in whole.lines
+            if {line.source, line.target} <= aliases and not selection.ids.isdisjoint(line.shows)
+        ),
         tuple(_select_notes(whole.notes, aliases, selection.ids)),
     )
 
@@ -282,10 +278,6 @@ def _iter_aliases(nodes: Iterable[Node]) -> Iterator[str]:
     for node in nodes:
         yield node.alias
         yield from _iter_aliases(node.children)
-
-
-def _is_drawn(line: Line, aliases: set[str], ids: frozenset[str]) -> bool:
-    return {line.source, line.target} <= aliases and not ids.isdisjoint(line.shows)
 
 
 def _select_notes(notes: Iterable[Note], aliases: set[str], ids: frozenset[str]) -> Iterator[Note]:
@@ -308,7 +300,11 @@ def _list_all_relations(graph: Graph) -> list[Relation]:
         *list_relations(graph),
         *requirement.list_relations(graph),
         *iter_use_case_relations(graph),
-        *_iter_comment_anchors(graph),
+        *(
+            Relation(comment.id, about.id, "..")
+            for comment in graph.of_kind(Kind.COMMENT)
+            for about in graph.targets(comment, Edge.REFERENCES)
+        ),
     ]
 
 
@@ -343,12 +339,6 @@ def is_inside(selection: Selection, relation: Relation, boxes: set[str]) -> bool
     if edge is not None and not relation.shows:
         return selection.shows_edge(edge, relation.source, relation.target)
     return not relation.shows or relation.shows[0] in selection.ids
-
-
-def _iter_comment_anchors(graph: Graph) -> Iterator[Relation]:
-    for comment in graph.of_kind(Kind.COMMENT):
-        for about in graph.targets(comment, Edge.REFERENCES):
-            yield Relation(comment.id, about.id, "..")
 
 
 # -- boxes -------------------------------------------------------------------------------------

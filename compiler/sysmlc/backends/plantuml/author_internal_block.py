@@ -13,7 +13,6 @@ from sysmlc.ir.query import features, generals, type_of
 from sysmlc.support.plantuml_text import (
     escape_line,
     format_keyword_label,
-    format_label,
     join_rows,
     shrink,
     wrap_lines,
@@ -167,7 +166,7 @@ class _AuthorDrawing:
                 target = self._find_end_alias(prefix, connection.target)
                 if source and target:
                     self.used.append(connection)
-                    yield _make_line(source, target, connection)
+                    yield internal_block.make_line(source, target, connection)
 
     def _find_end_alias(self, prefix: _Ids, end: Path) -> str:
         """Return the alias of the end, or of the innermost drawn part or port that contains it."""
@@ -206,13 +205,6 @@ def _format_row(graph: Graph, feature: Element) -> str:
     return join_rows(map(shrink, wrap_lines(labels.feature(graph, feature))))
 
 
-def _make_line(source: str, target: str, connection: Connection) -> Line:
-    near, far = format_label(connection.near), format_label(connection.far)
-    return Line(
-        source, connection.arrow, target, connection.format_label(), near, far, connection.shows
-    )
-
-
 def _is_typed(graph: Graph, part: Element, classifier: Element) -> bool:
     type_ = type_of(graph, part)
     return type_ is not None and classifier in (type_, *generals(graph, type_))
@@ -230,7 +222,11 @@ def _find_paths(selection: Selection) -> dict[_Ids, None]:
     graph = selection.graph
     candidates = (element for element in selection.shown if element.id not in selection.listed)
     drawables = [element for element in candidates if element.kind in (*_PARTS, *_PORTS)]
-    drawn = [_select_parts_and_ports(graph, path) for path in selection.nesting]
+    # Tools draw parts and ports inside the box of the block itself.
+    drawn = [
+        tuple(id for id in path if graph[id].kind in (*_PARTS, *_PORTS))
+        for path in selection.nesting
+    ]
     deeper = {path[-1] for path in drawn if len(path) > 1}
     if not selection.nesting:
         return _nest_by_type(graph, drawables)
@@ -241,11 +237,6 @@ def _find_paths(selection: Selection) -> dict[_Ids, None]:
         for length in range(1, len(path) + 1):
             paths[path[:length]] = None
     return paths
-
-
-def _select_parts_and_ports(graph: Graph, path: _Ids) -> _Ids:
-    """Return the parts and ports on a path; tools draw them inside the block's own box."""
-    return tuple(id for id in path if graph[id].kind in (*_PARTS, *_PORTS))
 
 
 def _nest_by_type(graph: Graph, elements: list[Element]) -> dict[_Ids, None]:

@@ -148,11 +148,8 @@ def _draw_package(
 
 def _is_between_boxes(graph: Graph, relation: Relation) -> bool:
     ends = (graph[relation.source], graph[relation.target])
-    return all(map(_is_boxable, ends)) and {end.kind for end in ends} != set(use_case.FIGURES)
-
-
-def _is_boxable(element: Element) -> bool:
-    return element.kind in _BOXABLE and element.role != "requirement"
+    are_boxable = all(end.kind in _BOXABLE and end.role != "requirement" for end in ends)
+    return are_boxable and {end.kind for end in ends} != set(use_case.FIGURES)
 
 
 def _list_containments(graph: Graph, classifiers: list[Element]) -> list[Relation]:

@@ -86,7 +86,7 @@ def _format_rows(graph: Graph, feature: Element) -> tuple[str, ...]:
     parts = (
         _format_keywords(graph, feature),
         labels.feature(graph, feature),
-        _format_value_unit(graph, feature),
+        format_unit(graph, feature) if feature.role == "value" else "",
     )
     return wrap_lines(" ".join(part for part in parts if part), _ROW_WIDTH)
 
@@ -107,10 +107,6 @@ _TEXTS: dict[Kind, Callable[[Graph, Element], str]] = {
     Kind.ENUMERATION_LITERAL: lambda _, feature: labels.name(feature),
 }
 """Functions that format features other than properties, ports and parameters."""
-
-
-def _format_value_unit(graph: Graph, feature: Element) -> str:
-    return format_unit(graph, feature) if feature.role == "value" else ""
 
 
 def _format_keywords(graph: Graph, feature: Element) -> str:

@@ -12,7 +12,6 @@ from sysmlc.backends.plantuml import labels, partitioning
 from sysmlc.backends.plantuml.connections import (
     Connection,
     FreeFlow,
-    Path,
     find_classifier,
     find_free_flows,
     inherit_connections,
@@ -75,23 +74,18 @@ def _draw_block(
         return
     title = graph.qualified_name(block)
     parts = _partition(graph, block, block_connections)
+    keywords = " ".join(labels.keywords(graph, find_classifier(graph, block)))
     for index, (shown, inside) in enumerate(parts):
         drawing = _InternalBlockDrawing(graph, block, shown, inside)
         diagram = Diagram(
             kind="ibd",
             name=title,
-            frame=escape_line(
-                f"ibd [{_format_keywords(graph, block)}] {_format_title(graph, block)}"
-            ),
+            frame=escape_line(f"ibd [{keywords}] {_format_title(graph, block)}"),
             heading=("Internal block diagram", title),
             view=drawing.build_view(),
             about=block.id,
         )
         yield partitioning.name_part(diagram, index, len(parts))
-
-
-def _format_keywords(graph: Graph, block: Element) -> str:
-    return " ".join(labels.keywords(graph, find_classifier(graph, block)))
 
 
 def _format_title(graph: Graph, block: Element) -> str:
@@ -122,30 +116,18 @@ def _partition(
     groups = partitioning.partition([part.id for part in tops], adjacency, sizes=sizes) or [[]]
     if len(groups) == 1:
         return [(tops, block_connections)]
-    return [
-        _make_group(graph, set(group), tops, block_connections, index)
-        for index, group in enumerate(groups)
-    ]
-
-
-def _make_group(
-    graph: Graph,
-    group: set[str],
-    tops: list[Element],
-    block_connections: list[Connection],
-    index: int,
-) -> tuple[list[Element], list[Connection]]:
-    """Return the parts and connections of one group.
-
-    The first group also has the connections that lead from the frame to the frame.
-    """
-    inside = [
-        c
-        for c in block_connections
-        if c.find_top_parts() & group or (not c.find_top_parts() and index == 0)
-    ]
-    connected = {top for connection in inside for top in connection.find_top_parts()} | group
-    return [part for part in tops if part.id in connected], inside
+    parts = []
+    for index, group in enumerate(groups):
+        inside = []
+        for connection in block_connections:
+            ends = connection.find_top_parts()
+            # The first group also has the connections that lead from the frame to the frame.
+            if not ends.isdisjoint(group) or (index == 0 and not ends):
+                inside.append(connection)
+        connected = {top for connection in inside for top in connection.find_top_parts()}
+        connected.update(group)
+        parts.append(([part for part in tops if part.id in connected], inside))
+    return parts
 
 
 def _count_nested_parts(top: str, block_connections: list[Connection]) -> int:
@@ -209,19 +191,22 @@ class _InternalBlockDrawing:
         parts = tuple(self._make_part((part.id,), part) for part in self.tops)
         slots = _list_slots(self.graph, self.block)
         frame = PartView(
-            self.aliases.make("frame", self.block.name, "block"),
+            self.aliases.make((), self.block.name, "block"),
             join_rows(_format_slots(self.graph, slots)) or " ",
             "frame",
             tuple(self._iter_ports((), find_classifier(self.graph, self.block))),
             parts,
             (self.block.id, *(slot.id for slot in slots)),
         )
-        lines = tuple(self._make_line(connection) for connection in self.connections)
+        lines = tuple(
+            make_line(self.aliases[c.source.ids()], self.aliases[c.target.ids()], c)
+            for c in self.connections
+        )
         hidden = tuple(iter_port_guides(frame, lines))
         return InternalView(frame, lines, self.has_ports, hidden, domains_of(self.connections))
 
     def _make_part(self, path: tuple[str, ...], part: Element) -> PartView:
-        alias = self.aliases.make(_make_key(path), part.name, "part")
+        alias = self.aliases.make(path, part.name, "part")
         inner = tuple(
             self._make_part((*path, item.id), item) for item in self._list_inner_parts(path)
         )
@@ -285,28 +270,24 @@ class _InternalBlockDrawing:
         type_ports = (
             [port.id for port in _list_ports(self.graph, owner)] if owner is not None else []
         )
-        ends = [(end.port,) for end in self._iter_ends(path) if end.port]
-        keys = dict.fromkeys([*((id,) for id in type_ports), *ends, *self._iter_nested_ports(path)])
+        ends = [
+            (*end.ports, end.port)
+            for connection in self.connections
+            for end in (connection.source, connection.target)
+            if end.parts == path and (end.ports or end.port)
+        ]
+        # Ports inside other ports come last.
+        keys = dict.fromkeys(
+            [*((id,) for id in type_ports), *sorted(ends, key=lambda key: len(key) > 1)]
+        )
         for key in keys:
             yield self._make_port(path, key)
-
-    def _iter_ends(self, path: tuple[str, ...]) -> Iterator[Path]:
-        for connection in self.connections:
-            for end in (connection.source, connection.target):
-                if end.parts == path and not end.ports:
-                    yield end
-
-    def _iter_nested_ports(self, path: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
-        for connection in self.connections:
-            for end in (connection.source, connection.target):
-                if end.parts == path and end.ports:
-                    yield (*end.ports, end.port)
 
     def _make_port(self, path: tuple[str, ...], key: tuple[str, ...]) -> PortView:
         port = self.graph[key[-1]]
         self.has_ports = True
         dotted_name = ".".join(labels.name(self.graph[id]) for id in key)
-        alias = self.aliases.make(_make_key((*path, *key)), port.name, "port")
+        alias = self.aliases.make((*path, *key), port.name, "port")
         text = dotted_name if port.name.strip() else labels.format_typed(self.graph, port)
         form = FORMS.get(self._find_direction(key)) or self.sides.get((*path, *key), "port")
         # The name lies on the border of the part; white hides the border behind it (decision 10).
@@ -320,20 +301,13 @@ class _InternalBlockDrawing:
         is_turned = len([port for port in outer_ports if port.attrs.get("conjugated")]) % 2 == 1
         return (opposite(direction) or "") if is_turned else direction
 
-    def _make_line(self, connection: Connection) -> Line:
-        return Line(
-            self._find_alias(connection.source),
-            connection.arrow,
-            self._find_alias(connection.target),
-            connection.format_label(),
-            format_label(connection.near),
-            format_label(connection.far),
-            connection.shows,
-        )
 
-    def _find_alias(self, path: Path) -> str:
-        key = path.ids()
-        return self.aliases[_make_key(key) if key else "frame"]
+def make_line(source: str, target: str, connection: Connection) -> Line:
+    """Return the line of a connection between two aliases."""
+    near, far = format_label(connection.near), format_label(connection.far)
+    return Line(
+        source, connection.arrow, target, connection.format_label(), near, far, connection.shows
+    )
 
 
 def _list_slots(graph: Graph, instance: Element) -> list[Element]:
@@ -369,11 +343,6 @@ def domains_of(lines: list[Connection]) -> tuple[str, ...]:
     return sort_domains(domain for connection in lines for _, domain in connection.carried)
 
 
-def _make_key(path: tuple[str, ...]) -> str:
-    # XML documents cannot contain U+001F, so that different paths have different keys.
-    return "\x1f".join(("part", *path))
-
-
 def _choose_style(part: Element) -> str:
     is_shared = (
         not part.role
@@ -392,11 +361,7 @@ def _list_ports(graph: Graph, classifier: Element) -> list[Element]:
     for type_ in queue:
         if type_.id not in visited:
             visited[type_.id] = None
-            ports |= {p.id: p for p in graph.owned(type_) if _is_port(p)}
+            ports |= {p.id: p for p in graph.owned(type_) if p.kind is Kind.PORT}
             queue.extend(graph.targets(type_, Edge.SPECIALIZES))
     redefined = {old.id for port in ports.values() for old in graph.targets(port, Edge.REDEFINES)}
     return [port for port in ports.values() if port.id not in redefined]
-
-
-def _is_port(item: Element) -> bool:
-    return item.kind is Kind.PORT

@@ -19,6 +19,7 @@ from sysmlc.ir import Edge, Element, Graph, Kind
 from sysmlc.ir.query import features, type_of
 from sysmlc.support.plantuml_text import escape_line, format_label, join_rows, shrink, wrap_lines
 
+_Ids = tuple[str, ...]
 OWNERS = (Kind.CLASS, Kind.COMPONENT)
 _MAX_STEPS = 4
 """The longest path from a block to a feature that is searched for a connector without paths."""
@@ -199,44 +200,29 @@ def _draw_block(
 
 
 def _partition(
-    property_paths: list[tuple[str, ...]], block_bindings: list[Binding]
-) -> list[tuple[list[tuple[str, ...]], list[Binding]]]:
+    property_paths: list[_Ids], block_bindings: list[Binding]
+) -> list[tuple[list[_Ids], list[Binding]]]:
     """Return groups of boxes, each with its bindings and the boxes at both ends of these."""
     boxes = dict.fromkeys(
         [*property_paths, *(end.parts for binding in block_bindings for end in binding.ends)]
     )
     boxes.pop((), None)
-    names = {_make_key(path): path for path in boxes}
-    adjacency: dict[str, list[str]] = {key: [] for key in names}
+    adjacency: dict[_Ids, list[_Ids]] = {path: [] for path in boxes}
     for binding in block_bindings:
-        first, second = (_make_key(end.parts) for end in binding.ends)
+        first, second = (end.parts for end in binding.ends)
         if first in adjacency and second in adjacency and first != second:
             adjacency[first].append(second)
             adjacency[second].append(first)
-    groups = partitioning.partition(list(names), adjacency) or [[]]
-    return [
-        _make_group(set(group), names, block_bindings, at == 0) for at, group in enumerate(groups)
-    ]
-
-
-def _make_group(
-    group: set[str],
-    names: dict[str, tuple[str, ...]],
-    block_bindings: list[Binding],
-    is_first: bool,
-) -> tuple[list[tuple[str, ...]], list[Binding]]:
-    inside = [binding for binding in block_bindings if _touches(binding, group, is_first)]
-    ends = {_make_key(end.parts) for binding in inside for end in binding.ends} | group
-    return [path for key, path in names.items() if key in ends], inside
-
-
-def _touches(binding: Binding, group: set[str], is_first: bool) -> bool:
-    keys = {_make_key(end.parts) for end in binding.ends if end.parts}
-    return bool(keys & group) or (is_first and not keys)
-
-
-def _make_key(path: tuple[str, ...]) -> str:
-    return "\x1f".join(path)
+    parts = []
+    for index, group in enumerate(partitioning.partition(list(boxes), adjacency) or [[]]):
+        inside = []
+        for binding in block_bindings:
+            ends = {end.parts for end in binding.ends} - {()}
+            if not ends.isdisjoint(group) or (index == 0 and not ends):
+                inside.append(binding)
+        shown = {end.parts for binding in inside for end in binding.ends}.union(group)
+        parts.append(([path for path in boxes if path in shown], inside))
+    return parts
 
 
 @dataclass(slots=True)
@@ -245,10 +231,10 @@ class _ParametricDrawing:
 
     graph: Graph
     block: Element
-    boxes: list[tuple[str, ...]]
+    boxes: list[_Ids]
     bindings: list[Binding]
     aliases: Aliases = field(default_factory=Aliases)
-    right_ports: frozenset[str] = frozenset()
+    right_ports: frozenset[_Ids] = frozenset()
 
     def __post_init__(self) -> None:
         self.bindings = [_orient_towards_parameter(binding) for binding in self.bindings]
@@ -256,7 +242,7 @@ class _ParametricDrawing:
 
     def build_view(self) -> InternalView:
         frame = PartView(
-            self.aliases.make("frame", self.block.name, "block"),
+            self.aliases.make((), self.block.name, "block"),
             " ",
             "frame",
             tuple(self._iter_ports((), self.block)),
@@ -264,15 +250,25 @@ class _ParametricDrawing:
             (self.block.id,),
         )
         return InternalView(
-            frame, tuple(self._make_line(binding) for binding in self.bindings), True
+            frame,
+            tuple(
+                Line(
+                    self.aliases[binding.source.ids()],
+                    "--",
+                    self.aliases[binding.target.ids()],
+                    shows=binding.shows,
+                )
+                for binding in self.bindings
+            ),
+            True,
         )
 
-    def _make_box(self, path: tuple[str, ...]) -> PartView:
+    def _make_box(self, path: _Ids) -> PartView:
         shown = self.graph[path[-1]]
         type_ = type_of(self.graph, shown)
         is_usage = _is_usage(shown)
         return PartView(
-            self.aliases.make(_make_key(path), shown.name, "property"),
+            self.aliases.make(path, shown.name, "property"),
             self._format_label(path, shown, type_ if is_usage else None),
             "law" if is_usage else "value",
             tuple(self._iter_ports(path, type_ if is_usage else None)),
@@ -283,9 +279,7 @@ class _ParametricDrawing:
             ),
         )
 
-    def _format_label(
-        self, path: tuple[str, ...], shown: Element, constraint_block: Element | None
-    ) -> str:
+    def _format_label(self, path: _Ids, shown: Element, constraint_block: Element | None) -> str:
         steps = ".".join(labels.name(self.graph[id]) for id in path)
         text = labels.format_typed(self.graph, shown, steps)
         rows = [
@@ -311,7 +305,7 @@ class _ParametricDrawing:
         members = [] if constraint_block is None else self.graph.owned(constraint_block)
         return [member for member in members if member.kind is Kind.CONSTRAINT]
 
-    def _iter_ports(self, path: tuple[str, ...], owner: Element | None) -> Iterator[PortView]:
+    def _iter_ports(self, path: _Ids, owner: Element | None) -> Iterator[PortView]:
         """Yield all parameters of a usage, and further ports at which bindings end."""
         features_of_type = [] if owner is None else features(self.graph, owner)
         ids = [item.id for item in features_of_type if item.role == "constraint parameter"]
@@ -323,20 +317,10 @@ class _ParametricDrawing:
         )
         for key in keys:
             name = ".".join(labels.name(self.graph[id]) for id in key)
-            alias = self.aliases.make(
-                _make_key((*path, *key)), self.graph[key[-1]].name, "parameter"
-            )
+            alias = self.aliases.make((*path, *key), self.graph[key[-1]].name, "parameter")
             text = join_rows(f"<back:#FFFFFF>{row}</back>" for row in wrap_lines(name))
-            form = "portout" if _make_key((*path, *key)) in self.right_ports else "port"
+            form = "portout" if (*path, *key) in self.right_ports else "port"
             yield PortView(alias, text, form, key)
-
-    def _make_line(self, binding: Binding) -> Line:
-        source, target = (self._find_alias(end) for end in binding.ends)
-        return Line(source, "--", target, shows=binding.shows)
-
-    def _find_alias(self, end: Path) -> str:
-        key = end.ids()
-        return self.aliases[_make_key(key) if key else "frame"]
 
 
 # -- layout ------------------------------------------------------------------------------------
@@ -352,15 +336,11 @@ def _orient_towards_parameter(binding: Binding) -> Binding:
     return binding
 
 
-def _find_right_ports(lines_drawn: list[Binding]) -> frozenset[str]:
-    """Return the keys of parameters that are the source of bindings and never the target."""
+def _find_right_ports(lines_drawn: list[Binding]) -> frozenset[_Ids]:
+    """Return the paths to parameters that are the source of bindings and never the target."""
     starts = {
-        _make_end_key(binding.source)
+        binding.source.ids()
         for binding in lines_drawn
         if binding.source.parts and binding.source.port
     }
-    return frozenset(starts - {_make_end_key(binding.target) for binding in lines_drawn})
-
-
-def _make_end_key(end: Path) -> str:
-    return _make_key((*end.parts, *end.ports, end.port))
+    return frozenset(starts - {binding.target.ids() for binding in lines_drawn})

@@ -1,22 +1,24 @@
 """Partitioning of diagrams that are too large to read; every line remains in some part."""
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Hashable, Iterator, Mapping, Sequence
+from typing import TypeVar
 
 from msgspec.structs import replace
 
-from sysmlc.backends.plantuml.views import Diagram, GraphView, Line, Node, Note
+from sysmlc.backends.plantuml.views import Diagram, GraphView, Line, Node
 from sysmlc.support.plantuml_text import escape_line
 
+_K = TypeVar("_K", bound=Hashable)
 MAX_BOXES = 40
 """The largest number of boxes in a diagram; pictures of real models with more were unreadable."""
 
 
 def partition(
-    items: Sequence[str],
-    neighbours: Mapping[str, Collection[str]],
+    items: Sequence[_K],
+    neighbours: Mapping[_K, Collection[_K]],
     limit: int = MAX_BOXES,
-    sizes: Mapping[str, int] | None = None,
-) -> list[list[str]]:
+    sizes: Mapping[_K, int] | None = None,
+) -> list[list[_K]]:
     """Divide *items* into parts so that each part and its neighbours have at most *limit* members.
 
     *sizes* states how many members an item stands for (1 by default). An item with too many
@@ -28,8 +30,8 @@ def partition(
     if items and sum(size.get(member, 1) for member in all_members) <= limit:
         return [list(dict.fromkeys(items))]
     index_of = {item: index for index, item in enumerate(items)}
-    parts: list[list[str]] = []
-    members: set[str] = set()
+    parts: list[list[_K]] = []
+    members: set[_K] = set()
     for item in _iter_connected(items, neighbours):
         # A neighbour in another part is drawn as a stub, which needs a place, too.
         grown = members | {item} | set(neighbours.get(item, ()))
@@ -41,9 +43,7 @@ def partition(
     return [sorted(part, key=index_of.__getitem__) for part in parts]
 
 
-def _iter_connected(
-    items: Sequence[str], neighbours: Mapping[str, Collection[str]]
-) -> Iterator[str]:
+def _iter_connected(items: Sequence[_K], neighbours: Mapping[_K, Collection[_K]]) -> Iterator[_K]:
     """Yield the items by connected component, each in breadth-first order from its first item."""
     unvisited = dict.fromkeys(items)
     for start in items:
@@ -81,16 +81,13 @@ def split_view(view: GraphView, limit: int = MAX_BOXES) -> list[GraphView]:
     nodes_by_alias = {node.alias: node for top in view.nodes for node in _iter_nodes(top)}
     groups = _iter_groups(view.nodes, view.lines, limit)
     parts = [_make_part(view, group, nodes_by_alias) for group in groups]
-    return [replace(parts[0], notes=_detach_notes(view.notes)), *parts[1:]]
+    # The nodes that a note refers to may be in other parts.
+    notes = tuple(replace(note, targets=()) for note in view.notes)
+    return [replace(parts[0], notes=notes), *parts[1:]]
 
 
 def _count_nodes(nodes: Sequence[Node]) -> int:
     return sum(1 + _count_nodes(node.children) for node in nodes)
-
-
-def _detach_notes(notes: tuple[Note, ...]) -> tuple[Note, ...]:
-    # The nodes that a note refers to may be in other parts.
-    return tuple(replace(note, targets=()) for note in notes)
 
 
 def _iter_groups(
@@ -98,7 +95,11 @@ def _iter_groups(
 ) -> Iterator[tuple[Node, ...]]:
     """Yield groups of nodes, in which large nodes have no content, then groups of that content."""
     large = [node for node in nodes if 1 + _count_nodes(node.children) > limit]
-    shown = [_close_node(node) if node in large else node for node in nodes]
+    opened = "⋯ opened in another part"
+    shown = [
+        replace(node, children=(), rows=(*node.rows, opened)) if node in large else node
+        for node in nodes
+    ]
     by_alias = {node.alias: node for node in shown}
     adjacency = _find_neighbours(shown, lines)
     sizes = {node.alias: 1 + _count_nodes(node.children) for node in shown}
@@ -107,10 +108,6 @@ def _iter_groups(
             yield tuple(by_alias[alias] for alias in part)
     for node in large:
         yield from _iter_groups(node.children, lines, limit)
-
-
-def _close_node(node: Node) -> Node:
-    return replace(node, children=(), rows=(*node.rows, "⋯ opened in another part"))
 
 
 def _find_neighbours(nodes: Sequence[Node], lines: Sequence[Line]) -> dict[str, list[str]]:
@@ -136,7 +133,8 @@ def _make_part(
         and not _is_hidden(line, inside, nodes_by_alias)
     ]
     ends = dict.fromkeys(end for line in lines for end in (line.source, line.target))
-    stubs = tuple(_make_stub(nodes_by_alias[end]) for end in ends if end not in inside)
+    outside = [nodes_by_alias[end] for end in ends if end not in inside]
+    stubs = (Node(node.alias, node.label or node.alias, "elsewhere", shows=()) for node in outside)
     return GraphView((*group, *stubs), tuple(lines))
 
 
@@ -157,7 +155,3 @@ def _iter_nodes(node: Node) -> Iterator[Node]:
     yield node
     for child in node.children:
         yield from _iter_nodes(child)
-
-
-def _make_stub(node: Node) -> Node:
-    return Node(node.alias, node.label or node.alias, "elsewhere", shows=())

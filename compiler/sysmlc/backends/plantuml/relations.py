@@ -152,17 +152,13 @@ def _iter_dependencies(graph: Graph) -> Iterator[Relation]:
         if item.role in REQUIREMENT_ROLES:
             continue
         arrow = "..|>" if item.subkind in ("realization", "interface-realization") else "..>"
-        word = "" if arrow == "..|>" else _format_dependency(graph, item)
+        keyword = _DEPENDENCY_WORDS.get(item.role) or _DEPENDENCY_WORDS.get(item.subkind, "")
+        words = labels.keywords(graph, item) or ([keyword] if keyword else [])
+        word = "" if arrow == "..|>" else labels.guillemets(words)
         for client in graph.targets(item, Edge.CLIENT):
             for supplier in graph.targets(item, Edge.SUPPLIER):
                 text = " ".join(part for part in (word, item.name) if part)
                 yield Relation(client.id, supplier.id, arrow, text, shows=(item.id,))
-
-
-def _format_dependency(graph: Graph, item: Element) -> str:
-    stereotypes = labels.keywords(graph, item)
-    word = _DEPENDENCY_WORDS.get(item.role) or _DEPENDENCY_WORDS.get(item.subkind, "")
-    return labels.guillemets(stereotypes or ([word] if word else []))
 
 
 def _iter_template_bindings(graph: Graph) -> Iterator[Relation]:

@@ -315,7 +315,9 @@ def _iter_occurrence(walk: Walk, item: Element) -> Iterator[Step]:
         yield from _iter_note_steps(walk, item)
     # Finish before start: a bar that ends where the next one starts is not nested in it.
     for execution in walk.graph.sources(item, Edge.FINISH):
-        yield from _iter_finish(walk, execution)
+        aliases = walk.list_lifelines(execution)
+        if aliases and not walk.is_new(execution):
+            yield Step("deactivate", source=aliases[0], shows=(execution.id,))
     for execution in walk.graph.sources(item, Edge.START):
         yield from _iter_start(walk, execution)
     if item.subkind == "destruction":
@@ -339,12 +341,6 @@ def _iter_start(walk: Walk, execution: Element) -> Iterator[Step]:
         behaviours = [labels.name(item) for item in walk.graph.targets(execution, Edge.CALLS)]
         yield Step("activate", source=aliases[0], shows=(execution.id,))
         yield from _iter_note_steps(walk, execution, *behaviours)
-
-
-def _iter_finish(walk: Walk, execution: Element) -> Iterator[Step]:
-    aliases = walk.list_lifelines(execution)
-    if aliases and not walk.is_new(execution):
-        yield Step("deactivate", source=aliases[0], shows=(execution.id,))
 
 
 # -- fragments ---------------------------------------------------------------------------------

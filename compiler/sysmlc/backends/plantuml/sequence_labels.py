@@ -72,7 +72,11 @@ def name_of_event(graph: Graph, event: Element) -> str:
 
 def index_times(graph: Graph, interaction: Element) -> dict[str, list[Element]]:
     """Return time constraints and observations, by the id of the last event to which they refer."""
-    constraints = [item for item in graph.owned(interaction) if _is_time(item)]
+    constraints = [
+        item
+        for item in graph.owned(interaction)
+        if item.kind is Kind.CONSTRAINT and item.subkind in _TIMES
+    ]
     inside = {item.id for item in graph.subtree(interaction)}
     times_by_event: dict[str, list[Element]] = {}
     for item in [*constraints, *graph.of_kind(Kind.OBSERVATION)]:
@@ -80,10 +84,6 @@ def index_times(graph: Graph, interaction: Element) -> dict[str, list[Element]]:
         if about and about[-1].id in inside:
             times_by_event.setdefault(about[-1].id, []).append(item)
     return times_by_event
-
-
-def _is_time(item: Element) -> bool:
-    return item.kind is Kind.CONSTRAINT and item.subkind in _TIMES
 
 
 def index_notes(graph: Graph, interaction: Element) -> dict[str, list[Element]]:

@@ -97,7 +97,10 @@ def _list_content(graph: Graph, owner: Element, aliases: Aliases) -> tuple[Node,
     points = [
         _make_vertex(graph, v, aliases) for v in graph.owned(owner) if v.kind is Kind.PSEUDOSTATE
     ]
-    vertices_by_region = [_make_vertices(graph, region, aliases) for region in regions]
+    vertices_by_region = [
+        tuple(_make_vertex(graph, v, aliases) for v in graph.owned(region) if v.kind in VERTICES)
+        for region in regions
+    ]
     if len(regions) < 2:
         return (*points, *(vertex for vertices in vertices_by_region for vertex in vertices))
     boxes = [
@@ -117,11 +120,6 @@ def _list_content(graph: Graph, owner: Element, aliases: Aliases) -> tuple[Node,
 
 def _list_regions(graph: Graph, owner: Element) -> list[Element]:
     return [item for item in graph.owned(owner) if item.kind is Kind.REGION]
-
-
-def _make_vertices(graph: Graph, region: Element, aliases: Aliases) -> tuple[Node, ...]:
-    elements = [item for item in graph.owned(region) if item.kind in VERTICES]
-    return tuple(_make_vertex(graph, item, aliases) for item in elements)
 
 
 def _make_vertex(graph: Graph, vertex: Element, aliases: Aliases) -> Node:
@@ -197,12 +195,11 @@ def _iter_transitions(graph: Graph, machine: Element, aliases: Aliases) -> Itera
     for item in graph.subtree(machine):
         if item.kind is not _TRANSITION or item.subkind == "internal":
             continue
-        source = graph.target(item, Edge.FLOW_SOURCE)
-        target = graph.target(item, Edge.FLOW_TARGET)
-        if source is not None and target is not None and {source.id, target.id} <= aliases.keys():
+        ends = graph.target(item, Edge.FLOW_SOURCE), graph.target(item, Edge.FLOW_TARGET)
+        source, target = (aliases[end.id] if end and end.id in aliases else "" for end in ends)
+        if source and target:
             text = format_label(_format_transition(graph, item))
-            shows = tuple(_list_label_ids(graph, item))
-            yield Line(aliases[source.id], "-->", aliases[target.id], text, shows=shows)
+            yield Line(source, "-->", target, text, shows=tuple(_list_label_ids(graph, item)))
 
 
 def _list_label_ids(graph: Graph, transition: Element) -> list[str]:

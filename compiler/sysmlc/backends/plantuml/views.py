@@ -6,7 +6,7 @@ the elements that a shape or line shows.
 
 import re
 from collections import Counter
-from collections.abc import Iterator, KeysView
+from collections.abc import Iterator
 from functools import lru_cache
 
 from msgspec import Struct
@@ -257,6 +257,10 @@ _NORMALIZED_NAMES = 1 << 12
 """Size of the cache of normalised names; the same names of states and actions occur often."""
 
 
+Key = str | tuple[str, ...]
+"""The id of an element, or the ids on the path to it."""
+
+
 class Aliases:
     """Assigns an alias to each key: words of its name and a number.
 
@@ -265,10 +269,10 @@ class Aliases:
     """
 
     def __init__(self) -> None:
-        self._alias_by_key: dict[str, str] = {}
+        self._alias_by_key: dict[Key, str] = {}
         self._uses_of_words: Counter[str] = Counter()
 
-    def make(self, key: str, name: str, fallback: str) -> str:
+    def make(self, key: Key, name: str, fallback: str) -> str:
         """Return the alias of *key*, made of *name*, or of *fallback* if *name* has no letters."""
         if key not in self._alias_by_key:
             words = _normalize(name) or _normalize(fallback) or "e"
@@ -279,12 +283,8 @@ class Aliases:
     def __contains__(self, key: object) -> bool:
         return key in self._alias_by_key
 
-    def __getitem__(self, key: str) -> str:
+    def __getitem__(self, key: Key) -> str:
         return self._alias_by_key[key]
-
-    def keys(self) -> KeysView[str]:
-        """Return the keys that have an alias."""
-        return self._alias_by_key.keys()
 
 
 @lru_cache(_NORMALIZED_NAMES)

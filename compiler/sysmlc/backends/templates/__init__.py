@@ -61,7 +61,7 @@ class Templates:
         try:
             process = self._start_process()
             if process is None:
-                return _render_shipped(self._backend, name, values)
+                return render(_shipped_environment(self._backend), name, values, MAX_CHARACTERS)
             return process.render(name, values)
         except (TemplateLimitError, UnusableFolderError) as error:
             self._error = error
@@ -77,10 +77,6 @@ class Templates:
             else:
                 self._folder = None
         return self._process
-
-
-def _render_shipped(backend: str, name: str, values: dict[str, object]) -> str:
-    return render(_shipped_environment(backend), name, values, MAX_CHARACTERS)
 
 
 @cache

@@ -182,22 +182,10 @@ def _find_for_classifier(owner: Element, element: Element) -> str:
     return "nestedClassifier" if is_namespace else ""
 
 
-def _find_for_import(_owner: Element, element: Element) -> str:
-    return _IMPORT_FEATURES.get(element.subkind, "packageImport")
-
-
-def _find_for_partition(owner: Element, _element: Element) -> str:
-    return "subpartition" if owner.kind is Kind.PARTITION else "group"
-
-
 def _find_for_pseudostate(owner: Element, element: Element) -> str:
     if element.subkind == "connection-point":
         return "connection"
     return "subvertex" if owner.kind is Kind.REGION else "connectionPoint"
-
-
-def _find_for_trigger(_owner: Element, element: Element) -> str:
-    return "deferrableTrigger" if element.attrs.get("deferred") else "trigger"
 
 
 def _find_for_gate(owner: Element, _element: Element) -> str:
@@ -230,11 +218,13 @@ def _find_for_node(owner: Element, element: Element) -> str:
 
 _FINDERS: dict[Kind, Callable[[Element, Element], str]] = {
     Kind.CONSTRAINT: _find_for_constraint,
-    Kind.IMPORT: _find_for_import,
+    Kind.IMPORT: lambda _, element: _IMPORT_FEATURES.get(element.subkind, "packageImport"),
     Kind.PIN: _find_for_pin,
-    Kind.PARTITION: _find_for_partition,
+    Kind.PARTITION: lambda owner, _: "subpartition" if owner.kind is Kind.PARTITION else "group",
     Kind.PSEUDOSTATE: _find_for_pseudostate,
-    Kind.TRIGGER: _find_for_trigger,
+    Kind.TRIGGER: lambda _, element: (
+        "deferrableTrigger" if element.attrs.get("deferred") else "trigger"
+    ),
     Kind.GATE: _find_for_gate,
     **dict.fromkeys(_NODES, _find_for_node),
 }

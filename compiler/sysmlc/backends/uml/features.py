@@ -228,10 +228,6 @@ def _find_referring(source: Element, target: Element) -> str:
     return ""
 
 
-def _find_grouping(_source: Element, target: Element) -> str:
-    return "inPartition" if target.kind is Kind.PARTITION else "inInterruptibleRegion"
-
-
 def _find_realizing(_source: Element, target: Element) -> str:
     names = {
         Kind.CONNECTOR: "realizingConnector",
@@ -246,7 +242,9 @@ _FINDERS = {
     Edge.REDEFINES: _find_redefining,
     Edge.CALLS: _find_calling,
     Edge.REFERENCES: _find_referring,
-    Edge.IN_PARTITION: _find_grouping,
+    Edge.IN_PARTITION: lambda _, target: (
+        "inPartition" if target.kind is Kind.PARTITION else "inInterruptibleRegion"
+    ),
     Edge.REALIZING: _find_realizing,
 }
 """Functions for edges whose feature depends on the target."""

@@ -143,20 +143,12 @@ def _add_relation(
     return relation
 
 
-def _write_generalizations(context: Context, element: Element, targets: _Targets) -> None:
-    for target in targets:
-        _add_relation(context, element, "generalization", "Generalization", "general", target)
+def _make_relation_writer(tag: str, metaclass: str, feature: str) -> _Writer:
+    def write_relations(context: Context, element: Element, targets: _Targets) -> None:
+        for target in targets:
+            _add_relation(context, element, tag, metaclass, feature, target)
 
-
-def _write_includes(context: Context, element: Element, targets: _Targets) -> None:
-    for target in targets:
-        _add_relation(context, element, "include", "Include", "addition", target)
-
-
-def _write_profile_applications(context: Context, element: Element, targets: _Targets) -> None:
-    tag, metaclass = "profileApplication", "ProfileApplication"
-    for target in targets:
-        _add_relation(context, element, tag, metaclass, "appliedProfile", target)
+    return write_relations
 
 
 def _write_realizations(context: Context, element: Element, targets: _Targets) -> None:
@@ -338,10 +330,12 @@ def _write_nothing(context: Context, element: Element, targets: _Targets) -> Non
 
 
 _WRITERS: dict[Edge, _Writer] = {
-    Edge.SPECIALIZES: _write_generalizations,
-    Edge.INCLUDES: _write_includes,
+    Edge.SPECIALIZES: _make_relation_writer("generalization", "Generalization", "general"),
+    Edge.INCLUDES: _make_relation_writer("include", "Include", "addition"),
     Edge.REALIZES: _write_realizations,
-    Edge.APPLIES: _write_profile_applications,
+    Edge.APPLIES: _make_relation_writer(
+        "profileApplication", "ProfileApplication", "appliedProfile"
+    ),
     Edge.CLASSIFIER_BEHAVIOR: _write_classifier_behavior,
     Edge.GUARD: _write_guard,
     Edge.ENTRY: _note_foreign_behaviours,

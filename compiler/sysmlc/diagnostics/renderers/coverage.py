@@ -42,7 +42,8 @@ def render_text(
     types = make_type_reports(files)
     blocks = [_format_headline(total)]
     if len(files) > 1:
-        blocks.append(_format_file_table(files, total, color))
+        rows = [_make_row(_shorten(file.file), file.totals) for file in sort_by_coverage(files)]
+        blocks.append(_format_table("file", [*rows, _make_row("total", total)], color))
     blocks.append(_format_type_table(types, total, color))
     for type_report in types:
         blocks += _iter_losses(type_report, color, with_all_losses)
@@ -62,11 +63,6 @@ def _format_percent(permille: int) -> str:
 
 
 # -- tables ------------------------------------------------------------------------------------
-
-
-def _format_file_table(files: Sequence[FileReport], total: Mapping[str, int], color: bool) -> str:
-    rows = [_make_row(_shorten(file.file), file.totals) for file in sort_by_coverage(files)]
-    return _format_table("file", [*rows, _make_row("total", total)], color)
 
 
 def _format_type_table(types: Sequence[TypeReport], total: Mapping[str, int], color: bool) -> str:

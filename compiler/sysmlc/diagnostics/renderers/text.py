@@ -30,7 +30,7 @@ def render_text(report: Report, *, color: bool = False) -> str:
     Folded findings share one line for each rule. The XPath of a finding is shown if it has one;
     callers drop XPaths for short output.
     """
-    paint = paint_text if color else _paint_nothing
+    paint = paint_text if color else lambda text, _: text
     blocks = ["\n".join(_format_block(finding, paint)) for finding in report.findings]
     if report.folded:
         blocks.append("\n".join(_format_folded(report.folded, paint)))
@@ -53,10 +53,6 @@ def _format_summary(report: Report) -> str:
 def paint_text(text: str, code: str) -> str:
     """Return *text* in the colour of an ANSI code; an empty text stays empty."""
     return f"\x1b[{code}m{text}\x1b[0m" if text else text
-
-
-def _paint_nothing(text: str, code: str) -> str:
-    return text
 
 
 def _format_count(number: int, noun: str) -> str:
