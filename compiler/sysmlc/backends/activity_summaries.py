@@ -54,7 +54,9 @@ class ActivitySummary:
         inputs = [v for v in game.inputs if v.name not in done and v.name not in game.pulses]
         events = [v for v in game.inputs if v.name not in done and v.name in game.pulses]
         stores = (*game.stores, *game.shared)
-        yield f"**Inputs.** {_list_variables('It reads', inputs)}{_list_events(events)}"
+        names = _join([_quote(event.name) for event in events])
+        waits = f" It waits for {names}." if names else ""
+        yield f"**Inputs.** {_list_variables('It reads', inputs)}{waits}"
         # A step may assign a feature without a finite range, which the contract leaves open.
         outputs = "The contract states no value that a step assigns."
         if stores:
@@ -340,11 +342,6 @@ def _list_variables(verb: str, listed: Sequence[Variable]) -> str:
         return f"{verb} no feature."
     names = [f"{_quote(v.name)} ({escape_markdown(describe(v.domain))})" for v in listed]
     return f"{verb} {_join(names)}."
-
-
-def _list_events(events: Sequence[Variable]) -> str:
-    names = _join([_quote(event.name) for event in events])
-    return f" It waits for {names}." if names else ""
 
 
 def _is_constant(write: Write) -> bool:

@@ -69,13 +69,6 @@ def store_refinements(overlays: Iterable[LoadedOverlay], graph: Graph) -> None:
         graph.store(Refinement, refinements)
 
 
-def _list_models(overlay: LoadedOverlay) -> list[str]:
-    """Return the files that the entries of an overlay name, each once, as written there."""
-    if overlay.refinement is None:
-        return []
-    return list_files(overlay.refinement)
-
-
 # -- models ------------------------------------------------------------------------------------
 
 
@@ -219,7 +212,7 @@ class _Reader:
         self._sources[real] = [overlay.source.name]
         if is_named:
             self._named.add(real)
-        for file in _list_models(overlay):
+        for file in list_files(overlay.refinement) if overlay.refinement is not None else ():
             target = self._roots.resolve(path, file)
             if target is not None:
                 self._add_reference(path, target)

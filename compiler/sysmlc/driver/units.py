@@ -50,7 +50,9 @@ def open_units(request: Request) -> list[OpenedUnit]:
     opened = open_unit(request)
     recognised = {item.source.name: item for item in opened.reading.recognised}
     bundles = _make_bundles(opened.reading.files, recognised, opened.root)
-    if len(bundles) < 2 or any(map(_applies_to_all, opened.reading.files)):
+    # An overlay of the command line that names no models applies to all.
+    overlays = [file for file in opened.reading.files if file.is_overlay and file.is_named]
+    if len(bundles) < 2 or not all(overlay.references for overlay in overlays):
         groups = [bundles]
     else:
         groups = _group(bundles, recognised)
@@ -60,11 +62,6 @@ def open_units(request: Request) -> list[OpenedUnit]:
     if len(groups) < 2:
         return [replace(opened, name=names[0])]
     return _split(request, opened, groups, names)
-
-
-def _applies_to_all(file: ReadFile) -> bool:
-    """Whether the file is an overlay of the command line that does not name its models."""
-    return file.is_overlay and file.is_named and not file.references
 
 
 def _make_bundles(

@@ -36,15 +36,10 @@ def place_classes(context: Context) -> None:
 
 def _is_in_library(context: Context, element: Element) -> bool:
     """Whether the element is in a file of the unit or in a standard library."""
-    return context.ids.is_from_caex(element) or (
-        not element.source and _is_library_content(context, element)
-    )
-
-
-def _is_library_content(context: Context, element: Element) -> bool:
-    return element.subkind not in LIBRARIES and any(
-        ancestor.subkind in LIBRARIES for ancestor in context.graph.ancestors(element)
-    )
+    if context.ids.is_from_caex(element):
+        return True
+    is_content = not element.source and element.subkind not in LIBRARIES
+    return is_content and any(a.subkind in LIBRARIES for a in context.graph.ancestors(element))
 
 
 def _place_library(context: Context, package: Element) -> None:

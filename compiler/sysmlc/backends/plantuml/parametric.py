@@ -152,7 +152,8 @@ def draw_parametric_diagrams(graph: Graph) -> Iterator[Diagram]:
     """Yield all parametric diagrams, in the order of the model."""
     bound = find_bindings(graph)
     for block in graph.of_kind(*OWNERS):
-        has_usages = any(_is_constraint(graph, member) for member in graph.owned(block))
+        owned_usages = (m for m in graph.owned(block) if m.role == "constraint property")
+        has_usages = any(type_of(graph, usage) is not None for usage in owned_usages)
         if (has_usages or block.id in bound) and not block.attrs.get("external"):
             yield from _draw_block(
                 graph, block, _list_usages(graph, block), bound.get(block.id, [])
@@ -169,14 +170,6 @@ def build_selected_view(
     )
     boxes.pop((), None)
     return _ParametricDrawing(graph, block, list(boxes), selected).build_view()
-
-
-def _is_constraint(graph: Graph, item: Element) -> bool:
-    return _is_usage(item) and type_of(graph, item) is not None
-
-
-def _is_usage(item: Element) -> bool:
-    return item.role == "constraint property"
 
 
 def _draw_block(
@@ -266,7 +259,7 @@ class _ParametricDrawing:
     def _make_box(self, path: _Ids) -> PartView:
         shown = self.graph[path[-1]]
         type_ = type_of(self.graph, shown)
-        is_usage = _is_usage(shown)
+        is_usage = shown.role == "constraint property"
         return PartView(
             self.aliases.make(path, shown.name, "property"),
             self._format_label(path, shown, type_ if is_usage else None),

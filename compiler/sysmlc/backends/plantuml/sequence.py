@@ -174,10 +174,12 @@ def _make_participant(graph: Graph, lifeline: Element, aliases: Aliases) -> Part
     if represented is not None and represented.owner == lifeline.owner:
         shows.append(represented.id)
     words = shrink(escape_line(labels.guillemets(labels.list_stereotypes(graph, lifeline))))
+    kinds = (item.kind for item in (represented, interactions.type_of(graph, lifeline)) if item)
+    is_actor = Kind.ACTOR in kinds
     return Participant(
         aliases.make(lifeline.id, _name_of_lifeline(graph, lifeline), "lifeline"),
         join_rows([words, format_label(_format_lifeline(graph, lifeline), _HEAD_WIDTH)]),
-        "actor" if _is_actor(graph, lifeline) else "participant",
+        "actor" if is_actor else "participant",
         tuple(shows),
     )
 
@@ -203,11 +205,6 @@ def _name_of_lifeline(graph: Graph, lifeline: Element) -> str:
         return lifeline.name.strip()
     has_name = represented.name.strip() or interactions.type_of(graph, lifeline) is not None
     return (represented.name if has_name else lifeline.name).strip()
-
-
-def _is_actor(graph: Graph, lifeline: Element) -> bool:
-    candidates = (interactions.participant(graph, lifeline), interactions.type_of(graph, lifeline))
-    return any(item is not None and item.kind is Kind.ACTOR for item in candidates)
 
 
 _ARROWS = {

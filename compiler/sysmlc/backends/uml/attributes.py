@@ -185,10 +185,6 @@ def _add_guard_constraint(context: Context, element: Element) -> None:
     add_expression(context, element, constraint, "specification", body, language)
 
 
-def _write_weight(context: Context, element: Element, _key: str, value: AttrValue) -> None:
-    add_literal(context, element, context.find_node(element), "weight", value)
-
-
 def _write_body(context: Context, element: Element, _key: str, value: AttrValue) -> None:
     attrs, node = element.attrs, context.find_node(element)
     body, language = format_value(value), format_value(attrs.get("language"))
@@ -255,16 +251,16 @@ def _write_arguments(context: Context, element: Element, _key: str, value: AttrV
         add_text(context, element, context.find_node(element), "argument", argument)
 
 
-def _make_loop_bound_writer(tag: str) -> _Writer:
-    def write_loop_bound(context: Context, element: Element, _key: str, value: AttrValue) -> None:
-        """Write a bound of a loop; the guard of the operand holds it (UML 2.5.1 clause 17.6)."""
+def _make_literal_writer(tag: str) -> _Writer:
+    def write_literal(context: Context, element: Element, _key: str, value: AttrValue) -> None:
+        """Write a number; the guard of an operand has its bounds (UML 2.5.1 clause 17.6)."""
         node = context.find_node(element)
         if element.kind is Kind.OPERAND:
             guard = next((child for child in node.children if child.tag == "guard"), None)
             node = guard or context.add_part(element, node, "guard", "InteractionConstraint")
         add_literal(context, element, node, tag, value)
 
-    return write_loop_bound
+    return write_literal
 
 
 # -- texts -------------------------------------------------------------------------------------
@@ -390,7 +386,7 @@ _WRITERS: dict[str, _Writer] = {
     "default": _write_default,
     "value": _write_any_value,
     "guard": _write_any_guard,
-    "weight": _write_weight,
+    "weight": _make_literal_writer("weight"),
     "body": _write_body,
     "join_spec": _make_text_writer("joinSpec"),
     "upper_bound": _make_text_writer("upperBound"),
@@ -398,8 +394,8 @@ _WRITERS: dict[str, _Writer] = {
     "selector": _make_text_writer("selector"),
     "return_value": _make_text_writer("returnValue"),
     "arguments": _write_arguments,
-    "min": _make_loop_bound_writer("minint"),
-    "max": _make_loop_bound_writer("maxint"),
+    "min": _make_literal_writer("minint"),
+    "max": _make_literal_writer("maxint"),
     "direction": _write_direction,
     "subkind": _write_subkind,
     "first_event": _write_first_event,
