@@ -110,6 +110,8 @@ SARIF = {
                                                         "properties": {
                                                             "startLine": {"minimum": 1},
                                                             "startColumn": {"minimum": 1},
+                                                            "endLine": {"minimum": 1},
+                                                            "endColumn": {"minimum": 1},
                                                         }
                                                     },
                                                 },

@@ -1,5 +1,6 @@
 """The Python API: its names, and the examples of docs/python-api.md with their outputs."""
 
+import json
 import re
 import subprocess
 import sys
@@ -94,6 +95,10 @@ def test_findings_of_texts_in_memory_have_locations():
     assert "unknown name 'Bolt'" in finding.diagnostic.message
     text = sysmlc.format_findings([finding], "concise")
     assert "error[SM205 unresolved-name]" in text
+    region = json.loads(sysmlc.format_findings([finding], "sarif"))["runs"][0]["results"][0][
+        "locations"
+    ][0]["physicalLocation"]["region"]
+    assert region == {"startLine": 2, "startColumn": 73, "endLine": 2, "endColumn": 77}
     imported = GATE.replace("part bolt : Bolt;", "part bolt : Parts::Bolt;")
     fixed = {"gate.sysml": imported, "parts.sysml": "package Parts { part def Bolt; }"}
     assert sysmlc.list_findings(sysmlc.compile_texts(fixed)) == []

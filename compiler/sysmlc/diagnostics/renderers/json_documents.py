@@ -144,5 +144,10 @@ def _describe_location(finding: Finding) -> dict[str, object]:
 def _describe_region(finding: Finding) -> dict[str, object]:
     if not finding.line or "!" in finding.file:
         return {}
-    column = {"startColumn": finding.column} if finding.column else {}
-    return {"region": {"startLine": finding.line, **column}}
+    region = {
+        "startLine": finding.line,
+        "startColumn": finding.column,
+        "endLine": finding.end_line,
+        "endColumn": finding.end_column,
+    }
+    return {"region": {name: number for name, number in region.items() if number}}
