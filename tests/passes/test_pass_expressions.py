@@ -1,7 +1,17 @@
 """The pass ``expressions``: texts of expressions and effects get their syntax trees."""
 
+import pytest
+
 from sysmlc.diagnostics import Sink
-from sysmlc.ir.expressions import EffectText, ExpressionText, ParsedText, list_names
+from sysmlc.ir.expressions import (
+    EffectText,
+    ExpressionText,
+    Member,
+    Name,
+    ParsedText,
+    list_names,
+    walk_tree,
+)
 from sysmlc.ir.text import parse_text, print_text
 from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
 from sysmlc.passes import pipeline
@@ -54,7 +64,7 @@ def test_a_tree_is_that_of_the_text_and_the_text_is_that_of_the_author():
     assert default == " 2 * limit"
     assert str(default).strip().tree == default.tree == parse_expression("2 * limit")
     assert effect.tree == parse_effect("self.level := 3; send Go to 'other tank'")
-    assert graph["c.f"].attrs["guard"] is graph["c.t"].attrs["condition"]
+    assert graph["c.f"].attrs["guard"].tree == graph["c.t"].attrs["condition"].tree
     assert print_text(graph) == print_text(parse_text(MODEL))
 
 
@@ -62,3 +72,83 @@ def test_the_names_of_a_text_are_those_of_its_tree_or_the_words_of_an_opaque_tex
     graph = run_pass()
     assert list_names(graph["c.e"].attrs["body"]) == ["level", "self", "Go", "other tank"]
     assert list_names(graph["c.j"].attrs["body"]) == ["if", "level", "stop"]
+
+
+NAMES = """\
+Package p "Plant"
+  Enumeration e "Mode"
+    EnumerationLiteral e.a "auto"
+  Class a "Arm"
+    Property a.l "load"
+  Signal g "Go"
+    Property g.n "amount"
+  Class m "Machine"
+    Property m.l "level"
+    Property m.m "mode"
+      -> typed-by e
+  Class t "Tank"
+    -> specializes m
+    Property t.a "arm" role="part"
+      -> typed-by a
+    Property t.b "load"
+    StateMachine t.s "run"
+      Region t.r
+        State t.x "waiting"
+        Transition t.t guard="{text}"
+          -> trigger t.g
+          Trigger t.g payload="order"
+            -> typed-by g
+    Activity t.d "fill"
+      Property t.p "load"
+      Action t.w "weigh"
+        Pin t.o "mass" direction="out"
+      ControlFlow t.f guard="{text}"
+  Class h "Hall"
+    Property h.t "tank"
+  Association n
+    -> end n.h n.t
+    Property n.h "hall"
+      -> typed-by h
+    Property n.t "basin"
+      -> typed-by t
+Package q "Other"
+  Enumeration s "Season"
+    EnumerationLiteral s.w "winter"
+  Class q.a "Arm"
+    Property q.l "load"
+    Property q.s "speed"
+"""
+
+
+def find_elements(text, user):
+    """Return the ids of the elements of the names in a guard, in the order of the text."""
+    graph = parse_text(NAMES.replace("{text}", text))
+    pipeline.load("inherit").run(graph, Sink())
+    pipeline.load("expressions").run(graph, Sink())
+    nodes = walk_tree(graph[user].attrs["guard"].tree)
+    return [node.element for node in nodes if isinstance(node, Name | Member)]
+
+
+@pytest.mark.parametrize(
+    ("text", "user", "elements"),
+    [
+        ("load > level", "t.t", ["t.b", "m.l"]),
+        ("load > level", "t.f", ["t.p", "m.l"]),
+        ("arm.load > 3", "t.t", ["a.l", "t.a"]),
+        ("arm.size > 3", "t.t", ["", "t.a"]),
+        ("self.level > 3", "t.t", ["m.l", ""]),
+        ("mode == Mode::auto", "t.t", ["m.m", "e.a"]),
+        ("mode == Mode.auto", "t.t", ["m.m", "e.a", "e"]),
+        ("mode == auto", "t.t", ["m.m", "e.a"]),
+        ("order.amount > 3", "t.t", ["g.n", "t.g"]),
+        ("amount > Go.amount", "t.t", ["g.n", "g.n", "g"]),
+        ("amount > 3", "t.f", [""]),
+        ("weigh.mass > 3", "t.f", ["t.o", "t.w"]),
+        ("hall.tank", "t.t", ["h.t", "n.h"]),
+        ("Other::Arm::load > Arm::load", "t.t", ["q.l", "a.l"]),
+        ("speed > 3 or winter", "t.t", ["", "s.w"]),
+        ("mode == Season::winter", "t.t", ["m.m", "s.w"]),
+    ],
+)
+def test_a_name_carries_the_element_that_it_denotes(text, user, elements):
+    assert find_elements(text, user) == elements

@@ -43,7 +43,7 @@ class Literal:
 class Name:
     """A name with the namespaces that qualify it, outermost first (``A::B``).
 
-    ``element`` is the id of the element to which a front end has resolved the name, or empty.
+    ``element`` is the id of the element that the name denotes, or empty.
     """
 
     path: tuple[str, ...]
@@ -52,10 +52,11 @@ class Name:
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """A feature of the object that the base denotes (``a.b``)."""
+    """A feature of the object that the base denotes (``a.b``); ``element`` is that of a name."""
 
     base: "Expression"
     name: str
+    element: str = field(default="", compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -256,6 +257,11 @@ def name_of(expression: Expression | Statement) -> str | None:
         return name
     head, _, rest = name.partition(".")
     return rest if head in ("self", "this") else name
+
+
+def element_of(expression: Expression | Statement) -> str:
+    """Return the id of the element that a name or a chain of features denotes, or empty."""
+    return expression.element if isinstance(expression, Name | Member) else ""
 
 
 def last_name(path: str) -> str:

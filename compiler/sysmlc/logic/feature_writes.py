@@ -6,6 +6,7 @@ to a feature (SysML 2.0, 7.16: ``out x = level``).
 """
 
 import re
+from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from functools import cached_property
 
@@ -15,28 +16,32 @@ from sysmlc.diagnostics import Severity, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.ir.expressions import (
     Assignment,
+    EffectText,
     Expression,
     ExpressionError,
+    Name,
+    element_of,
     last_name,
     list_names,
     name_of,
     print_expression,
 )
-from sysmlc.logic.expressions.named_elements import VALUE_KINDS, find_named_values
-from sysmlc.logic.expressions.parsing import statements_of, tree_of
+from sysmlc.logic.expressions.named_elements import VALUE_KINDS
+from sysmlc.logic.expressions.parsing import tree_of
 
-_FOREIGN_ASSIGNMENT = re.compile(r"(?<![=<>!:])=(?!=)|\+\+|--")
-"""A sign of an assignment in a programming language; KerML and UML write ``:=``."""
-_PATH_SEPARATOR = re.compile(r"::|\.")
-_NAMED = (*VALUE_KINDS, *query.CLASSIFIERS, Kind.PACKAGE)
-"""Kinds that a path of names may lead through."""
+_OPAQUE = re.compile(r"(?<![=<>!])=(?!=)|\+\+|--")
+"""A sign of an assignment in a language that the compiler does not read."""
 
 
 class FeatureWrite(Struct, frozen=True):
-    """A write of a feature by an action; ``value`` is None if the model does not give the value."""
+    """A write of a feature by an action; ``value`` is None if the model does not give the value.
+
+    ``target`` is None if the name of the feature denotes no value.
+    """
 
     action: Element
     name: str
+    target: Element | None
     value: Expression | None
     is_bound: bool = False
     """Whether an output of what the action calls is bound to the feature, so that the environment
@@ -55,69 +60,56 @@ class FeatureWrite(Struct, frozen=True):
 def iter_writes(graph: Graph, action: Element) -> Iterator[FeatureWrite]:
     """Yield the writes of an action in the order of execution."""
     if action.subkind == "write":
-        yield from _read_write_action(graph, action)
-    yield from _iter_assignments(action)
-    for name in _iter_bound_names(graph, action):
-        yield FeatureWrite(action, name, None, is_bound=True)
-
-
-def _iter_written_names(graph: Graph, action: Element) -> Iterator[str]:
-    """Yield the paths of the features that an action assigns or binds.
-
-    Write actions, which refer to their feature by an edge, are not considered.
-    """
-    yield from (write.name for write in _iter_assignments(action))
-    yield from _iter_bound_names(graph, action)
-
-
-def _iter_bound_names(graph: Graph, action: Element) -> Iterator[str]:
-    """Yield the names of features to which outputs of what the action calls are bound."""
-    if action.kind is not Kind.ACTION:
-        return
-    for pin in graph.owned(action):
+        feature = graph.target(action, Edge.CALLS)
+        if feature is not None:
+            value = _read_written_value(graph, action)
+            yield FeatureWrite(action, feature.name, feature, value)
+    for assignment in _list_assignments(action) if action.subkind in ("opaque", "function") else ():
+        name = name_of(assignment.target)
+        if name:
+            target = _find_value(graph, assignment.target)
+            yield FeatureWrite(action, name, target, assignment.value)
+    for pin in graph.owned(action) if action.kind is Kind.ACTION else ():
         if pin.attrs.get("direction") in ("out", "inout", "return"):
-            name = find_bound_name(graph, action, pin)
-            if name:
-                yield name
+            path = find_bound_path(graph, action, pin)
+            name = None if path is None else name_of(path)
+            if path is not None and name:
+                yield FeatureWrite(action, name, _find_value(graph, path), None, is_bound=True)
 
 
-def find_bound_name(graph: Graph, action: Element, pin: Element) -> str | None:
+def _find_value(graph: Graph, path: Expression) -> Element | None:
+    """Return the feature that a path (``full``, ``arm.load``, ``Plant::total``) denotes."""
+    element = graph.get(element_of(path))
+    return element if element is not None and element.kind in VALUE_KINDS else None
+
+
+def find_bound_path(graph: Graph, action: Element, pin: Element) -> Expression | None:
     """Return the path of the feature that an output pin of an action sets, or None.
 
     A pin without a value sets the attribute of its activity that has its name, as in recipes.
     """
     text = pin.attrs.get("value")
     if isinstance(text, str):
-        return _parse_name(text)
+        try:
+            return tree_of(text)
+        except ExpressionError:
+            return None
     activity = next((item for item in graph.ancestors(action) if item.kind is Kind.ACTIVITY), None)
     attributes = () if activity is None else graph.owned(activity)
-    is_own = any(item.kind is Kind.PROPERTY and item.name == pin.name for item in attributes)
-    return pin.name if is_own and pin.name else None
+    same_name = (a for a in attributes if a.kind is Kind.PROPERTY and a.name == pin.name != "")
+    return next((Name((attribute.name,), attribute.id) for attribute in same_name), None)
 
 
-def _parse_name(text: str) -> str | None:
-    """Return the path of names in a text; None if the text is another expression."""
-    try:
-        return name_of(tree_of(text))
-    except ExpressionError:
-        return None
+def find_bound_name(graph: Graph, action: Element, pin: Element) -> str | None:
+    """Return ``find_bound_path`` as text; None for an expression that is no path."""
+    path = find_bound_path(graph, action, pin)
+    return None if path is None else name_of(path)
 
 
-def _iter_assignments(action: Element) -> Iterator[FeatureWrite]:
-    """Yield the assignments in the body of an opaque action or function behaviour."""
+def _list_assignments(action: Element) -> tuple[Assignment, ...]:
     body = action.attrs.get("body")
-    if action.subkind not in ("opaque", "function"):
-        return
-    if not isinstance(body, str) or ":=" not in body:
-        return
-    try:
-        statements = statements_of(body)
-    except ExpressionError:
-        return
-    for statement in statements:
-        name = name_of(statement.target) if isinstance(statement, Assignment) else None
-        if name and isinstance(statement, Assignment):
-            yield FeatureWrite(action, name.removeprefix("self."), statement.value)
+    statements = body.tree if isinstance(body, EffectText) else ()
+    return tuple(item for item in statements if isinstance(item, Assignment))
 
 
 def takes_one_step(action: Element) -> bool:
@@ -127,22 +119,9 @@ def takes_one_step(action: Element) -> bool:
 
 def read_assignments(action: Element) -> tuple[Assignment, ...]:
     """Return the assignments in the body of an action; none if the body has other statements."""
-    body = action.attrs.get("body")
-    if not isinstance(body, str) or ":=" not in body:
-        return ()
-    try:
-        statements = statements_of(body)
-    except ExpressionError:
-        return ()
-    assignments = tuple(item for item in statements if isinstance(item, Assignment))
-    return assignments if len(assignments) == len(statements) else ()
-
-
-def _read_write_action(graph: Graph, action: Element) -> Iterator[FeatureWrite]:
-    """Yield the write of an Add Structural Feature Value action."""
-    feature = graph.target(action, Edge.CALLS)
-    if feature is not None:
-        yield FeatureWrite(action, feature.name, _read_written_value(graph, action))
+    body, assignments = action.attrs.get("body"), _list_assignments(action)
+    is_plain = isinstance(body, EffectText) and len(assignments) == len(body.tree)
+    return assignments if is_plain else ()
 
 
 def _read_written_value(graph: Graph, action: Element) -> Expression | None:
@@ -195,10 +174,6 @@ class WriterIndex:
 
     def __init__(self, graph: Graph) -> None:
         self._graph = graph
-        self._candidates_by_name: dict[str, list[Element]] | None = None
-        self._members_by_scope: dict[str, dict[str, Element]] = {}
-        self._writers_by_name: dict[str, dict[str, list[Element]]] = {}
-        self._unclear_by_name: dict[str, list[Element]] | None = None
 
     def find_other_writer(self, feature: Element, behaviour: Element) -> Element | None:
         """Return the first writer of the feature that is outside the behaviour."""
@@ -206,17 +181,6 @@ class WriterIndex:
             if writer is not behaviour and behaviour not in self._graph.ancestors(writer):
                 return writer
         return None
-
-    def resolve_target(self, writer: Element, path: str) -> Element | None:
-        """Return the feature that a path (``full``, ``arm.load``, ``Plant::total``) denotes.
-
-        The first name is looked up in the scopes around the writer, nearest first.
-        """
-        first, *rest = _PATH_SEPARATOR.split(path)
-        element = self._find_visible(writer, first)
-        for name in rest:
-            element = None if element is None else self._find_member_of_value(element, name)
-        return element if element is not None and element.kind in VALUE_KINDS else None
 
     def iter_writers(self, feature: Element) -> Iterator[Element]:
         """Yield the actions and effects that write the feature or one that it redefines."""
@@ -227,7 +191,7 @@ class WriterIndex:
             *self._list_redefining(feature),
         )
         for slot in redefinitions:
-            yield from self._index_writers(slot.name).get(slot.id, ())
+            yield from self._writers.get(slot.id, ())
 
     def iter_unclear_writers(self, feature: Element) -> Iterator[Element]:
         """Yield the actions and effects of which it is not known whether they write the feature.
@@ -235,59 +199,43 @@ class WriterIndex:
         Their text names it beside an assignment that is not understood (``this.level++``), or they
         clear the feature or remove a value.
         """
-        if self._unclear_by_name is None:
-            self._unclear_by_name = {}
-            for writer in (*self._graph.of_kind(Kind.ACTION), *self._graph.of_kind(Kind.ACTIVITY)):
-                for name in dict.fromkeys(self._iter_unclear_names(writer)):
-                    self._unclear_by_name.setdefault(name, []).append(writer)
         redefined = query.redefined_features(self._graph, feature)
         for name in dict.fromkeys(slot.name for slot in (feature, *redefined)):
-            yield from self._unclear_by_name.get(name, ())
+            yield from self._unclear_writers.get(name, ())
+
+    def _list_candidates(self) -> tuple[Element, ...]:
+        return (*self._graph.of_kind(Kind.ACTION), *self._graph.of_kind(Kind.ACTIVITY))
+
+    @cached_property
+    def _writers(self) -> dict[str, list[Element]]:
+        """The writers of each feature by its id."""
+        writers = defaultdict(list)
+        for writer in self._list_candidates():
+            targets = self._graph.targets(writer, Edge.CALLS) if writer.subkind == "write" else []
+            targets += [write.target for write in iter_writes(self._graph, writer) if write.target]
+            for target in dict.fromkeys(targets):
+                writers[target.id].append(writer)
+        return writers
+
+    @cached_property
+    def _unclear_writers(self) -> dict[str, list[Element]]:
+        """The writers by the names that they may write."""
+        writers = defaultdict(list)
+        for writer in self._list_candidates():
+            for name in dict.fromkeys(self._iter_unclear_names(writer)):
+                writers[name].append(writer)
+        return writers
 
     def _iter_unclear_names(self, writer: Element) -> Iterator[str]:
         if writer.subkind in ("clear", "remove"):
             yield from (feature.name for feature in self._graph.targets(writer, Edge.CALLS))
         body = writer.attrs.get("body")
-        if not isinstance(body, str):
-            return
-        if _FOREIGN_ASSIGNMENT.search(body):
+        if isinstance(body, str) and not isinstance(body, EffectText) and _OPAQUE.search(body):
             yield from list_names(body)
-        elif ":=" in body:
-            try:
-                statements = statements_of(body)
-            except ExpressionError:
-                yield from list_names(body)
-                return
-            for statement in statements:
-                path = name_of(statement.target) if isinstance(statement, Assignment) else None
-                if path and self.resolve_target(writer, path.removeprefix("self.")) is None:
-                    yield last_name(path)
-
-    def _index_writers(self, name: str) -> dict[str, list[Element]]:
-        """Return the writers of all features of a name, by the id of the feature."""
-        # In a large model many blocks have a feature of this name: each path is resolved once.
-        if name not in self._writers_by_name:
-            writers: dict[str, list[Element]] = {}
-            for writer in self._list_candidates(name):
-                features = self._iter_written_features(writer, name)
-                for feature_id in dict.fromkeys(feature.id for feature in features if feature):
-                    writers.setdefault(feature_id, []).append(writer)
-            self._writers_by_name[name] = writers
-        return self._writers_by_name[name]
-
-    def _list_candidates(self, name: str) -> list[Element]:
-        """Return the actions that may write a feature of the name."""
-        if self._candidates_by_name is None:
-            self._candidates_by_name = _index_candidates(self._graph)
-        return self._candidates_by_name.get(name, [])
-
-    def _iter_written_features(self, writer: Element, name: str) -> Iterator[Element | None]:
-        """Yield the features that the action writes, of those whose path ends with *name*."""
-        if writer.subkind == "write":
-            yield from self._graph.targets(writer, Edge.CALLS)
-        for path in _iter_written_names(self._graph, writer):
-            if last_name(path) == name:
-                yield self.resolve_target(writer, path)
+        for assignment in _list_assignments(writer):
+            path = name_of(assignment.target)
+            if path and _find_value(self._graph, assignment.target) is None:
+                yield last_name(path)
 
     def _list_redefining(self, feature: Element) -> Iterable[Element]:
         """Return the features that redefine the feature, directly or transitively."""
@@ -299,41 +247,6 @@ class WriterIndex:
             visited.update((element.id, element) for element in new)
             worklist += new
         return worklist[1:]
-
-    def _find_visible(self, writer: Element, name: str) -> Element | None:
-        """Return the member called *name* in the nearest scope around the writer, else a root."""
-        for scope in (writer, *self._graph.ancestors(writer)):
-            member = self._find_member(scope, name)
-            if member is not None:
-                return member
-        return next((root for root in self._graph.roots() if root.name == name), None)
-
-    def _find_member_of_value(self, element: Element, name: str) -> Element | None:
-        """Return the member of that name of an element, or else of its type."""
-        type_ = query.type_of(self._graph, element)
-        return self._find_member(element, name) or (type_ and self._find_member(type_, name))
-
-    def _find_member(self, scope: Element, name: str) -> Element | None:
-        """Return the member of a scope, inherited ones of a classifier included."""
-        members = self._members_by_scope.get(scope.id)
-        if members is None:
-            owned = (element for element in self._graph.owned(scope) if element.kind in _NAMED)
-            members = {element.name: element for element in owned if element.name}
-            if scope.kind in query.CLASSIFIERS:
-                members |= find_named_values(self._graph, scope)
-            self._members_by_scope[scope.id] = members
-        return members.get(name)
-
-
-def _index_candidates(graph: Graph) -> dict[str, list[Element]]:
-    """Return the actions and activities that may write a feature, by the last name of its path."""
-    candidates: dict[str, list[Element]] = {}
-    for action in (*graph.of_kind(Kind.ACTION), *graph.of_kind(Kind.ACTIVITY)):
-        written = graph.targets(action, Edge.CALLS) if action.subkind == "write" else ()
-        paths = _iter_written_names(graph, action)
-        for name in dict.fromkeys((*(feature.name for feature in written), *map(last_name, paths))):
-            candidates.setdefault(name, []).append(action)
-    return candidates
 
 
 def find_label(graph: Graph, writer: Element, other: str = "") -> str:
@@ -358,7 +271,7 @@ SHARED = rule(
 )
 
 
-class Sharing(Struct, frozen=True, dict=True):
+class Sharing(Struct, frozen=True):
     """Finds further writers of the features that a state machine writes."""
 
     graph: Graph
@@ -367,11 +280,6 @@ class Sharing(Struct, frozen=True, dict=True):
     """The writers of each feature; None if only the machine itself is considered."""
     classifier: Element | None = None
     """The classifier in which names are resolved; None if no classifier is around the machine."""
-
-    @cached_property
-    def index(self) -> WriterIndex:
-        """The index in which names are looked up: that of the writers, if there is one."""
-        return self.writers or WriterIndex(self.graph)
 
     def find_other_writer(self, feature: Element) -> Element | None:
         """Return a behaviour that writes *feature* and is no part of the steps of the machine.

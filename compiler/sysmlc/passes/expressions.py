@@ -1,7 +1,9 @@
-"""Pass ``expressions``: parses the texts of expressions and effects, each text once.
+"""Pass ``expressions``: parses the texts of expressions and effects, and resolves their names.
 
 Texts of UML, of AutomationML and of overlays are parsed here. The front end of SysML v2 has already
-attached the trees. A text in a language that sysmlc does not read stays without a tree.
+attached the trees with resolved names; only names of elements that it made of a part of the text,
+such as the payload of a trigger, are left. A text in a language that sysmlc does not read stays
+without a tree.
 """
 
 from collections.abc import Callable, Iterator
@@ -14,6 +16,7 @@ from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, Kind
 from sysmlc.ir.expressions import ParsedText
 from sysmlc.logic.expressions.parsing import attach_statements, attach_tree
+from sysmlc.logic.expressions.resolution import NameResolver
 
 _CONDITIONS = ("guard", "condition")
 _VALUES = ("default", "value")
@@ -21,20 +24,25 @@ _VALUES = ("default", "value")
 
 
 class Expressions(Struct, frozen=True):
-    """Attach syntax trees to the texts of expressions and effects."""
+    """Attach syntax trees with resolved names to the texts of expressions and effects."""
 
     name: ClassVar[str] = "expressions"
     after: ClassVar[tuple[str, ...]] = ("kept", "overlay", "guards", "behaviours")
 
     def run(self, graph: Graph, _sink: Sink) -> None:
-        """Attach a tree to each text that has none and is an expression or an effect."""
-        # Models repeat guards, and equal texts share their tree.
+        """Attach a tree to each text that is an expression or an effect, and resolve its names."""
+        # Models repeat guards.
         attach_to_expression, attach_to_effect = cache(attach_tree), cache(attach_statements)
+        resolver = NameResolver(graph)
         for element in graph:
             for key in _list_expressions(element):
                 _attach(graph, element, key, attach_to_expression)
             if element.kind in (Kind.ACTIVITY, Kind.ACTION):
                 _attach(graph, element, "body", attach_to_effect)
+            for key, text in element.attrs.items():
+                if isinstance(text, ParsedText):
+                    tree = resolver.resolve(element, text.tree)
+                    graph.set(element, **{key: type(text)(text, tree)})
 
 
 def _list_expressions(element: Element) -> Iterator[str]:

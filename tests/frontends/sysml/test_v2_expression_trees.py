@@ -2,7 +2,14 @@
 
 from reading_v2 import read
 
-from sysmlc.ir.expressions import EffectText, ExpressionText, Name, ParsedText, walk_tree
+from sysmlc.ir.expressions import (
+    EffectText,
+    ExpressionText,
+    Name,
+    ParsedText,
+    element_of,
+    walk_tree,
+)
 from sysmlc.logic.expressions.parsing import parse_effect, parse_expression
 
 MODEL = """
@@ -55,6 +62,24 @@ def test_names_carry_the_elements_that_they_denote_also_later_ones():
         (("Mode", "hand"), "Plant::Mode::hand"),
         (("Go",), "Plant::Go"),
     }
+
+
+def test_each_step_of_a_chain_carries_the_element_that_it_denotes():
+    graph = read(
+        """
+        package Plant {
+            part def Cell { attribute full : ScalarValues::Boolean; }
+            part def Line {
+                part cell : Cell;
+                action clear { assign cell.full := not cell.full; }
+            }
+        }
+        """
+    ).graph
+    (effect,) = (v for e in graph for v in e.attrs.values() if isinstance(v, EffectText))
+    ids = filter(None, map(element_of, walk_tree(effect.tree)))
+    full, cell = "Plant::Cell::full", "Plant::Line::cell"
+    assert [graph.qualified_name(graph[id]) for id in ids] == [full, cell, full, cell]
 
 
 def test_an_expression_that_is_nested_too_deeply_has_no_tree():

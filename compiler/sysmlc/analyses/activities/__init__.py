@@ -106,11 +106,11 @@ class Activities(Struct, frozen=True):
         inputs = Inputs(graph, scope, sink)
         tokens = activity_tokens.build(graph, drawing, inputs, context.raising, sink)
         actions, writers = _list_played_actions(drawing, tokens), context.writers
-        written = read_assignments(graph, actions, scope, writers)
+        written = read_assignments(graph, actions, scope)
         tokens, unfollowed = track_stores(graph, activity, written, tokens, scope, writers)
         tokens = activity_checks.check_tokens(graph, tokens, self.max_markings, sink)
         report_untracked(graph, activity, unfollowed, sink)
-        report_unknown_targets(graph, activity, written, writers, sink)
+        report_unknown_targets(graph, activity, written, sink)
         report_unassignable(graph, written, scope, sink)
         report_saturation(graph, tokens, sink)
         if len(tokens.edges) > self.collapse_over:

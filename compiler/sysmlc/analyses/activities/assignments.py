@@ -18,7 +18,7 @@ from sysmlc.logic.expressions.context import describe_missing_range
 from sysmlc.logic.expressions.elaboration import ElaborationError, Fault
 from sysmlc.logic.expressions.features import Feature, check_assignable
 from sysmlc.logic.expressions.named_elements import find_named_values
-from sysmlc.logic.feature_writes import FeatureWrite, WriterIndex, find_label, iter_writes
+from sysmlc.logic.feature_writes import FeatureWrite, find_label, iter_writes
 from sysmlc.logic.machines.actions import (
     IS_CONSTANT,
     NOT_ASSIGNABLE,
@@ -36,13 +36,13 @@ class ResolvedAssignment(Struct, frozen=True):
 
 
 def read_assignments(
-    graph: Graph, actions: Iterable[Element], scope: Scope, writers: WriterIndex
+    graph: Graph, actions: Iterable[Element], scope: Scope
 ) -> list[list[ResolvedAssignment]]:
     """Return one list for each action with assignments, in the order of their execution."""
     assignments = (iter_writes(graph, action) for action in actions)
     resolved = (
         [
-            ResolvedAssignment(action, _resolve_target(action, scope, writers))
+            ResolvedAssignment(action, _resolve_target(action, scope))
             for action in assigned_by_action
         ]
         for assigned_by_action in assignments
@@ -50,7 +50,7 @@ def read_assignments(
     return [row for row in resolved if row]
 
 
-def _resolve_target(assignment: FeatureWrite, scope: Scope, writers: WriterIndex) -> Feature | None:
+def _resolve_target(assignment: FeatureWrite, scope: Scope) -> Feature | None:
     """Return the feature that an assignment sets, or None if the activity does not know it.
 
     The activity may know the feature under another name, such as ``busy`` for ``robot.busy``. But
@@ -61,7 +61,7 @@ def _resolve_target(assignment: FeatureWrite, scope: Scope, writers: WriterIndex
     head, dot, _ = assignment.name.partition(".")
     leads_away = bool(dot) and scope.find_feature(head) is not None
     if feature is None and not leads_away:
-        target = writers.resolve_target(assignment.action, assignment.name)
+        target = assignment.target
         same_feature = None if target is None else scope.find_feature(target.name)
         feature = (
             same_feature if same_feature is not None and same_feature.element is target else None
@@ -139,7 +139,6 @@ def report_unknown_targets(
     graph: Graph,
     activity: Element,
     written: Iterable[list[ResolvedAssignment]],
-    writers: WriterIndex,
     sink: Sink,
 ) -> None:
     """Report assigned names that are unknown (SM545) or belong to another object (SM544)."""
@@ -150,7 +149,7 @@ def report_unknown_targets(
     for assignment in unresolved:
         if assignment.is_bound or assignment.action.subkind == "write":
             continue
-        target = writers.resolve_target(assignment.action, assignment.name)
+        target = assignment.target
         if target is not None:
             if activity in graph.ancestors(target):
                 continue

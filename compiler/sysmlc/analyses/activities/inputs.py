@@ -4,6 +4,7 @@ Names and conditions are read with the common expression grammar.
 """
 
 from collections.abc import Iterable, Mapping
+from functools import partial
 
 from msgspec.structs import replace
 
@@ -26,7 +27,7 @@ from sysmlc.logic.contract import (
     Owner,
     Variable,
 )
-from sysmlc.logic.expressions.context import context_of, find_literal, make_symbol, report_range
+from sysmlc.logic.expressions.context import context_of, find_symbol, report_range
 from sysmlc.logic.expressions.elaboration import (
     ELSEWHERE_ADVICE,
     EMPTY_ADVICE,
@@ -161,7 +162,7 @@ class Scope:
         except ElaborationError as error:
             if error.fault is Fault.UNKNOWN:
                 activity = self._activity
-                owner = describe_feature_elsewhere(self._graph, activity, activity, error.name)
+                owner = describe_feature_elsewhere(self._graph, error.element, error.name)
                 element = f"'{activity.name}'" if activity.name else "the activity"
                 message = owner or f"'{error.name}' is no feature of {element} or its owner"
                 advice = ELSEWHERE_ADVICE if owner else ""
@@ -177,23 +178,23 @@ class Scope:
         """Whether the text is a condition if the name *unknown* is a Boolean."""
         trial = {**self._declared, unknown: var(unknown)}
         try:
-            elaborate_condition(tree_of(text), lambda name: self._find_symbol(name, trial))
+            elaborate_condition(tree_of(text), partial(self._find_symbol, extra=trial))
         except ElaborationError as error:
             # Another unknown name is replaced in the next round of `Inputs.read_condition`.
             return error.fault is Fault.UNKNOWN and error.name != unknown
         return True
 
-    def _find_symbol(self, name: str, extra: dict[str, Formula] | None = None) -> Symbol | None:
+    def _find_symbol(
+        self, name: str, element: str, extra: dict[str, Formula] | None = None
+    ) -> Symbol | None:
         declared = self._declared if extra is None else extra
         if name in declared:
             return Symbol(declared[name], BooleanDomain())
-        feature = self._feature(name)
-        if feature is not None:
-            return make_symbol(feature)
-        return find_literal(self._inner, name)
+        is_outer = name in self._outer.variables and name not in self._inner.variables
+        return find_symbol(self._outer if is_outer else self._inner, name, element)
 
-    def _find_unbounded(self, name: str) -> Symbol | None:
-        symbol = self._find_symbol(name)
+    def _find_unbounded(self, name: str, element: str) -> Symbol | None:
+        symbol = self._find_symbol(name, element)
         is_number = symbol is not None and isinstance(symbol.domain, IntegerDomain)
         return replace(symbol, domain=_ALL_NUMBERS) if symbol and is_number else symbol
 

@@ -121,19 +121,6 @@ class Context(Struct, frozen=True, dict=True):
                 elements.setdefault(self.level(element), []).append(element)
         return elements
 
-    def find_literal(self, name: str) -> Element | None:
-        """Return the literal ``Enumeration::literal``, or None if several have this name."""
-        return self.graph.get(self._literal_ids.get(_last_two(name)))
-
-    @cached_property
-    def _literal_ids(self) -> dict[str, str]:
-        """Ids of enumeration literals by the last two parts of their names; "" for several."""
-        ids: dict[str, str] = {}
-        for literal in self.graph.of_kind(Kind.ENUMERATION_LITERAL):
-            name = _last_two(self.graph.qualified_name(literal))
-            ids[name] = "" if name in ids else literal.id
-        return ids
-
     def _find_level(self, element: Element) -> str:
         level = self.own_level(element)
         if level:
@@ -230,10 +217,6 @@ class Context(Struct, frozen=True, dict=True):
             siblings = self.graph.roots() if owner is None else self.graph.owned(owner)
             self._segments.update(_number_siblings(siblings))
         return self._segments[element.id]
-
-
-def _last_two(name: str) -> str:
-    return "::".join(name.split("::")[-2:])
 
 
 def _number_siblings(siblings: list[Element]) -> Iterator[tuple[str, str]]:

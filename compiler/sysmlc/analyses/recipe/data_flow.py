@@ -1,6 +1,5 @@
 """Data flow of an activity: the variables that pins assign and that expressions read."""
 
-import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from functools import cached_property
@@ -19,14 +18,20 @@ from sysmlc.analyses.recipe.expressions import (
 )
 from sysmlc.analyses.recipe.profile import convert_value
 from sysmlc.ir import Edge, Element, Kind, query
-from sysmlc.ir.expressions import Expression, Literal
+from sysmlc.ir.expressions import (
+    Expression,
+    Literal,
+    Member,
+    Name,
+    ParsedText,
+    dotted_name,
+    walk_tree,
+)
 from sysmlc.ir.query.classifiers import name_value_unit
 from sysmlc.logic.feature_writes import find_bound_name
 from sysmlc.recipe.expression import make_opaque, make_variable, map_operands, variable_name
 from sysmlc.recipe.model import Parameter, Scalar
 
-_DOTTED = re.compile(r"[^\W\d]\w*\.[^\W\d]\w*")
-"""A name ``action.pin`` or ``parameter.feature`` in an expression."""
 _OUT = ("out", "inout")
 
 
@@ -85,9 +90,7 @@ class DataFlow(Struct, frozen=True, dict=True):
 
     def read(self, text: str) -> Expression:
         """Return the expression of a text, with ``rename_variables`` applied."""
-        return self.rename_variables(
-            resolve_literals(self.context, self.activity, read_expression(text))
-        )
+        return self.rename_variables(resolve_literals(self.context, read_expression(text)))
 
     def rename_variables(self, expression: Expression) -> Expression:
         """Replace names of output pins, and of attributes bound to them, by their variables."""
@@ -134,8 +137,7 @@ class DataFlow(Struct, frozen=True, dict=True):
 
         A largest size None is unlimited. Without a multiplicity nothing is known of the smallest.
         """
-        name = variable_name(collection)
-        feature = None if name is None else find_feature(self.context, self.activity, name)
+        feature = find_feature(self.context, collection)
         multiplicity = None if feature is None else feature.attrs.get("multiplicity")
         limits = None if feature is None else query.bounds(multiplicity)
         if limits is None:
@@ -238,20 +240,21 @@ class DataFlow(Struct, frozen=True, dict=True):
 def _rename_variables(expression: Expression, names: Mapping[str, str]) -> Expression:
     name = variable_name(expression)
     if name is not None:
-        return make_variable(names.get(name, name))
+        return make_variable(names[name]) if name in names else expression
     return map_operands(expression, lambda operand: _rename_variables(operand, names))
 
 
 def _find_dotted_names(context: Context, activity: Element) -> frozenset[str]:
-    """Return the names of the form ``a.b`` in values, guards and bodies of an activity."""
+    """Return the paths ``a.b`` in values, guards and bodies of an activity."""
     texts: list[object] = []
     for node in context.contents(activity):
         if node.kind is Kind.COMMENT:
             continue
         texts += [node.attrs.get(key) for key in ("guard", "body", "default", "collection")]
         texts += [pin.attrs.get("value") for pin in context.graph.owned(node)]
-    dotted = (_DOTTED.findall(text) for text in texts if isinstance(text, str) and "." in text)
-    return frozenset(name for names in dotted for name in names)
+    trees = [text.tree for text in texts if isinstance(text, ParsedText)]
+    nodes = (node for tree in trees for node in walk_tree(tree) if isinstance(node, Member))
+    return frozenset(dotted_name(node) or "" for node in nodes if isinstance(node.base, Name))
 
 
 def list_data_parameters(

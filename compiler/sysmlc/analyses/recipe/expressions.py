@@ -16,7 +16,6 @@ from sysmlc.recipe.expression import (
     make_variable,
     map_operands,
     operands,
-    variable_name,
 )
 from sysmlc.recipe.model import EnumType, ListType, Parameter, ReferenceType, Scalar, ValueType
 from sysmlc.support.units import Time
@@ -57,7 +56,7 @@ def _translate_expression(  # noqa: PLR0911 - one for each kind
     """Return a parsed expression in the normal form of recipes."""
     name = source.dotted_name(expression)
     if name is not None:
-        return make_variable(name)
+        return source.Name((name,), source.element_of(expression))
     match expression:
         case source.Literal():
             return expression
@@ -106,51 +105,48 @@ def read_assignments(text: str) -> list[tuple[str, source.Expression]] | None:
     return pairs
 
 
-def resolve_literals(
-    context: Context, activity: Element, expression: source.Expression
-) -> source.Expression:
+def resolve_literals(context: Context, expression: source.Expression) -> source.Expression:
     """Replace enumeration literals by their values (SysML 2.0, 8.3.8).
 
     A literal that is compared with an operand of its own enumeration stays a name.
     """
-    name = variable_name(expression)
-    if name is not None:
-        literal = context.find_literal(name) if "::" in name else None
-        return expression if literal is None else source.Literal(_literal_value(literal))
+    literal = _find_literal(context, expression)
+    if literal is not None:
+        return source.Literal(_literal_value(literal))
     match expression:
         case source.Unary() | source.Binary():
-            enumerations = list(_find_enumerations(context, activity, operands(expression)))
+            enumerations = list(_find_enumerations(context, operands(expression)))
             return map_operands(
-                expression,
-                lambda operand: _resolve_operand(context, activity, operand, enumerations),
+                expression, lambda operand: _resolve_operand(context, operand, enumerations)
             )
         case source.Index(base, index):
-            return source.Index(base, resolve_literals(context, activity, index))
+            return source.Index(base, resolve_literals(context, index))
         case source.Call():
-            return map_operands(
-                expression, lambda argument: resolve_literals(context, activity, argument)
-            )
+            return map_operands(expression, lambda argument: resolve_literals(context, argument))
         case _:
             return expression
 
 
+def _find_literal(context: Context, expression: source.Expression) -> Element | None:
+    """Return the enumeration literal that a name denotes, or None."""
+    element = context.graph.get(source.element_of(expression))
+    is_literal = element is not None and element.kind is Kind.ENUMERATION_LITERAL
+    return element if is_literal else None
+
+
 def _resolve_operand(
-    context: Context, activity: Element, operand: source.Expression, enumerations: list[str]
+    context: Context, operand: source.Expression, enumerations: list[str]
 ) -> source.Expression:
-    name = variable_name(operand)
-    literal = context.find_literal(name) if name is not None and "::" in name else None
+    literal = _find_literal(context, operand)
     owner = None if literal is None else context.graph.owner(literal)
     is_compared = owner is not None and context.name(owner) in enumerations
-    return operand if is_compared else resolve_literals(context, activity, operand)
+    return operand if is_compared else resolve_literals(context, operand)
 
 
-def _find_enumerations(
-    context: Context, activity: Element, args: tuple[source.Expression, ...]
-) -> Iterator[str]:
+def _find_enumerations(context: Context, args: tuple[source.Expression, ...]) -> Iterator[str]:
     """Yield the names of the enumerations that type the operands of an expression."""
     for operand in args:
-        name = variable_name(operand)
-        feature = None if name is None else find_feature(context, activity, name)
+        feature = find_feature(context, operand)
         type_ = None if feature is None else value_type(context, feature)
         if isinstance(type_, EnumType):
             yield type_.name
@@ -169,22 +165,10 @@ _PRIMITIVES: dict[str, ValueType] = {
 _FEATURE_KINDS = (Kind.PARAMETER, Kind.PROPERTY)
 
 
-def find_feature(context: Context, activity: Element, name: str) -> Element | None:
-    """Return the parameter, attribute or nested feature of a name in an activity, or None."""
-    head, *rest = name.split(".")
-    elements = context.contents(activity)
-    feature = next(
-        (
-            element
-            for element in elements
-            if element.kind in _FEATURE_KINDS and element.name == head
-        ),
-        None,
-    )
-    for part in rest:
-        type_ = None if feature is None else query.type_of(context.graph, feature)
-        feature = None if type_ is None else find_member(context, type_, part)
-    return feature
+def find_feature(context: Context, expression: source.Expression) -> Element | None:
+    """Return the parameter or attribute that a name or a chain of features denotes, or None."""
+    element = context.graph.get(source.element_of(expression))
+    return element if element is not None and element.kind in _FEATURE_KINDS else None
 
 
 def find_member(context: Context, type_: Element, name: str) -> Element | None:

@@ -9,7 +9,7 @@ import re
 from sysmlc.backends.sysml.library import find_quantity, find_unit_name
 from sysmlc.backends.sysml.plan import Member, Plan
 from sysmlc.backends.sysml.printing import quote_name, quote_string
-from sysmlc.backends.sysml.references import find_by_model_name, format_reference, look_up
+from sysmlc.backends.sysml.references import format_reference
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir import expressions as syntax
@@ -109,7 +109,7 @@ class _ExpressionPrinter:
     def print_chain(self, tree: syntax.Expression) -> tuple[str, Member | None]:
         """Return the text of a name or a chain of names, and the member that it denotes."""
         if isinstance(tree, syntax.Name):
-            member = self._find_name(tree.path)
+            member = self._plan.find(self._plan.graph.get(tree.element))
             if member is None:
                 raise UnknownNameError("::".join(tree.path))
             text = format_reference(self._plan, self._scope, member)
@@ -122,9 +122,7 @@ class _ExpressionPrinter:
                 if isinstance(tree.base, syntax.Name | syntax.Member)
                 else (self.print(tree.base, POSTFIX), None)
             )
-            feature = None
-            if base_member is not None:
-                feature = find_by_model_name(self._plan, base_member, tree.name)
+            feature = self._plan.find(self._plan.graph.get(tree.element))
             if feature is None or (base_member is not None and not base_member.shape.is_usage):
                 # A definition or a package has no values of its features.
                 raise UnknownNameError(tree.name)
@@ -166,36 +164,6 @@ class _ExpressionPrinter:
         left = self.print(tree.left, precedence + is_right_associative)
         right = self.print(tree.right, precedence + (not is_right_associative))
         return f"{left} {tree.op} {right}", precedence
-
-    def _find_name(self, path: tuple[str, ...]) -> Member | None:
-        member = self._find_first_name(path[0])
-        for name in path[1:]:
-            member = None if member is None else find_by_model_name(self._plan, member, name)
-        return self._find_by_suffix(path) if member is None else member
-
-    def _find_first_name(self, name: str) -> Member | None:
-        scopes = [] if self._scope is None else [self._scope, *self._scope.namespaces]
-        for namespace in scopes:
-            member = find_by_model_name(self._plan, namespace, name)
-            if member is not None and member.shape.keyword not in _WITHOUT_VALUE:
-                return member
-        return look_up(self._plan, None, name)
-
-    def _find_by_suffix(self, path: tuple[str, ...]) -> Member | None:
-        """Return the only member whose qualified name ends with the path.
-
-        A single name may only be that of an enumeration literal.
-        """
-        kinds = (Kind.ENUMERATION_LITERAL,) if len(path) == 1 else _QUALIFIED
-        candidates = []
-        for element in self._plan.graph.of_kind(*kinds):
-            member = self._plan.find(element) if element.name == path[-1] else None
-            if member is None:
-                continue
-            names = [step.name for step in (member, *member.namespaces)][: len(path)]
-            if tuple(reversed(names)) == path:
-                candidates.append(member)
-        return candidates[0] if len(candidates) == 1 else None
 
 
 def _print_literal(value: bool | float | str) -> str:

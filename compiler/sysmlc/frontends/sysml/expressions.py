@@ -1,7 +1,7 @@
 """Expressions and statements of KerML in the grammar of the compiler (grammars/expression.lark)."""
 
 from collections.abc import Callable, Sequence
-from functools import reduce
+from itertools import zip_longest
 
 from sysmlc.frontends.sysml import nodes
 from sysmlc.ir.expressions import (
@@ -157,11 +157,17 @@ def _is_hidden(target: Node, node: Node) -> bool:
 
 def _read_reference(reference: Reference, ids: ElementIds) -> Expression:
     """Return the expression for a reference to a feature or to a chain of features."""
-    return _append_members(_read_first_link(reference, ids), reference.chain[1:])
+    return _append_members(_read_first_link(reference, ids), reference, ids, 1)
 
 
-def _append_members(base: Expression, links: tuple[tuple[str, ...], ...]) -> Expression:
-    return reduce(Member, (link[-1] for link in links), base) if links else base
+def _append_members(
+    base: Expression, reference: Reference, ids: ElementIds, start: int
+) -> Expression:
+    """Return the feature of *base* to which the links of a chain from *start* on lead."""
+    targets = (reference.targets or [])[start:]
+    for link, target in zip_longest(reference.chain[start:], targets):
+        base = Member(base, link[-1], "" if target is None else ids(target))
+    return base
 
 
 def _read_first_link(reference: Reference, ids: ElementIds) -> Expression:
@@ -197,7 +203,7 @@ def _read_feature_chain(node: Node, ids: ElementIds) -> Expression:
     arguments = nodes.list_arguments(node)
     if reference is None or not arguments:
         raise NotExpressibleError(node.kind)
-    return _append_members(_read(arguments[0], ids), reference.chain)
+    return _append_members(_read(arguments[0], ids), reference, ids, 0)
 
 
 def _read_call(node: Node, ids: ElementIds) -> Expression:
@@ -206,7 +212,7 @@ def _read_call(node: Node, ids: ElementIds) -> Expression:
         raise NotExpressibleError(node.kind)
     arguments = (nodes.value_of(argument) or argument for argument in _order_arguments(node))
     first = Name(reference.chain[0], element=_find_first_id(reference, ids))
-    function = _append_members(first, reference.chain[1:])
+    function = _append_members(first, reference, ids, 1)
     return Call(function, tuple(_read(argument, ids) for argument in arguments))
 
 
@@ -305,10 +311,10 @@ def _read_assignment(node: Node, ids: ElementIds) -> Statement | None:
 def _prepend_base(base: Expression, target: Expression) -> Expression:
     """Return ``base.target``: the feature *target* of the occurrence *base*."""
     match target:
-        case Member(inner, name):
-            return Member(_prepend_base(base, inner), name)
-        case Name(path):
-            return Member(base, path[-1])
+        case Member(inner, name, element):
+            return Member(_prepend_base(base, inner), name, element)
+        case Name(path, element):
+            return Member(base, path[-1], element)
         case _:
             return target
 

@@ -12,7 +12,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.ir import Element, Kind
-from sysmlc.ir.expressions import ExpressionError, name_of
+from sysmlc.ir.expressions import ExpressionError
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
 from sysmlc.logic.activities.token_nodes import Store
@@ -175,7 +175,7 @@ class Arguments:
             target = self._resolve_target(copy, pin)
             if isinstance(target, tuple):
                 self._tree.read_slot(target)
-        except (ComponentError, ExpressionError):
+        except ComponentError:
             return None
         return target
 
@@ -183,8 +183,7 @@ class Arguments:
         call, parent = copy.caller.call, copy.caller.parent
         assert call is not None
         assert parent is not None
-        path = find_bound_name(self._tree.graph, call, pin)
-        name = None if path is None else name_of(tree_of(path))
+        name = find_bound_name(self._tree.graph, call, pin)
         if name is None:
             return None
         variable = self._find_own(parent, name)
@@ -279,8 +278,11 @@ class Arguments:
         parent = copy.caller.parent
         assert parent is not None
         tree = self._tree
+        root = tree.context(tree.root)
 
-        def find_symbol(name: str) -> Symbol | None:
+        def find_symbol(name: str, element: str) -> Symbol | None:
+            if element in root.enumerations.constants_by_id:
+                return find_literal(root, name, element)
             attribute = self._find_own(parent, name)
             if attribute is not None:
                 return Symbol(f.var(attribute.name), attribute.domain)
@@ -290,7 +292,7 @@ class Arguments:
                     return Symbol(f.const(feature.default), feature.domain)
                 shared = tree.read_slot(tree.slot_of(object_.path, name)).variable
                 return Symbol(f.var(shared.name), shared.domain)
-            return find_literal(tree.context(tree.root), name)
+            return find_literal(root, name, element)
 
         try:
             result = elaborate_value(tree_of(text), find_symbol, variable.domain)

@@ -156,7 +156,7 @@ class Component:
         tokens = self.performances.find_tokens(activity)
         if tokens is None:
             return self.performances.has_steps(activity) and not find_instant_steps(
-                self.graph, activity, None, self.writers
+                self.graph, activity, None
             )
         return tokens.takes_time
 
@@ -255,7 +255,7 @@ class Component:
 
     def _is_within_step(self, machine: PlacedMachine, behaviour: Element) -> bool:
         """Whether a machine has all assignments of a behaviour; record what it performs."""
-        steps = find_instant_steps(self.graph, behaviour, machine.owner.type_, self.writers)
+        steps = find_instant_steps(self.graph, behaviour, machine.owner.type_)
         activity = self.graph.owner(steps[0]) if steps else None
         if activity is None or not machine.written.issuperset(step.id for step in steps):
             return False

@@ -11,6 +11,16 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
+from sysmlc.ir.expressions import (
+    Expression,
+    Member,
+    ParsedText,
+    Statement,
+    element_of,
+    last_name,
+    name_of,
+    walk_tree,
+)
 from sysmlc.logic.composition.structure import (
     Channels,
     iter_joined_names,
@@ -21,7 +31,9 @@ from sysmlc.logic.composition.structure import (
 from sysmlc.logic.contract import Domain, Owner, Variable
 from sysmlc.logic.expressions.context import Context, context_of
 from sysmlc.logic.expressions.features import Feature
-from sysmlc.logic.expressions.named_elements import VALUE_KINDS, find_feature_elsewhere
+from sysmlc.logic.expressions.named_elements import VALUE_KINDS
+from sysmlc.logic.expressions.parsing import attach_tree
+from sysmlc.logic.expressions.resolution import NameResolver
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.identifiers import Names
 from sysmlc.support.disjoint_sets import DisjointSets
@@ -213,14 +225,32 @@ class ObjectTree:
         The condition is an input of the behaviour, although the model decides the feature.
         """
         for key in ("guard", "condition"):
-            paths: list[str] = _PATH.findall(str(element.attrs.get(key, "")))
-            for path in ("".join(path.split()) for path in paths):
-                feature = find_feature_elsewhere(self.graph, behaviour, element, path)
-                owner = None if feature is None else self.graph.owner(feature)
-                # The environment decides the values that a message brings.
-                if owner is not None and owner.kind not in (Kind.SIGNAL, Kind.OPERATION):
-                    return path
+            for path in self._list_nodes(element, str(element.attrs.get(key, ""))):
+                if self._leads_elsewhere(behaviour, path):
+                    return name_of(path) or ""
         return ""
+
+    def _list_nodes(self, user: Element, text: str) -> Iterator[Expression | Statement]:
+        """Yield the nodes of an expression, or the paths of names in a text of another language."""
+        resolver = NameResolver(self.graph)
+        paths: list[str] = [text] if isinstance(text, ParsedText) else _PATH.findall(text)
+        for part in map(attach_tree, paths):
+            if isinstance(part, ParsedText):
+                yield from walk_tree(resolver.resolve(user, part.tree))
+
+    def _leads_elsewhere(self, behaviour: Element, path: Expression | Statement) -> bool:
+        """Whether a path leads from the object that has a behaviour, or a package, to a feature."""
+        feature, name = self.graph.get(element_of(path)), name_of(path) or ""
+        if feature is None or feature.kind not in (*VALUE_KINDS, Kind.INSTANCE):
+            return False
+        # The environment decides the values that a message brings.
+        owner = self.graph.owner(feature)
+        is_received = owner is None or owner.kind in (Kind.SIGNAL, Kind.OPERATION)
+        while isinstance(path, Member):
+            path = path.base
+        first = self.graph.get(element_of(path))
+        is_own = first is not None and behaviour in self.graph.ancestors(first)
+        return last_name(name) != name and not is_received and not is_own
 
     def context_in(self, object_: ComponentObject, behaviour: Element) -> Context:
         """Return what names mean in a behaviour of an object."""

@@ -123,16 +123,26 @@ def make_symbol(feature: Feature) -> Symbol:
     return Symbol(var(feature.variable), feature.domain, has_several_values=is_several)
 
 
-def find_literal(context: Context, name: str) -> Symbol | None:
+def find_symbol(context: Context, name: str, element: str = "") -> Symbol | None:
+    """Return the symbol of a feature of the context, or that of ``find_literal``.
+
+    A constant hides a feature that has its name, also if the value of the constant is not known.
+    """
+    is_constant = element in context.enumerations.constants_by_id
+    feature = None if is_constant else context.features.get(name)
+    return find_literal(context, name, element) if feature is None else make_symbol(feature)
+
+
+def find_literal(context: Context, name: str, element: str = "") -> Symbol | None:
     """Return the symbol of an enumeration literal with a qualified name, or of a constant.
 
     ``Mode::auto`` is a literal. ``Limits::MAX`` is a constant of a package that is visible from the
-    classifier, as ``MAX`` in the packages around it. The id of a constant may stand for its name.
-    The symbol has no domain if the id is that of a constant whose value is not known.
+    classifier, as ``MAX`` in the packages around it; or it is the constant with the id *element*.
     """
-    if name in context.enumerations.constants_by_id:
-        value, domain = context.enumerations.constants_by_id[name] or (True, None)
-        return Symbol(const(value), domain)
+    constants = context.enumerations.constants_by_id
+    if element in constants:
+        constant = constants[element]
+        return None if constant is None else Symbol(const(constant[0]), constant[1])
     entry = context.literals.get(name)
     if entry is None or ("::" not in name and "." not in name):
         return _find_constant(context, name)

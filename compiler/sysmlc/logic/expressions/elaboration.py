@@ -17,6 +17,7 @@ from sysmlc.ir.expressions import (
     Unary,
     describe_unsupported,
     dotted_name,
+    element_of,
     last_name,
     name_of,
     print_expression,
@@ -37,12 +38,13 @@ class Fault(StrEnum):
 
 
 class ElaborationError(ValueError):
-    """An expression has no formula; ``name`` is the name or value at fault."""
+    """An expression has no formula; ``name`` is the name or value at fault, with its element."""
 
-    def __init__(self, fault: Fault, message: str, name: str) -> None:
+    def __init__(self, fault: Fault, message: str, name: str, element: str = "") -> None:
         super().__init__(message)
         self.fault = fault
         self.name = name
+        self.element = element
 
 
 class Case(Struct, frozen=True):
@@ -74,8 +76,8 @@ class Symbol(Struct, frozen=True):
     has_several_values: bool = False
 
 
-Scope = Callable[[str], Symbol | None]
-"""Looks up a name, or the id of a constant; None if it is unknown."""
+Scope = Callable[[str, str], Symbol | None]
+"""Looks up a name and the id of its element, which may be empty; None if they are unknown."""
 FINITE_ADVICE = "use Booleans, enumerations and Integers for a contract"
 EMPTY_ADVICE = "write the condition as its text, or delete it if there is none"
 """Advice on a condition without text."""
@@ -136,17 +138,9 @@ def _make_value(formula: Formula, domain: Domain) -> GuardedValue:
 
 
 def find_symbol(expression: Expression | Statement, scope: Scope) -> Symbol | None:
-    """Return the symbol of a name or of a chain of features; None for any other expression.
-
-    The element that the front end has found takes precedence over the text of the name.
-    """
-    element = expression.element if isinstance(expression, Name) else ""
-    symbol = scope(element) if element else None
-    if symbol is not None:
-        # A constant without a known value hides whatever has the same name.
-        return None if symbol.domain is None else symbol
+    """Return the symbol of a name or of a chain of features; None for any other expression."""
     name = name_of(expression)
-    return scope(name) if name else None
+    return scope(name, element_of(expression)) if name else None
 
 
 # -- operands ------------------------------------------------------------------------------------
@@ -191,7 +185,7 @@ def _elaborate_name(
             return _make_value(Const(last), expected)
     if symbol is None:
         fault = Fault.UNKNOWN if dotted_name(expression) else Fault.UNSUPPORTED
-        raise ElaborationError(fault, f"'{name}' is not known", name)
+        raise ElaborationError(fault, f"'{name}' is not known", name, expression.element)
     if isinstance(expected, IntegerDomain) and symbol.number is not None:
         return _make_value(Const(symbol.number), IntegerDomain(symbol.number, symbol.number))
     if symbol.domain is None:

@@ -98,74 +98,14 @@ def find_direction(graph: Graph, classifier: Element, name: str, element: Elemen
     return (query.opposite(direction) or direction) if is_reversed else direction
 
 
-def find_feature_elsewhere(
-    graph: Graph, behaviour: Element, user: Element, name: str
-) -> Element | None:
-    """Return the feature of another element that *name* means in a text of *user*, if it exists.
-
-    ``door.open`` is a feature of the type of part ``door``, or of the type of an association end,
-    of the classifier around *behaviour*. In the texts of a transition, ``amount`` is also a
-    parameter of the operation that triggers it, or an attribute of the signal; ``signal.amount`` is
-    the same. ``Limits::MAX`` is a feature of any classifier of that name, ``limit`` also a feature
-    that a package around *behaviour* owns.
-    """
-    qualifier, _, last = name.rpartition("::")
-    if qualifier:
-        owners = graph.of_kind(*query.CLASSIFIERS)
-        same = (o for o in owners if o.name == qualifier.rpartition("::")[2])
-        return next((f for o in same for f in [_follow_path(graph, o, [last])] if f), None)
-    head, *rest = path = name.split(".")
-    transition = graph.owner(user) if user.kind in query.BEHAVIORS else user
-    triggers = [] if transition is None else graph.targets(transition, Edge.TRIGGER)
-    for event in filter(None, (graph.target(trigger, Edge.TYPED_BY) for trigger in triggers)):
-        feature = _follow_path(graph, event, rest if rest and head == event.name else path)
-        if feature is not None:
-            return feature
-    classifiers = (a for a in graph.ancestors(behaviour) if a.kind in query.CLASSIFIERS)
-    owner = next((a for a in classifiers if a.kind not in query.BEHAVIORS), None)
-    feature = _follow_path(graph, owner, path) if rest and owner is not None else None
-    if feature is not None:
-        return feature
-    packages = (a for a in graph.ancestors(behaviour) if a.kind is Kind.PACKAGE)
-    values = (value for package in packages for value in graph.owned(package))
-    kinds = (*VALUE_KINDS, Kind.INSTANCE)
-    start = next((value for value in values if value.name == head and value.kind in kinds), None)
-    if start is None or not rest:
-        return start
-    return _follow_path(graph, query.type_of(graph, start) or start, rest)
-
-
-def describe_feature_elsewhere(graph: Graph, behaviour: Element, user: Element, name: str) -> str:
-    """Return whose feature *name* is in a text of *user*, or an empty text if it is nobody's."""
-    feature = find_feature_elsewhere(graph, behaviour, user, name)
-    if feature is None:
+def describe_feature_elsewhere(graph: Graph, id: str, name: str) -> str:
+    """Return whose feature a name denotes, or an empty text if *id*, its element, is no value."""
+    feature = graph.get(id)
+    if feature is None or feature.kind not in (*VALUE_KINDS, Kind.INSTANCE):
         return ""
     owner = graph.owner(feature) or feature
     package = "package " if owner.kind is Kind.PACKAGE else ""
     return f"'{name}' is a feature of {package}'{owner.name}'"
-
-
-def _follow_path(graph: Graph, start: Element, path: list[str]) -> Element | None:
-    """Return the feature at the end of a path of names from a classifier or an operation."""
-    feature, classifier = None, start
-    for name in path:
-        feature = find_named_values(graph, classifier).get(name)
-        if feature is None:
-            feature = _find_opposite_end(graph, classifier, name)
-        if feature is None:
-            return None
-        classifier = query.type_of(graph, feature) or feature
-    return feature
-
-
-def _find_opposite_end(graph: Graph, classifier: Element, name: str) -> Element | None:
-    """Return the association end of this name that is opposite to an end of the classifier."""
-    for end in graph.sources(classifier, Edge.TYPED_BY):
-        for association in graph.sources(end, Edge.END):
-            for opposite in graph.targets(association, Edge.END):
-                if opposite is not end and opposite.name == name:
-                    return opposite
-    return None
 
 
 # -- values of the objects that a behaviour handles ----------------------------------------------

@@ -65,7 +65,7 @@ def performed_name(body: str) -> str | None:
 def attach_tree(text: str) -> str:
     """Return the text of an expression with its tree; any other text as it is."""
     try:
-        return ExpressionText(text, parse_expression(text))
+        return ExpressionText(text, tree_of(text))
     except ExpressionError:
         return text
 
@@ -73,7 +73,7 @@ def attach_tree(text: str) -> str:
 def attach_statements(text: str) -> str:
     """Return the text of an effect with its statements; any other text as it is."""
     try:
-        return EffectText(text, parse_effect(text))
+        return EffectText(text, statements_of(text))
     except ExpressionError:
         return text
 

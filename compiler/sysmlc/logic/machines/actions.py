@@ -16,6 +16,7 @@ from sysmlc.ir.expressions import (
     Send,
     Statement,
     dotted_name,
+    element_of,
     name_of,
     print_expression,
     print_statement,
@@ -23,7 +24,7 @@ from sysmlc.ir.expressions import (
 )
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Domain, Owner, Variable
-from sysmlc.logic.expressions.context import Context, find_literal, make_symbol, report_range
+from sysmlc.logic.expressions.context import Context, find_symbol, report_range
 from sysmlc.logic.expressions.elaboration import (
     ELSEWHERE_ADVICE,
     EMPTY_ADVICE,
@@ -126,16 +127,13 @@ class ReadingContext:
     assigned_variables: dict[str, None] = field(default_factory=dict)
     output_names: dict[str, None] = field(default_factory=dict)
 
-    def find_symbol(self, name: str) -> Symbol | None:
+    def find_symbol(self, name: str, element: str = "") -> Symbol | None:
         """Return the symbol for *name*: a property, an auxiliary variable or a literal."""
-        feature = self.context.features.get(name)
-        if feature is not None:
-            return make_symbol(feature)
         # A condition without meaning is replaced by the name of an input, which is resolved here.
         for variable in self.auxiliary.values():
             if variable.name == name:
                 return Symbol(f.var(name), variable.domain)
-        return find_literal(self.context, name)
+        return find_symbol(self.context, name, element)
 
     def variable_for(self, key: str, name: str, owner: Owner, domain: Domain, origin: str) -> str:
         """Return the name of the auxiliary variable with this key; create it on first use."""
@@ -223,7 +221,7 @@ def _classify_fault(
     """
     reason = str(error)
     if error.fault is Fault.UNKNOWN:
-        reason = _explain_name(reading, element, text, error.name)
+        reason = _explain_name(reading, element, text, error.name, error.element)
         return (NOT_UNDERSTOOD, reason) if reason else (UNKNOWN_NAME, str(error))
     if error.fault is Fault.OUTSIDE:
         names = (name_of(part) for expression in read for part in walk_tree(expression))
@@ -233,9 +231,9 @@ def _classify_fault(
     return RULE_OF_FAULT[error.fault], reason
 
 
-def _explain_name(reading: ReadingContext, element: Element, text: str, name: str) -> str:
+def _explain_name(reading: ReadingContext, element: Element, text: str, name: str, id: str) -> str:
     """Return why a name that is no property of the context is no error, or an empty text."""
-    owner = describe_feature_elsewhere(reading.graph, reading.sharing.machine, element, name)
+    owner = describe_feature_elsewhere(reading.graph, id, name)
     if owner:
         return owner
     named = _find_named_after_text(reading.graph, element, text)
@@ -320,10 +318,10 @@ def _read_behaviour(reading: ReadingContext, behaviour: Element, edge: Edge) -> 
 def _read_steps(reading: ReadingContext, behaviour: Element) -> list[Action]:
     """Return the assignments of an activity within the step, if formulas describe all of them."""
     graph, context, sharing = reading.graph, reading.context, reading.sharing
-    steps = find_instant_steps(graph, behaviour, sharing.classifier, sharing.index)
+    steps = find_instant_steps(graph, behaviour, sharing.classifier)
     pairs = [(assignment, step) for step in steps for assignment in read_assignments(step)]
-    for assignment, step in pairs:
-        name = find_target(graph, assignment, step, context, sharing.index)
+    for assignment, _ in pairs:
+        name = find_target(graph, assignment, context)
         if not name or sharing.find_other_writer(context.features[name].element):
             return []
     return [
@@ -390,7 +388,9 @@ def _read_assignment(
     """
     name = name_of(statement.target) or print_expression(statement.target)
     feature = reading.context.features.get(name)
-    reason = _explain_name(reading, behaviour, text, name) if feature is None else ""
+    reason = ""
+    if feature is None:
+        reason = _explain_name(reading, behaviour, text, name, element_of(statement.target))
     if feature is not None and feature.domain is None and not feature.is_constant:
         obstacle = "several values" if feature.has_several_values else "no finite type"
         reason = f"'{name}' has {obstacle}"

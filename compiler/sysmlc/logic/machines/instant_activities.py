@@ -5,20 +5,25 @@ their order. Other activities are performances, or nothing is decided about them
 """
 
 from collections.abc import Collection
+from functools import partial
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.ir.expressions import (
     Assignment,
+    Expression,
+    Statement,
+    element_of,
     last_name,
     list_names,
     name_of,
     walk_tree,
 )
-from sysmlc.logic.expressions.context import Context, find_literal, make_symbol
-from sysmlc.logic.expressions.elaboration import ElaborationError, Symbol, elaborate_value
+from sysmlc.logic.expressions.context import Context, find_symbol
+from sysmlc.logic.expressions.elaboration import ElaborationError, elaborate_value
 from sysmlc.logic.expressions.features import check_assignable
+from sysmlc.logic.expressions.named_elements import VALUE_KINDS
 from sysmlc.logic.expressions.parsing import performed_name
-from sysmlc.logic.feature_writes import WriterIndex, read_assignments, takes_one_step
+from sysmlc.logic.feature_writes import takes_one_step
 
 _INSTANT = (Edge.ENTRY, Edge.EXIT, Edge.EFFECT)
 _HARMLESS = {Edge.OWNS, Edge.FEATURE, Edge.CLASSIFIER_BEHAVIOR, Edge.ALLOCATED_TO, Edge.SATISFIES}
@@ -27,13 +32,12 @@ _UNSEEN = [edge for edge in Edge if edge not in {*_HARMLESS, *_INSTANT, Edge.DO}
 
 
 def find_instant_steps(
-    graph: Graph, behaviour: Element, classifier: Element | None, index: WriterIndex
+    graph: Graph, behaviour: Element, classifier: Element | None
 ) -> tuple[Element, ...]:
     """Return the actions that an entry, exit or effect performs within the step, in their order.
 
     The behaviour is drawn as a chain of assignments, or its text names such an activity of
     *classifier*, the type of the object that has the machine. The result is empty for others.
-    Names are looked up in *index*.
     """
     activity = behaviour if graph.owned(behaviour) else None
     if activity is None and classifier is not None:
@@ -41,39 +45,7 @@ def find_instant_steps(
     if activity is None or activity.kind is not Kind.ACTIVITY or activity.attrs.get("body"):
         return ()
     actions = query.list_chained_actions(graph, activity)
-    is_instant = all(
-        takes_one_step(action) and _shares_names(graph, action, behaviour, index)
-        for action in actions
-    )
-    return actions if is_instant else ()
-
-
-def _shares_names(graph: Graph, step: Element, behaviour: Element, index: WriterIndex) -> bool:
-    """Whether the features that a step names are the same for a behaviour of the machine."""
-    paths = {
-        ".".join(names[:end])
-        for assignment in read_assignments(step)
-        for names in (name.split(".") for name in _list_names(assignment))
-        for end in range(1, len(names) + 1)
-    }
-    return all(
-        _is_same_feature(
-            graph, index.resolve_target(step, path), index.resolve_target(behaviour, path)
-        )
-        for path in paths
-    )
-
-
-def _is_same_feature(graph: Graph, element: Element | None, special: Element | None) -> bool:
-    """Whether two features are one, or the second redefines the first; or neither exists."""
-    redefined = [] if special is None else query.redefined_features(graph, special)
-    return element == special or element in redefined
-
-
-def _list_names(assignment: Assignment) -> list[str]:
-    """Return the names in an assignment, the target first."""
-    parts = (assignment.target, *walk_tree(assignment.value))
-    return [name_of(part) or "" for part in parts]
+    return actions if all(map(takes_one_step, actions)) else ()
 
 
 def _find_named_activity(graph: Graph, behaviour: Element, classifier: Element) -> Element | None:
@@ -104,9 +76,7 @@ def may_name(graph: Graph, behaviour: Element, activity: Element) -> bool:
     )
 
 
-def find_target(
-    graph: Graph, assignment: Assignment, step: Element, context: Context, index: WriterIndex
-) -> str:
+def find_target(graph: Graph, assignment: Assignment, context: Context) -> str:
     """Return the name of the feature that a step assigns, or "" if no formula describes it.
 
     The names in *context*, that of the machine, must mean the same in the step.
@@ -115,21 +85,26 @@ def find_target(
     feature = features.get(target)
     if feature is None or feature.domain is None or feature.is_constant:
         return ""
-
-    def find_symbol(name: str) -> Symbol | None:
-        return make_symbol(features[name]) if name in features else find_literal(context, name)
-
     try:
-        value = elaborate_value(assignment.value, find_symbol, feature.domain)
+        value = elaborate_value(assignment.value, partial(find_symbol, context), feature.domain)
         check_assignable(value.domain, feature.domain, assignment.value)
     except ElaborationError:
         return ""
-    is_same = all(
-        _is_same_feature(graph, index.resolve_target(step, name), features[name].element)
-        for name in _list_names(assignment)
-        if name in features
-    )
-    return target if is_same else ""
+    nodes = walk_tree((assignment,))
+    return target if all(_means_same(graph, node, context) for node in nodes) else ""
+
+
+def _means_same(graph: Graph, node: Expression | Statement, context: Context) -> bool:
+    """Whether a name of a value denotes a feature that has the name in a context, too.
+
+    The feature of the context may redefine the one that the name denotes.
+    """
+    element = graph.get(element_of(node))
+    feature = context.features.get(name_of(node) or "")
+    if feature is None:
+        return element is None or element.kind not in VALUE_KINDS
+    redefined = query.redefined_features(graph, feature.element)
+    return element == feature.element or element in redefined
 
 
 def has_unknown_performer(graph: Graph, activity: Element, machines: Collection[str]) -> bool:

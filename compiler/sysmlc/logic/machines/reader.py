@@ -134,7 +134,7 @@ def _start_draft(
     machine = sharing.machine
     context = context_of(graph, sharing.classifier, options.assumed_range, machine)
     reserved = [*context.variables.values(), *context.features]
-    # No auxiliary variable may have the name of a property, which ``find_symbol`` finds first.
+    # No auxiliary variable may have the name of a property, which ``find_symbol`` finds last.
     names = Names("event", NO_EVENT, *reserved)
     return MachineDraft(
         ReadingContext(graph, sink, context, names, options.tick_seconds, sharing), machine

@@ -61,11 +61,14 @@ class Scope(Struct, frozen=True):
         }
         return domains | {name: variable.domain for name, variable in self.variables.items()}
 
-    def find_symbol(self, name: str) -> Symbol | None:
+    def find_symbol(self, name: str, element: str = "") -> Symbol | None:
         """Return what a dotted name in an expression denotes, or None.
 
-        The name of the subject may precede the name of the feature.
+        The name of the subject may precede the name of the feature. A constant has the id
+        *element*.
         """
+        if element in self.context.enumerations.constants_by_id:
+            return find_literal(self.context, name, element)
         meaning = self._find_meaning(name)
         if meaning is not None:
             return Symbol(meaning.formula, meaning.domain)

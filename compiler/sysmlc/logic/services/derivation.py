@@ -6,6 +6,7 @@ defines the conditions of an operation. In each step the environment may call th
 """
 
 from collections.abc import Iterable, Iterator
+from functools import partial
 
 from msgspec import Struct
 
@@ -25,14 +26,12 @@ from sysmlc.logic.contract import (
 from sysmlc.logic.expressions.context import (
     Context,
     context_of,
-    find_literal,
-    make_symbol,
+    find_symbol,
     report_range,
 )
 from sysmlc.logic.expressions.elaboration import (
     ElaborationError,
     Fault,
-    Symbol,
     elaborate_condition,
 )
 from sysmlc.logic.expressions.features import Feature
@@ -195,7 +194,7 @@ def _read_condition(
 
 def _read_formula(context: Context, constraint: Element) -> Formula:
     expression = _split_chain(tree_of(str(constraint.attrs["body"])))
-    formula = elaborate_condition(expression, lambda name: _find_symbol(context, name))
+    formula = elaborate_condition(expression, partial(find_symbol, context))
     domains: dict[str, Domain] = {
         feature.variable: feature.domain
         for feature in context.features.values()
@@ -227,13 +226,6 @@ def _split_chain(expression: Expression) -> Expression:
             return Binary("and", left, Binary(op, middle, right))
         case _:
             return expression
-
-
-def _find_symbol(context: Context, name: str) -> Symbol | None:
-    feature = context.features.get(name) or context.features.get(name.removeprefix("self."))
-    if feature is None:
-        return find_literal(context, name)
-    return make_symbol(feature)
 
 
 def _is_precondition(context: Context, formula: Formula) -> bool:
