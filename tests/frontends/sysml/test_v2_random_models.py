@@ -14,7 +14,6 @@ from sysmlc import compile_model
 QUICK, ALL = 15, 120
 TRUE_WARNINGS = {
     "SM411": "the contract cannot express a condition over reals, quantities or calls",
-    "SM412": "a condition of a machine names a feature of a package",
     "SM414": "a value is outside the range of an attribute",
     "SM415": "the contract cannot express an assignment to an attribute without finite type",
     "SM417": "the contract cannot express an absolute time",

@@ -471,7 +471,7 @@ def test_a_constant_without_a_value_hides_the_constants_around_it():
     )
     reading = read(text, passes=ALL)
     messages = "".join(diagnostic.message for diagnostic in reading.sink)
-    assert "guard 'level > Limits::open' reads 'Limits::open'" in messages
+    assert "'Limits::open' is a feature of package 'Limits'; the contract treats" in messages
 
 
 def test_components_of_one_name_in_two_files_are_reported_once_with_both():
