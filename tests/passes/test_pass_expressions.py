@@ -76,6 +76,10 @@ def test_the_names_of_a_text_are_those_of_its_tree_or_the_words_of_an_opaque_tex
 
 NAMES = """\
 Package p "Plant"
+  Import p.i subkind="element"
+    -> references q.m
+  Import p.j subkind="package"
+    -> references d
   Enumeration e "Mode"
     EnumerationLiteral e.a "auto"
   Class a "Arm"
@@ -111,7 +115,11 @@ Package p "Plant"
       -> typed-by h
     Property n.t "basin"
       -> typed-by t
+Package d "Defaults"
+  Instance d.l "LOW" value=2
+  Instance d.m "load" value=4
 Package q "Other"
+  Instance q.m "MAX" value=9
   Enumeration s "Season"
     EnumerationLiteral s.w "winter"
   Class q.a "Arm"
@@ -148,6 +156,7 @@ def find_elements(text, user):
         ("Other::Arm::load > Arm::load", "t.t", ["q.l", "a.l"]),
         ("speed > 3 or winter", "t.t", ["", "s.w"]),
         ("mode == Season::winter", "t.t", ["m.m", "s.w"]),
+        ("LOW < load and load < MAX", "t.t", ["d.l", "t.b", "t.b", "q.m"]),
     ],
 )
 def test_a_name_carries_the_element_that_it_denotes(text, user, elements):

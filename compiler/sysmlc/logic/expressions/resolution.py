@@ -92,21 +92,29 @@ class NameResolver:
         return self._find_member(element, name) or (type_ and self._find_member(type_, name))
 
     def _find_member(self, scope: Element, name: str) -> Element | None:
-        """Return the member of a scope, inherited ones and opposite ends included."""
+        """Return the member of a scope, imported and inherited ones and opposite ends included."""
         members = self._members_by_scope.get(scope.id)
         if members is None:
-            owned = (element for element in self._graph.owned(scope) if element.kind in _MEMBERS)
-            named = ((str(e.attrs.get("payload") or e.name), e) for e in owned)
+            elements = (*self._iter_imported(scope), *self._graph.owned(scope))
+            named = ((str(e.attrs.get("payload") or e.name), e) for e in elements)
             members = {
                 name: element
                 for name, element in sorted(named, key=lambda pair: pair[1].kind in _FIRST)
-                if name
+                if name and element.kind in _MEMBERS
             }
             if scope.kind in query.CLASSIFIERS:
                 members |= find_named_values(self._graph, scope)
                 members = {end.name: end for end in self._iter_opposite_ends(scope)} | members
             self._members_by_scope[scope.id] = members
         return members.get(name)
+
+    def _iter_imported(self, scope: Element) -> Iterator[Element]:
+        """Yield the elements that a scope imports, by themselves or with their package."""
+        for element in self._graph.owned(scope):
+            if element.kind is Kind.IMPORT:
+                for target in self._graph.targets(element, Edge.REFERENCES):
+                    is_package = element.subkind == "package"
+                    yield from self._graph.owned(target) if is_package else (target,)
 
     def _iter_opposite_ends(self, classifier: Element) -> Iterator[Element]:
         """Yield the association ends that are opposite to ends of the classifier."""
