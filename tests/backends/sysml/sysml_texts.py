@@ -8,7 +8,7 @@ from sysmlc.passes import pipeline
 from sysmlc.sources import Source
 from sysmlc.support import resources
 
-PASSES = ("resolve", "inherit", "classify", "ports")
+PASSES = ("resolve", "inherit", "classify", "ports", "expressions")
 
 
 def read_xmi(data, name="model.uml"):

@@ -365,6 +365,41 @@ def test_a_transition_has_its_comment_behind_an_effect_with_a_body():
     assert "/* the log needs both */" in text
 
 
+NAMES = """
+Signal g "Go"
+  Property g.n "amount"
+Class c "Line" role="block"
+  -> classifier-behavior c.s
+  Property c.n "count"
+  Property c.p "places" multiplicity="1..count"
+  Operation c.o "open"
+  StateMachine c.s "run"
+    Region c.r
+      State c.a "idle"
+        -> entry c.e
+        Activity c.e subkind="opaque" body="open()"
+      Transition c.t guard="amount > count"
+        -> flow-source c.a
+        -> flow-target c.a
+        -> trigger c.g
+        Trigger c.g subkind="signal"
+          -> typed-by g
+      Transition c.u
+        -> flow-source c.a
+        -> flow-target c.a
+        -> trigger c.w
+        Trigger c.w subkind="time" when="count" relative=true
+"""
+
+
+def test_names_in_texts_are_references_and_a_parameter_of_an_event_is_none():
+    text = text_of(NAMES)
+    assert "ref places[1..count];" in text
+    assert "entry open;" in text
+    assert "accept after count then idle;" in text
+    assert "accept Go if 'amount > count' then idle;" in text
+
+
 def test_an_operation_is_typed_by_the_activity_that_implements_it():
     assert "perform action fill : Fill;" in text_of(IMPLEMENTED)
 

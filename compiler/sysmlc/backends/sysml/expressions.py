@@ -9,7 +9,7 @@ import re
 from sysmlc.backends.sysml.library import find_quantity, find_unit_name
 from sysmlc.backends.sysml.plan import Member, Plan
 from sysmlc.backends.sysml.printing import quote_name, quote_string
-from sysmlc.backends.sysml.references import format_reference
+from sysmlc.backends.sysml.references import format_reference, is_path_accessible
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
 from sysmlc.ir import expressions as syntax
@@ -18,10 +18,6 @@ from sysmlc.ir.query import bounds, generals, type_of
 from sysmlc.ir.query.classifiers import unit_of
 from sysmlc.logic.expressions.parsing import tree_of
 
-_WITHOUT_VALUE = frozenset({"transition", "succession", "flow", "comment", "dependency", "start"})
-"""Keywords of members that no expression denotes."""
-_QUALIFIED = (Kind.ENUMERATION_LITERAL, Kind.PROPERTY, Kind.PORT, Kind.OPERATION, Kind.INSTANCE)
-"""Kinds that an incomplete qualified name may denote."""
 _NUMBERS = frozenset({"Integer", "Real", "UnlimitedNatural", "Number"})
 _ARITHMETIC = frozenset("+-*/%")
 SIGNS = {"bound": "=", "initial": ":=", "default": "default =", "default initial": "default :="}
@@ -42,9 +38,17 @@ class UnknownNameError(ValueError):
 def format_expression(writer: Writer, scope: Member | None, text: str) -> str | None:
     """Return the text as an expression of SysML v2; None if it is invalid or names are unknown."""
     try:
-        return print_expression(writer, scope, tree_of(text))
+        return print_expression(writer, scope, _read_tree(writer, scope, text))
     except (syntax.ExpressionError, UnknownNameError, RecursionError):
         return None
+
+
+def _read_tree(writer: Writer, scope: Member | None, text: str) -> syntax.Expression:
+    """Return the tree of a text; the names of a multiplicity or a time are resolved here."""
+    namespaces = () if scope is None else (scope, *scope.namespaces)
+    users = (namespace.element for namespace in namespaces if namespace.element is not None)
+    user, tree = next(users, None), tree_of(text)
+    return tree if user is None else writer.plan.resolver.resolve(user, tree)
 
 
 def print_expression(writer: Writer, scope: Member | None, tree: syntax.Expression) -> str:
@@ -55,7 +59,7 @@ def print_expression(writer: Writer, scope: Member | None, tree: syntax.Expressi
 def is_condition(writer: Writer, scope: Member | None, text: str) -> bool:
     """Whether a text is an expression whose value may be Boolean."""
     try:
-        return _may_be_boolean(writer, scope, tree_of(text))
+        return _may_be_boolean(writer, scope, _read_tree(writer, scope, text))
     except (syntax.ExpressionError, UnknownNameError, RecursionError):
         return False
 
@@ -110,7 +114,7 @@ class _ExpressionPrinter:
         """Return the text of a name or a chain of names, and the member that it denotes."""
         if isinstance(tree, syntax.Name):
             member = self._plan.find(self._plan.graph.get(tree.element))
-            if member is None:
+            if member is None or not self._may_name(tree, member):
                 raise UnknownNameError("::".join(tree.path))
             text = format_reference(self._plan, self._scope, member)
             if text is None:
@@ -128,6 +132,12 @@ class _ExpressionPrinter:
                 raise UnknownNameError(tree.name)
             return f"{base}.{quote_name(feature.name)}", feature
         return self.print(tree, POSTFIX), None
+
+    def _may_name(self, tree: syntax.Name, member: Member) -> bool:
+        """Whether a name may denote the member here; parameters of an event need a payload."""
+        is_literal = member.element is not None and member.element.kind is Kind.ENUMERATION_LITERAL
+        is_plain = len(tree.path) == 1 and not is_literal
+        return not is_plain or is_path_accessible(self._plan, self._scope, member)
 
     def _print_node(self, tree: syntax.Expression) -> tuple[str, int]:  # noqa: PLR0911 - a return for each kind
         """Return the text of an expression, and the precedence of its outermost operator."""

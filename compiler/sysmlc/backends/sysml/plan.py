@@ -2,11 +2,13 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from sysmlc.backends.sysml.printing import Line
 from sysmlc.backends.sysml.rules import Losses
 from sysmlc.backends.sysml.shapes import Shape
 from sysmlc.ir import Element, Graph
+from sysmlc.logic.expressions.resolution import NameResolver
 
 
 @dataclass(slots=True, eq=False)
@@ -20,8 +22,6 @@ class Member:
     members: list["Member"] = field(default_factory=list)
     visible_names: "dict[str, Member] | None" = None
     """Own and inherited members by name in the text; ``references`` fills it on first use."""
-    model_names: "dict[str, Member] | None" = None
-    """Own and inherited members by name in the model; ``references`` fills it on first use."""
     imports: list[str] = field(default_factory=list)
     """Library packages that a root imports because its members refer to them."""
     added_lines: list[Line] = field(default_factory=list)
@@ -56,7 +56,7 @@ class Member:
         return lines
 
 
-@dataclass(slots=True)
+@dataclass
 class Plan:
     """All members of a text, as a tree and by the ids of their elements."""
 
@@ -78,6 +78,11 @@ class Plan:
     """Metadata definition of each stereotype application, by the id of the application."""
     type_shapes: dict[str, Shape | None] = field(default_factory=dict)
     """Shapes of the elements that type others, by id."""
+
+    @cached_property
+    def resolver(self) -> NameResolver:
+        """The resolver of names in texts that the pass ``expressions`` has not resolved."""
+        return NameResolver(self.graph)
 
     @property
     def depth(self) -> int:

@@ -22,7 +22,6 @@ _GENERALIZATIONS = (
     Edge.CALLS,
 )
 """Edges along which the text inherits members."""
-_BEHAVIOUR_KEYWORDS = ("action", "state", "occurrence", "connection", "flow", "constraint")
 
 
 # -- name lookup ---------------------------------------------------------------------------------
@@ -68,27 +67,6 @@ def visible_members(plan: Plan, namespace: Member) -> dict[str, Member]:
             if inherited_member is not None:
                 namespace.visible_names.setdefault(name, inherited_member)
     return namespace.visible_names
-
-
-def find_by_model_name(plan: Plan, namespace: Member, name: str) -> Member | None:
-    """Return the member that a text of the model means by a name, features before behaviours."""
-    if namespace.model_names is None:
-        names: dict[str, Member] = {}
-        for general in (namespace, *iter_generals(plan, namespace)):
-            for member in sorted(general.members, key=_is_behaviour):
-                if member.element is not None and member.element.name:
-                    names.setdefault(member.element.name, member)
-        # A model in SysML v2 uses the names of its text, where metadata gave another one back.
-        for general in (namespace, *iter_generals(plan, namespace)):
-            for member in general.members:
-                if member.element is not None and member.name:
-                    names.setdefault(member.name, member)
-        namespace.model_names = names
-    return namespace.model_names.get(name)
-
-
-def _is_behaviour(member: Member) -> bool:
-    return member.shape.keyword in _BEHAVIOUR_KEYWORDS
 
 
 def _iter_scopes(scope: Member | None) -> Iterator[Member]:

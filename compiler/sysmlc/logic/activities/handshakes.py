@@ -18,6 +18,7 @@ from sysmlc.logic.activities.step_formulas import StepFormulas
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.activities.token_nodes import ACTIVITY_REGION, Duration, Handshake
 from sysmlc.logic.contract import Class, Conjunct
+from sysmlc.logic.expressions.parsing import performed_name
 from sysmlc.logic.identifiers import Names, identifier
 
 _PERFORMING = (Edge.ENTRY, Edge.DO, Edge.EXIT, Edge.EFFECT)
@@ -76,7 +77,7 @@ class _Performers:
                 self._games_of_node.setdefault(node.id, []).append(game)
         self._behaviours_by_body: dict[str, list[Element]] = {}
         for behaviour in graph.of_kind(Kind.ACTIVITY):
-            name = last_name(str(behaviour.attrs.get("body", "")).strip())
+            name = last_name(performed_name(str(behaviour.attrs.get("body", ""))) or "")
             self._behaviours_by_body.setdefault(name, []).append(behaviour)
         self._find_relation = cache(ConcurrencyRelation)
 
