@@ -82,10 +82,6 @@ class Context(Struct, frozen=True):
         """Enumeration and identifier of each literal, by plain and by qualified name."""
         return self.enumerations.literals
 
-    def number(self, name: str) -> int | None:
-        """Return the number that the enumeration literal of a qualified name stands for."""
-        return self.enumerations.numbers.get(name)
-
 
 def context_of(
     graph: Graph,
@@ -115,22 +111,20 @@ def variables_of(
     return _name_variables(_find_elements(graph, classifier, behaviour))
 
 
-def make_symbol(feature: Feature) -> Symbol:
-    """Return the symbol of a feature: its value if it is a constant, else its variable."""
+def find_symbol(context: Context, name: str, element: str = "") -> Symbol | None:
+    """Return the symbol of a feature of the context, or that of ``find_literal``.
+
+    A feature stands for its variable, or for its value if it is a constant. A constant of a package
+    hides a feature that has its name, also if the value of the constant is not known.
+    """
+    is_constant = element in context.enumerations.constants_by_id
+    feature = None if is_constant else context.features.get(name)
+    if feature is None:
+        return find_literal(context, name, element)
     if feature.is_constant and feature.default is not None:
         return Symbol(const(feature.default), feature.domain)
     is_several = feature.has_several_values
     return Symbol(var(feature.variable), feature.domain, has_several_values=is_several)
-
-
-def find_symbol(context: Context, name: str, element: str = "") -> Symbol | None:
-    """Return the symbol of a feature of the context, or that of ``find_literal``.
-
-    A constant hides a feature that has its name, also if the value of the constant is not known.
-    """
-    is_constant = element in context.enumerations.constants_by_id
-    feature = None if is_constant else context.features.get(name)
-    return find_literal(context, name, element) if feature is None else make_symbol(feature)
 
 
 def find_literal(context: Context, name: str, element: str = "") -> Symbol | None:
@@ -148,7 +142,7 @@ def find_literal(context: Context, name: str, element: str = "") -> Symbol | Non
         return _find_constant(context, name)
     enumeration, identifier = entry
     domain = context.enumerations.domains[enumeration]
-    return Symbol(const(identifier), domain, context.number(name))
+    return Symbol(const(identifier), domain, context.enumerations.numbers.get(name))
 
 
 def _find_constant(context: Context, name: str) -> Symbol | None:
