@@ -169,7 +169,8 @@ class Printer:
         """Print the statements of a body, and the notes before its end."""
         is_first = True
         for statement in statements:
-            self._print_before(_find_first_token(statement), indent, is_first=is_first)
+            first = statement[0].opening if isinstance(statement[0], Block) else statement[0]
+            self._print_before(first, indent, is_first=is_first)
             _StatementPrinter(self, statement, indent).print()
             is_first = False
         self._print_notes(end.notes, indent, is_first=is_first)
@@ -183,21 +184,17 @@ class Printer:
 
     def _print_notes(self, notes: Sequence[Note], indent: str, *, is_first: bool) -> None:
         for note in notes:
-            if note.is_trailing:
-                self.append_note(note)
-                continue
-            if note.after_blank and not is_first:
+            if note.after_blank and not note.is_trailing and not is_first:
                 self.lines.append("")
             self.print_note(note, indent)
-            is_first = False
-
-    def append_note(self, note: Note) -> None:
-        """Append a note to the last line."""
-        self.lines[-1] += f" {note.text}"
+            is_first = is_first and note.is_trailing
 
     def print_note(self, note: Note, indent: str) -> None:
-        """Print a note on lines of its own."""
-        self.lines += _reindent_comment(note.text, note.column, indent)
+        """Append a note to the last line, or print it on lines of its own."""
+        if note.is_trailing:
+            self.lines[-1] += f" {note.text}"
+        else:
+            self.lines += _reindent_comment(note.text, note.column, indent)
 
 
 class _StatementPrinter:
@@ -237,10 +234,7 @@ class _StatementPrinter:
         """Print notes within a statement, which end the line."""
         for note in notes:
             self._flush()
-            if note.is_trailing:
-                self._printer.append_note(note)
-            else:
-                self._printer.print_note(note, self._next_indent)
+            self._printer.print_note(note, self._next_indent)
             self._first_indent = self._next_indent
 
     def _print_block(self, block: Block, *, is_first: bool) -> None:
@@ -265,15 +259,12 @@ class _StatementPrinter:
             self._pieces = []
 
 
-def _find_first_token(statement: Statement) -> Token:
-    first = statement[0]
-    return first.opening if isinstance(first, Block) else first
-
-
 def _fits_on_line(statement: Statement, indent: str) -> bool:
     """Whether the body expressions of a statement fit on one line with its head."""
     blocks = [item for item in statement if isinstance(item, Block) and item.is_expression]
-    if not blocks or not all(_needs_no_line(block) for block in blocks):
+    tokens = [token for block in blocks for token in _iter_tokens(block)]
+    needs_line = any(token.notes or token.sort is Sort.COMMENT for token in tokens)
+    if not blocks or needs_line:
         return False
     return len(indent) + len(_join_pieces(list(_iter_header(statement)))) <= WIDTH
 
@@ -289,13 +280,6 @@ def _iter_header(statement: Statement) -> Iterator[Piece]:
         else:
             yield spacing.add_token(item.opening)
             return
-
-
-def _needs_no_line(block: Block) -> bool:
-    """Whether nothing in a body expression needs a line of its own."""
-    tokens = list(_iter_tokens(block))
-    has_comment = any(token.sort is Sort.COMMENT for token in tokens)
-    return not has_comment and not any(token.notes for token in tokens)
 
 
 def _iter_tokens(block: Block) -> Iterator[Token]:
