@@ -6,7 +6,6 @@ leave out because the tree allows better messages.
 
 import re
 from bisect import bisect_left
-from collections.abc import Iterator
 from functools import cache
 
 from sysmlc.diagnostics import Sink
@@ -14,6 +13,7 @@ from sysmlc.language.metaclasses import kinds_of
 from sysmlc.language.text import nesting, rules
 from sysmlc.language.text.builders import ACTIONS
 from sysmlc.language.text.builders.namespaces import build_root
+from sysmlc.language.text.builders.operators import PRECEDENCE
 from sysmlc.language.text.errors import Errors
 from sysmlc.language.text.lalr import Rules, Stack, Tables, bind_actions, load_tables, run
 from sysmlc.language.text.lexer import Tokens, tokenize
@@ -22,10 +22,7 @@ from sysmlc.language.tree import Document, Node
 from sysmlc.sources import Source
 from sysmlc.support.interpreter import pause_garbage_collection
 
-_AFTER_EXPRESSION = (
-    "} ?? or and implies xor | & == != === !== < > <= >= .. + - * / % ^ ** istype hastype @ as @@ "
-    "meta . .? -> # ("
-)
+_AFTER_EXPRESSION = {"}", ".", ".?", "->", "#", "(", *PRECEDENCE}
 """Tokens that continue an expression, or end the body whose result it is."""
 
 
@@ -84,15 +81,11 @@ def _mark_index_brackets(tables: Tables, tokens: Tokens) -> None:
     token of lookahead does not decide this, but the token after the closing bracket does.
     """
     words = tables.types.words
-    for index in _find_opening_brackets(tables, tokens):
+    for match in _member_bracket_pattern(tables).finditer(tokens.types):
+        index = match.end() - 1
         following = _find_after_bracket(tokens, index, words["["], words["]"])
         if tokens.types[following] in _types_after_expression(tables):
             tokens.types[index] = tables.index
-
-
-def _find_opening_brackets(tables: Tables, tokens: Tokens) -> Iterator[int]:
-    for match in _member_bracket_pattern(tables).finditer(tokens.types):
-        yield match.end() - 1
 
 
 @cache
@@ -105,7 +98,7 @@ def _member_bracket_pattern(tables: Tables) -> re.Pattern[bytes]:
 
 @cache
 def _types_after_expression(tables: Tables) -> frozenset[int]:
-    return frozenset(tables.types.words[word] for word in _AFTER_EXPRESSION.split())
+    return frozenset(tables.types.words[word] for word in _AFTER_EXPRESSION)
 
 
 def _find_after_bracket(tokens: Tokens, index: int, opening: int, closing: int) -> int:
@@ -183,18 +176,14 @@ def check_syntax(tokens: Tokens, errors: Errors) -> None:
         errors.report(rule, fault.start, problem=fault.text, advice=fault.advice)
     for node in tokens.restricted_nodes:
         if node.kind in _IMPORTS:
-            _check_import(node, errors)
+            if not node.visibility:
+                errors.report(rules.VISIBILITY, node.start)
         elif node.kind == "EnumerationDefinition":
             _check_enumeration(node, errors)
         elif node.kind == "Definition":
             _check_bare_definition(tokens, node, errors)
         elif node.owner is not None:
             _check_owner(tokens, node, node.owner, errors)
-
-
-def _check_import(node: Node, errors: Errors) -> None:
-    if not node.visibility:
-        errors.report(rules.VISIBILITY, node.start)
 
 
 def _check_bare_definition(tokens: Tokens, node: Node, errors: Errors) -> None:
@@ -247,15 +236,11 @@ def _has_unread_head(tokens: Tokens, owner: Node) -> bool:
 
 
 def _report(node: Node, what: str, where: str, errors: Errors) -> None:
-    owner = node.owner
-    is_at_top = owner is None or owner.owner is None
-    body = "outside of any body" if owner is None or is_at_top else _describe_body(owner)
-    errors.report(rules.PLACE, node.start, what=what, here=body, where=where)
-
-
-def _describe_body(owner: Node) -> str:
-    name = owner.name or owner.short_name
-    return f"in '{name}'" if name else "in this body"
+    owner, here = node.owner, "outside of any body"
+    if owner is not None and owner.owner is not None:
+        name = owner.name or owner.short_name
+        here = f"in '{name}'" if name else "in this body"
+    errors.report(rules.PLACE, node.start, what=what, here=here, where=where)
 
 
 @cache

@@ -7,6 +7,7 @@ from functools import cached_property
 
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.language.text import hints, rules
+from sysmlc.language.text.builders.operators import PRECEDENCE
 from sysmlc.language.text.corrections import Correction
 from sysmlc.language.text.lexer import LexicalFault, Tokens, TokenTypes
 from sysmlc.language.text.nesting import MAX_DEPTH
@@ -285,8 +286,7 @@ _GROUPS = (
     (
         {"+", "xor"},
         "an operator",
-        "?? or and implies xor | & == != === !== < > <= >= .. + - * / % ^ "
-        "** istype hastype @ as @@ meta . .? -> # ( [ _INDEX",
+        f"{' '.join(PRECEDENCE)} . .? -> # ( [ _INDEX",
     ),
 )
 """Tokens that stand for one phrase: those that show its presence, the phrase, all its tokens."""
