@@ -256,3 +256,16 @@ def test_an_inner_loop_that_gives_up_ends_the_task_early():
 )
 def test_expected_times_follow_from_probabilities(text, expected):
     assert derive_times(build_task_graph(text), ARM).expected == pytest.approx(expected)
+
+
+def test_a_branch_that_leads_back_to_its_fork_has_no_time():
+    """Each round would start another one beside itself; SM604 reports the cycle."""
+    graph = build_task_graph("""
+        i > M1
+        M1 > F1
+        F1 > a
+        F1 > b
+        a > M1
+        b > f
+    """)
+    assert derive_times(graph, {"a": "robot:10", "b": "robot:20"}).duration is None

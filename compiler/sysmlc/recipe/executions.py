@@ -28,6 +28,8 @@ _ITERATION = "#"
 """Prefix of the entry of a valuation that counts the iterations of a loop node."""
 _MOST_COMBINATIONS = 2000
 """Most combinations of outcomes of parallel branches."""
+_DEEPEST_FORK = 100
+"""Most forks inside of one another; a branch that leads back to its fork has no end of them."""
 
 
 class TooManySituationsError(RuntimeError):
@@ -100,6 +102,7 @@ class Exploration:
         self._cycles = find_loop_cycles(graph)
         self._endless: dict[str, None] = {}
         self._explored: dict[tuple[Situation, frozenset[str]], _Outcomes] = {}
+        self._depth = 0
 
     def run(self) -> Result:
         """Return the result for executions that begin at the initial node.
@@ -277,8 +280,12 @@ class Exploration:
     def _explore_branch(self, first: Situation, volatile: frozenset[str]) -> _Outcomes:
         key = (first, volatile)
         if key not in self._explored:
+            self._depth += 1
+            if self._depth > _DEEPEST_FORK:
+                raise TooManySituationsError
             transitions = self._explore(first, volatile)
             self._explored[key] = self._find_outcomes(first, transitions)
+            self._depth -= 1
         return self._explored[key]
 
     def _combine(
