@@ -12,7 +12,7 @@ from sysmlc.recipe.durations import (
     format_range,
 )
 from sysmlc.recipe.flow import find_reachable
-from sysmlc.recipe.model import FlowGraph, Model, Provider, Range, Service, Task
+from sysmlc.recipe.model import FlowGraph, Model, Range, Service, Task
 from sysmlc.recipe.tables import Finding, Tables
 
 TASK_TIME = rule(
@@ -165,7 +165,13 @@ def check_service_times(model: Model, tables: Tables, tolerance: float) -> Itera
             continue
         for provider in service.providers:
             if _differs(derived, provider.duration, tolerance):
-                yield _make_time_finding(service, provider, derived)
+                facts = {
+                    "service": service.id,
+                    "derived": format_range(derived),
+                    "declared": provider.duration,
+                    "machine": provider.machine,
+                }
+                yield Finding(SERVICE_TIME, service.element, facts)
 
 
 def _differs(derived: Range, duration: int | None, tolerance: float) -> bool:
@@ -173,16 +179,6 @@ def _differs(derived: Range, duration: int | None, tolerance: float) -> bool:
         return False
     too_short = duration < derived.min * (1 - tolerance)
     return too_short or (derived.max is not None and duration > derived.max * (1 + tolerance))
-
-
-def _make_time_finding(service: Service, provider: Provider, derived: Range) -> Finding:
-    facts = {
-        "service": service.id,
-        "derived": format_range(derived),
-        "declared": provider.duration,
-        "machine": provider.machine,
-    }
-    return Finding(SERVICE_TIME, service.element, facts)
 
 
 # -- resources ---------------------------------------------------------------------------------

@@ -77,7 +77,9 @@ class Variables(Struct, frozen=True):
         types = {
             name: type_
             for name, type_ in all_types.items()
-            if name in names and (type_ in _TRACKED_TYPES or _is_plain_enumeration(type_))
+            # In a numeric context a literal of an enumeration of numbers is its number.
+            if name in names
+            and (type_ in _TRACKED_TYPES or (isinstance(type_, EnumType) and not type_.values))
         }
         start = tuple(sorted(_iter_start_values(graph, types, arguments)))
         return cls(types, start, guards, values)
@@ -129,11 +131,6 @@ class Variables(Struct, frozen=True):
         if isinstance(type_, EnumType):
             return type_.literals
         return (False, True) if type_ == "boolean" else ()
-
-
-def _is_plain_enumeration(type_: ValueType | None) -> bool:
-    # In a numeric context a literal of an enumeration of numbers is its number.
-    return isinstance(type_, EnumType) and not type_.values
 
 
 def _find_deciding_variables(

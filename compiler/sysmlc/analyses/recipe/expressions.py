@@ -236,7 +236,8 @@ def _build_type(context: Context, type_: Element) -> ValueType:
     for candidate in family:
         if candidate.kind is Kind.ENUMERATION:
             return _build_enumeration(context, candidate)
-        primitive = _PRIMITIVES.get(_local_name(candidate))
+        name = candidate.name or str(candidate.attrs.get("href", ""))
+        primitive = _PRIMITIVES.get(name.replace("::", "#").rpartition("#")[2])
         if primitive is not None:
             return primitive
     if type_.attrs.get("property_specific"):
@@ -255,11 +256,6 @@ def _build_enumeration(context: Context, enumeration: Element) -> EnumType:
     is_whole = len(plain) == len(literals)
     names = tuple(literal.name for literal in literals)
     return EnumType(context.name(enumeration), names, plain if is_whole else ())
-
-
-def _local_name(element: Element) -> str:
-    text = element.name or str(element.attrs.get("href", ""))
-    return text.replace("::", "#").rpartition("#")[2]
 
 
 def unit_name(context: Context, element: Element) -> str:

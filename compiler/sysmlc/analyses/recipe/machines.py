@@ -95,9 +95,9 @@ def relations_by_partition(context: Context, node: Element) -> Iterator[Relation
 
 def relations_by_pins(context: Context, step: Element) -> Iterator[Relation]:
     """Yield one relation to all machines that are arguments of a step, which needs all of them."""
-    machines = _machines_of_features(
-        context, (pin for pin in context.graph.owned(step) if _is_argument(pin))
-    )
+    pins = (pin for pin in context.graph.owned(step) if pin.kind is Kind.PIN)
+    arguments = (p for p in pins if p.attrs.get("direction") == "in" and "value" in p.attrs)
+    machines = _machines_of_features(context, arguments)
     if machines:
         yield Relation(step, machines)
 
@@ -106,10 +106,6 @@ def relations_by_parameters(context: Context, behavior: Element) -> Iterator[Rel
     """Yield one relation for each machine among the input parameters of a behaviour."""
     for machine in _machines_of_features(context, query.parameters(context.graph, behavior, "in")):
         yield Relation(behavior, (machine,))
-
-
-def _is_argument(pin: Element) -> bool:
-    return pin.kind is Kind.PIN and pin.attrs.get("direction") == "in" and "value" in pin.attrs
 
 
 def _machines_of_features(context: Context, features: Iterable[Element]) -> tuple[Element, ...]:
@@ -275,7 +271,10 @@ def build_material(context: Context, element: Element) -> Material:
     """Return the material of an element, with its attributes as properties."""
     unit = find_material_unit(context, element)
     tags = replace(context.tags(element, "Material"), material_unit=unit)
-    properties = sorted(_list_properties(context, element), key=_property_order)
+    # By text: values of one name, such as `1` and `red`, may not be comparable.
+    properties = sorted(
+        _list_properties(context, element), key=lambda item: (item[0], str(item[1]))
+    )
     return Material(
         context.name(element),
         tags.amount("available"),
@@ -293,14 +292,6 @@ def find_material_unit(context: Context, material: Element) -> str:
     """Return the unit of a material: its tag ``unit``, else the unit of the available amount."""
     tags = context.tags(material, "Material")
     return tags.text("unit") or tags.unit("available")
-
-
-def _property_order(named_value: tuple[str, Scalar, str]) -> tuple[str, str]:
-    """Return the sort key of a property: its name and the text of its value.
-
-    Values of one name, such as ``1`` and ``red``, may not be comparable.
-    """
-    return named_value[0], str(named_value[1])
 
 
 def _list_properties(context: Context, element: Element) -> Iterator[tuple[str, Scalar, str]]:

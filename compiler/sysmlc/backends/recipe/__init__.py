@@ -44,13 +44,9 @@ class RecipeBackend(Struct, frozen=True):
             text = encode_json(describe_model(model, options.inputs), 2)
             path = f"recipes/{names[model.recipe.id]}.json"
             traced = list(dict.fromkeys((*_iter_traced_elements(model), *model.sources)))
-            traced += _list_applications(graph, traced)
+            elements = [element for id in traced if (element := graph.get(id)) is not None]
+            traced += [item.id for e in elements for item in query.applications(graph, e)]
             output.add(path, text, traced, self.name, name=model.recipe.id)
-
-
-def _list_applications(graph: Graph, ids: Iterable[str]) -> list[str]:
-    elements = (element for id in ids if (element := graph.get(id)) is not None)
-    return [item.id for element in elements for item in query.applications(graph, element)]
 
 
 class _Traced(Protocol):
