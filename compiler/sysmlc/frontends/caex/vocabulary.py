@@ -97,21 +97,11 @@ DIRECTIONS = {"in": "in", "out": "out", "inout": "inout"}
 FOLDED_TAGS = ("Description", "Version", "DefaultValue", "Value")
 """Elements that are stored as text of their parent: a third of the elements of a plant."""
 
-TEXTLESS_TAGS = frozenset(
-    {
-        "Attribute",
-        "AttributeType",
-        "ExternalInterface",
-        "InterfaceClass",
-        "InternalElement",
-        "InternalLink",
-        "RefSemantic",
-        "RoleClass",
-        "RoleRequirements",
-        "SupportedRoleClass",
-        "SystemUnitClass",
-    }
-)
+_TEXTLESS_TAGS_WORDS = """
+    Attribute AttributeType ExternalInterface InterfaceClass InternalElement InternalLink
+    RefSemantic RoleClass RoleRequirements SupportedRoleClass SystemUnitClass
+"""
+TEXTLESS_TAGS = frozenset(_TEXTLESS_TAGS_WORDS.split())
 """Elements that hold no text of their own."""
 
 

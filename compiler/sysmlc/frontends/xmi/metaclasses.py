@@ -6,61 +6,26 @@ from functools import cache
 from sysmlc.ir import Kind
 from sysmlc.ir.verify import OWNERS as OWNERS_IN_GRAPHS
 
+_KINDS_BY_NAME = """
+    Package Profile Class Component Interface DataType Enumeration EnumerationLiteral Signal
+    Association Stereotype UseCase Actor Property Port Connector ConnectorEnd Operation Reception
+    Parameter Slot Constraint Comment Activity ControlFlow ObjectFlow StateMachine Region State
+    FinalState Pseudostate Transition Trigger Interaction Lifeline Message Gate GeneralOrdering
+    Extend ExtensionPoint CollaborationUse ParameterSet GeneralizationSet TemplateParameter
+    TemplateBinding
+"""
+"""Metaclasses whose kind has the same name."""
 _WITHOUT_SUBKIND = {
-    "Package": Kind.PACKAGE,
-    "Profile": Kind.PROFILE,
-    "Class": Kind.CLASS,
-    "Component": Kind.COMPONENT,
-    "Interface": Kind.INTERFACE,
-    "DataType": Kind.DATA_TYPE,
-    "Enumeration": Kind.ENUMERATION,
-    "EnumerationLiteral": Kind.ENUMERATION_LITERAL,
-    "Signal": Kind.SIGNAL,
-    "Association": Kind.ASSOCIATION,
-    "Stereotype": Kind.STEREOTYPE,
-    "UseCase": Kind.USE_CASE,
-    "Actor": Kind.ACTOR,
+    **{name: Kind(name) for name in _KINDS_BY_NAME.split()},
     "InformationItem": Kind.ITEM,
-    "Property": Kind.PROPERTY,
-    "Port": Kind.PORT,
-    "Connector": Kind.CONNECTOR,
-    "ConnectorEnd": Kind.CONNECTOR_END,
     "InformationFlow": Kind.ITEM_FLOW,
-    "Operation": Kind.OPERATION,
-    "Reception": Kind.RECEPTION,
-    "Parameter": Kind.PARAMETER,
     "InstanceSpecification": Kind.INSTANCE,
-    "Slot": Kind.SLOT,
-    "Constraint": Kind.CONSTRAINT,
-    "Comment": Kind.COMMENT,
-    "Activity": Kind.ACTIVITY,
     "ActivityParameterNode": Kind.ACTIVITY_PARAMETER,
     "CentralBufferNode": Kind.OBJECT_NODE,
     "DataStoreNode": Kind.DATA_STORE,
-    "ControlFlow": Kind.CONTROL_FLOW,
-    "ObjectFlow": Kind.OBJECT_FLOW,
     "ActivityPartition": Kind.PARTITION,
-    "StateMachine": Kind.STATE_MACHINE,
-    "Region": Kind.REGION,
-    "State": Kind.STATE,
-    "FinalState": Kind.FINAL_STATE,
-    "Pseudostate": Kind.PSEUDOSTATE,
-    "Transition": Kind.TRANSITION,
-    "Trigger": Kind.TRIGGER,
-    "Interaction": Kind.INTERACTION,
-    "Lifeline": Kind.LIFELINE,
-    "Message": Kind.MESSAGE,
     "OccurrenceSpecification": Kind.OCCURRENCE,
     "InteractionOperand": Kind.OPERAND,
-    "Gate": Kind.GATE,
-    "GeneralOrdering": Kind.GENERAL_ORDERING,
-    "Extend": Kind.EXTEND,
-    "ExtensionPoint": Kind.EXTENSION_POINT,
-    "CollaborationUse": Kind.COLLABORATION_USE,
-    "ParameterSet": Kind.PARAMETER_SET,
-    "GeneralizationSet": Kind.GENERALIZATION_SET,
-    "TemplateParameter": Kind.TEMPLATE_PARAMETER,
-    "TemplateBinding": Kind.TEMPLATE_BINDING,
     "TemplateParameterSubstitution": Kind.TEMPLATE_SUBSTITUTION,
 }
 _WITH_SUBKIND = {
@@ -161,103 +126,76 @@ KINDS: dict[str, tuple[Kind, str]] = {
 }
 """Kind and subkind of each metaclass that becomes an element; ``kind_of`` adds the actions."""
 
+_FEATURES_BY_METACLASS = {
+    "Parameter": "ownedParameter",
+    "Comment": "ownedComment",
+    "Operation": "ownedOperation",
+    "Reception": "ownedReception",
+    "Property": "ownedAttribute ownedEnd qualifier",
+    "EnumerationLiteral": "ownedLiteral",
+    "Connector": "ownedConnector",
+    "Constraint": (
+        "ownedRule precondition postcondition bodyCondition localPrecondition "
+        "localPostcondition stateInvariant invariant condition preCondition postCondition"
+    ),
+    "Port": "ownedPort",
+    "Generalization": "generalization",
+    "InterfaceRealization": "interfaceRealization",
+    "PackageImport": "packageImport metamodelReference",
+    "ElementImport": "elementImport metaclassReference",
+    "PackageMerge": "packageMerge",
+    "ProfileApplication": "profileApplication",
+    "Stereotype": "ownedStereotype",
+    "DeploymentSpecification": "configuration",
+    "Deployment": "deployment",
+    "Manifestation": "manifestation",
+    "Artifact": "nestedArtifact",
+    "Node": "nestedNode",
+    "ComponentRealization": "realization",
+    "Variable": "variable",
+    "Package": "nestedPackage",
+    "ConnectorEnd": "end",
+    "Slot": "slot",
+    "Extend": "extend",
+    "Include": "include",
+    "ExtensionPoint": "extensionPoint",
+    "Region": "region",
+    "Transition": "transition",
+    "State": "subvertex",
+    "Pseudostate": "connectionPoint",
+    "Trigger": "trigger deferrableTrigger",
+    "StructuredActivityNode": "structuredNode",
+    "ActivityPartition": "partition subpartition",
+    "Lifeline": "lifeline",
+    "Message": "message",
+    "InteractionConstraint": "guard",
+    "InteractionOperand": "operand",
+    "GeneralOrdering": "generalOrdering",
+    "Gate": "formalGate actualGate cfragmentGate",
+    "UseCase": "ownedUseCase",
+    "ConnectionPointReference": "connection",
+    "ProtocolConformance": "conformance",
+    "ProtocolStateMachine": "protocol",
+    "CollaborationUse": "collaborationUse",
+    "Dependency": "roleBinding",
+    "Substitution": "substitution",
+    "ParameterSet": "ownedParameterSet",
+    "TemplateSignature": "ownedTemplateSignature",
+    "TemplateBinding": "templateBinding",
+    "TemplateParameterSubstitution": "parameterSubstitution",
+    "ExceptionHandler": "handler",
+    "Clause": "clause",
+    "LinkEndData": "endData",
+    "InputPin": (
+        "argument inputValue input object target first second value insertAt removeAt "
+        "exception request replyValue collection loopVariableInput structuredNodeInput"
+    ),
+    "OutputPin": "result outputValue output loopVariable returnInformation structuredNodeOutput",
+}
 DEFAULT_TYPES = {
-    "ownedParameter": "Parameter",
-    "ownedComment": "Comment",
-    "ownedOperation": "Operation",
-    "ownedReception": "Reception",
-    "ownedAttribute": "Property",
-    "ownedEnd": "Property",
-    "ownedLiteral": "EnumerationLiteral",
-    "ownedConnector": "Connector",
-    "ownedRule": "Constraint",
-    "ownedPort": "Port",
-    "qualifier": "Property",
-    "generalization": "Generalization",
-    "interfaceRealization": "InterfaceRealization",
-    "packageImport": "PackageImport",
-    "elementImport": "ElementImport",
-    "packageMerge": "PackageMerge",
-    "metamodelReference": "PackageImport",
-    "metaclassReference": "ElementImport",
-    "profileApplication": "ProfileApplication",
-    "ownedStereotype": "Stereotype",
-    "configuration": "DeploymentSpecification",
-    "deployment": "Deployment",
-    "manifestation": "Manifestation",
-    "nestedArtifact": "Artifact",
-    "nestedNode": "Node",
-    "realization": "ComponentRealization",
-    "variable": "Variable",
-    "nestedPackage": "Package",
-    "precondition": "Constraint",
-    "postcondition": "Constraint",
-    "bodyCondition": "Constraint",
-    "localPrecondition": "Constraint",
-    "localPostcondition": "Constraint",
-    "stateInvariant": "Constraint",
-    "end": "ConnectorEnd",
-    "slot": "Slot",
-    "extend": "Extend",
-    "include": "Include",
-    "extensionPoint": "ExtensionPoint",
-    "region": "Region",
-    "transition": "Transition",
-    "subvertex": "State",
-    "connectionPoint": "Pseudostate",
-    "trigger": "Trigger",
-    "deferrableTrigger": "Trigger",
-    "structuredNode": "StructuredActivityNode",
-    "partition": "ActivityPartition",
-    "subpartition": "ActivityPartition",
-    "lifeline": "Lifeline",
-    "message": "Message",
-    "guard": "InteractionConstraint",
-    "invariant": "Constraint",
-    "operand": "InteractionOperand",
-    "generalOrdering": "GeneralOrdering",
-    "formalGate": "Gate",
-    "actualGate": "Gate",
-    "cfragmentGate": "Gate",
-    "condition": "Constraint",
-    "ownedUseCase": "UseCase",
-    "connection": "ConnectionPointReference",
-    "conformance": "ProtocolConformance",
-    "protocol": "ProtocolStateMachine",
-    "preCondition": "Constraint",
-    "postCondition": "Constraint",
-    "collaborationUse": "CollaborationUse",
-    "roleBinding": "Dependency",
-    "substitution": "Substitution",
-    "ownedParameterSet": "ParameterSet",
-    "ownedTemplateSignature": "TemplateSignature",
-    "templateBinding": "TemplateBinding",
-    "parameterSubstitution": "TemplateParameterSubstitution",
-    "handler": "ExceptionHandler",
-    "clause": "Clause",
-    "endData": "LinkEndData",
-    "argument": "InputPin",
-    "inputValue": "InputPin",
-    "input": "InputPin",
-    "object": "InputPin",
-    "target": "InputPin",
-    "first": "InputPin",
-    "second": "InputPin",
-    "value": "InputPin",
-    "insertAt": "InputPin",
-    "removeAt": "InputPin",
-    "exception": "InputPin",
-    "request": "InputPin",
-    "replyValue": "InputPin",
-    "collection": "InputPin",
-    "loopVariableInput": "InputPin",
-    "structuredNodeInput": "InputPin",
-    "result": "OutputPin",
-    "outputValue": "OutputPin",
-    "output": "OutputPin",
-    "loopVariable": "OutputPin",
-    "returnInformation": "OutputPin",
-    "structuredNodeOutput": "OutputPin",
+    feature: metaclass
+    for metaclass, features in _FEATURES_BY_METACLASS.items()
+    for feature in features.split()
 }
 """Metaclass of an element without ``xmi:type``: the declared type of its feature (UML 2.5.1)."""
 
@@ -286,30 +224,15 @@ EVENT_TYPES = {
 An event is no element: its content becomes part of these triggers.
 """
 
-LITERALS = frozenset(
-    {
-        "LiteralBoolean",
-        "LiteralInteger",
-        "LiteralReal",
-        "LiteralString",
-        "LiteralUnlimitedNatural",
-        "LiteralNull",
-    }
-)
-VALUE_TYPES = LITERALS | frozenset(
-    {
-        "InstanceValue",
-        "ElementValue",
-        "OpaqueExpression",
-        "Expression",
-        "StringExpression",
-        "TimeExpression",
-        "Duration",
-        "Interval",
-        "TimeInterval",
-        "DurationInterval",
-    }
-)
+_LITERALS_WORDS = """
+    LiteralBoolean LiteralInteger LiteralReal LiteralString LiteralUnlimitedNatural LiteralNull
+"""
+LITERALS = frozenset(_LITERALS_WORDS.split())
+_VALUE_TYPES_WORDS = """
+    InstanceValue ElementValue OpaqueExpression Expression StringExpression TimeExpression Duration
+    Interval TimeInterval DurationInterval
+"""
+VALUE_TYPES = LITERALS | frozenset(_VALUE_TYPES_WORDS.split())
 """Metaclasses of value specifications (UML 2.5.1 clause 8)."""
 
 OWNERS: dict[Kind, frozenset[Kind]] = {

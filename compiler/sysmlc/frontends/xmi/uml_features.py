@@ -10,199 +10,57 @@ from sysmlc.frontends.xmi.metaclasses import DEFAULT_TYPES
 from sysmlc.frontends.xmi.vocabulary import FOLDED_REFERENCES, REDUNDANT, REFERENCES
 from sysmlc.support import resources
 
-REDUNDANT_REFERENCES = REDUNDANT | {
-    "abstraction",
-    "associationEnd",
-    "datatype",
-    "definingEnd",
-    "deployedElement",
-    "deployment",
-    "enumeration",
-    "featuringClassifier",
-    "generalizationSet",
-    "implementingClassifier",
-    "importedMember",
-    "inActivity",
-    "inheritedMember",
-    "inheritedParameter",
-    "interface",
-    "interruptingEdge",
-    "metaclass",
-    "namespace",
-    "nestedPackage",
-    "nestingPackage",
-    "opposite",
-    "owningAssociation",
-    "owningInstance",
-    "package",
-    "part",
-    "predecessorClause",
-    "profile",
-    "protectedNode",
-    "redefinedElement",
-    "subgroup",
-    "submachineState",
-    "substitutingClassifier",
-    "successorClause",
-    "superClass",
-    "superGroup",
-    "superPartition",
-}
+_REDUNDANT_REFERENCES_WORDS = """
+    abstraction associationEnd datatype definingEnd deployedElement deployment enumeration
+    featuringClassifier generalizationSet implementingClassifier importedMember inActivity
+    inheritedMember inheritedParameter interface interruptingEdge metaclass namespace nestedPackage
+    nestingPackage opposite owningAssociation owningInstance package part predecessorClause profile
+    protectedNode redefinedElement subgroup submachineState substitutingClassifier successorClause
+    superClass superGroup superPartition
+"""
+REDUNDANT_REFERENCES = REDUNDANT | frozenset(_REDUNDANT_REFERENCES_WORDS.split())
 """References whose relation another feature or ownership states (UML 2.5.1: opposite, derived)."""
 
-_STORED_REFERENCES = frozenset(
-    {
-        "bodyOutput",
-        "bodyPart",
-        "connector",
-        "constrainingClassifier",
-        "decider",
-        "decisionInput",
-        "decisionInputFlow",
-        "decomposedAs",
-        "destroyAt",
-        "end",
-        "extendedSignature",
-        "inState",
-        "inputElement",
-        "insertAt",
-        "instance",
-        "interrupts",
-        "newClassifier",
-        "observation",
-        "oldClassifier",
-        "onPort",
-        "outputElement",
-        "port",
-        "protocol",
-        "raisedException",
-        "redefinedInterface",
-        "reducer",
-        "regionAsInput",
-        "regionAsOutput",
-        "replyToCall",
-        "representation",
-        "returnValueRecipient",
-        "selection",
-        "setupPart",
-        "test",
-        "transformation",
-    }
-)
+_STORED_REFERENCES_WORDS = """
+    bodyOutput bodyPart connector constrainingClassifier decider decisionInput decisionInputFlow
+    decomposedAs destroyAt end extendedSignature inState inputElement insertAt instance interrupts
+    newClassifier observation oldClassifier onPort outputElement port protocol raisedException
+    redefinedInterface reducer regionAsInput regionAsOutput replyToCall representation
+    returnValueRecipient selection setupPart test transformation
+"""
+_STORED_REFERENCES = frozenset(_STORED_REFERENCES_WORDS.split())
 """References of UML 2.5.1 that are no edges: the graph stores their ids in an attribute."""
 
 NAMING = REDUNDANT_REFERENCES | _STORED_REFERENCES | REFERENCES.keys() | FOLDED_REFERENCES.keys()
 """All features that name elements."""
 
-CHECKED_BY_RESOLVE = frozenset(
-    {
-        "connector",
-        "decision_input",
-        "decision_input_flow",
-        "defining_end",
-        "interrupts",
-        "on_port",
-        "port",
-        "raised_exception",
-        "test",
-        "body_part",
-        "setup_part",
-    }
-)
+_CHECKED_BY_RESOLVE_WORDS = """
+    connector decision_input decision_input_flow defining_end interrupts on_port port
+    raised_exception test body_part setup_part
+"""
+CHECKED_BY_RESOLVE = frozenset(_CHECKED_BY_RESOLVE_WORDS.split())
 """Attributes of the graph whose ids the pass ``resolve`` checks and reports."""
 
-_TEXTS = frozenset(
-    {
-        "URI",
-        "aggregation",
-        "alias",
-        "allowSubstitutable",
-        "body",
-        "concurrency",
-        "content",
-        "default",
-        "deploymentLocation",
-        "direction",
-        "effect",
-        "executionLocation",
-        "fileName",
-        "firstEvent",
-        "format",
-        "interactionOperator",
-        "kind",
-        "language",
-        "location",
-        "lower",
-        "messageKind",
-        "messageSort",
-        "mode",
-        "mustIsolate",
-        "name",
-        "ordering",
-        "qualifiedName",
-        "setting",
-        "symbol",
-        "upper",
-        "value",
-        "viewpoint",
-        "visibility",
-    }
-)
+_TEXTS_WORDS = """
+    URI aggregation alias allowSubstitutable body concurrency content default deploymentLocation
+    direction effect executionLocation fileName firstEvent format interactionOperator kind language
+    location lower messageKind messageSort mode mustIsolate name ordering qualifiedName setting
+    symbol upper value viewpoint visibility
+"""
+_TEXTS = frozenset(_TEXTS_WORDS.split())
 """Features of UML 2.5.1 that are texts, numbers or words."""
 
-FLAGS = frozenset(
-    {
-        "isAbstract",
-        "isActive",
-        "isAssured",
-        "isBehavior",
-        "isCombineDuplicate",
-        "isComposite",
-        "isConjugated",
-        "isControl",
-        "isControlType",
-        "isCovering",
-        "isDerived",
-        "isDerivedUnion",
-        "isDestroyDuplicates",
-        "isDestroyLinks",
-        "isDestroyOwnedObjects",
-        "isDeterminate",
-        "isDimension",
-        "isDirect",
-        "isDisjoint",
-        "isException",
-        "isExternal",
-        "isFinalSpecialization",
-        "isID",
-        "isIndirectlyInstantiated",
-        "isLeaf",
-        "isLocallyReentrant",
-        "isMulticast",
-        "isMultireceive",
-        "isOrdered",
-        "isOrthogonal",
-        "isQuery",
-        "isReadOnly",
-        "isReentrant",
-        "isRelative",
-        "isRemoveDuplicates",
-        "isReplaceAll",
-        "isRequired",
-        "isService",
-        "isSimple",
-        "isSingleExecution",
-        "isStatic",
-        "isStream",
-        "isStrict",
-        "isSubmachineState",
-        "isSubstitutable",
-        "isSynchronous",
-        "isTestedFirst",
-        "isUnique",
-        "isUnmarshall",
-    }
-)
+_FLAGS_WORDS = """
+    isAbstract isActive isAssured isBehavior isCombineDuplicate isComposite isConjugated isControl
+    isControlType isCovering isDerived isDerivedUnion isDestroyDuplicates isDestroyLinks
+    isDestroyOwnedObjects isDeterminate isDimension isDirect isDisjoint isException isExternal
+    isFinalSpecialization isID isIndirectlyInstantiated isLeaf isLocallyReentrant isMulticast
+    isMultireceive isOrdered isOrthogonal isQuery isReadOnly isReentrant isRelative
+    isRemoveDuplicates isReplaceAll isRequired isService isSimple isSingleExecution isStatic
+    isStream isStrict isSubmachineState isSubstitutable isSynchronous isTestedFirst isUnique
+    isUnmarshall
+"""
+FLAGS = frozenset(_FLAGS_WORDS.split())
 """Features of UML 2.5.1 that are truth values."""
 
 WORDS = {
@@ -221,49 +79,14 @@ A later pass checks aggregations and directions, because plants have them too; t
 VALUES: dict[str, tuple[str, ...]] = {**WORDS, **dict.fromkeys(FLAGS, ("true", "false"))}
 """The valid values of flags and enumerated attributes."""
 
-_CONTAINED = frozenset(
-    {
-        "changeExpression",
-        "defaultValue",
-        "doActivity",
-        "event",
-        "exceptionInput",
-        "exceptionType",
-        "executableNode",
-        "expr",
-        "fragment",
-        "fromAction",
-        "handlerBody",
-        "icon",
-        "joinSpec",
-        "lowerValue",
-        "mapping",
-        "max",
-        "maxint",
-        "min",
-        "minint",
-        "nameExpression",
-        "nestedClassifier",
-        "ownedActual",
-        "ownedBehavior",
-        "ownedDefault",
-        "ownedElement",
-        "ownedGroup",
-        "ownedNode",
-        "ownedParameteredElement",
-        "ownedType",
-        "packagedElement",
-        "partWithPort",
-        "referred",
-        "returnValue",
-        "selector",
-        "specification",
-        "upperBound",
-        "upperValue",
-        "weight",
-        "when",
-    }
-)
+_CONTAINED_WORDS = """
+    changeExpression defaultValue doActivity event exceptionInput exceptionType executableNode expr
+    fragment fromAction handlerBody icon joinSpec lowerValue mapping max maxint min minint
+    nameExpression nestedClassifier ownedActual ownedBehavior ownedDefault ownedElement ownedGroup
+    ownedNode ownedParameteredElement ownedType packagedElement partWithPort referred returnValue
+    selector specification upperBound upperValue weight when
+"""
+_CONTAINED = frozenset(_CONTAINED_WORDS.split())
 """Features that contain elements, and references that handlers of single metaclasses follow."""
 
 FEATURES = _TEXTS | FLAGS | NAMING | _CONTAINED | DEFAULT_TYPES.keys()

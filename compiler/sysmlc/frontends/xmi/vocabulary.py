@@ -14,78 +14,45 @@ NOTATION_FEATURES = frozenset({"eAnnotations", "icon", "Documentation", "Extensi
 EXTENSION_CONTENT = ("primitivetypes", "profiles")
 """Parts of Enterprise Architect's extension that contain UML elements."""
 
+_FEATURES_BY_EDGE = {
+    Edge.TYPED_BY: "type powertype",
+    Edge.SUBSETS: "subsettedProperty",
+    Edge.REDEFINES: (
+        "redefinedProperty redefinedPort redefinedOperation redefinedClassifier "
+        "redefinedBehavior redefinedConnector redefinedNode redefinedEdge redefinedState "
+        "redefinedTransition extendedRegion extendedStateMachine"
+    ),
+    Edge.END: "memberEnd",
+    Edge.ROLE: "role",
+    Edge.CLIENT: "client realizingClassifier",
+    Edge.SUPPLIER: "supplier utilizedElement deployedArtifact",
+    Edge.CONVEYS: "conveyed",
+    Edge.FLOW_SOURCE: "informationSource source before",
+    Edge.FLOW_TARGET: "informationTarget target after",
+    Edge.REALIZING: "realization realizingConnector realizingActivityEdge realizingMessage",
+    Edge.REPRESENTS: "represented represents",
+    Edge.REFERENCES: (
+        "annotatedElement constrainedElement importedPackage importedElement mergedPackage "
+        "parameter extensionLocation actual parameteredElement generalization entry exit"
+    ),
+    Edge.CLASSIFIER_BEHAVIOR: "classifierBehavior",
+    Edge.METHOD: "method",
+    Edge.CALLS: (
+        "behavior operation signal structuralFeature variable unmarshallType signature "
+        "submachine action refersTo"
+    ),
+    Edge.INSTANCE_OF: "classifier definingFeature formal",
+    Edge.IN_PARTITION: "inPartition inInterruptibleRegion",
+    Edge.SUBJECT: "subject",
+    Edge.EXTENDS: "extendedCase",
+    Edge.COVERS: "covered",
+    Edge.SEND_EVENT: "sendEvent",
+    Edge.RECEIVE_EVENT: "receiveEvent",
+    Edge.START: "start",
+    Edge.FINISH: "finish",
+}
 REFERENCES: dict[str, Edge] = {
-    "type": Edge.TYPED_BY,
-    "subsettedProperty": Edge.SUBSETS,
-    "redefinedProperty": Edge.REDEFINES,
-    "redefinedPort": Edge.REDEFINES,
-    "redefinedOperation": Edge.REDEFINES,
-    "redefinedClassifier": Edge.REDEFINES,
-    "redefinedBehavior": Edge.REDEFINES,
-    "redefinedConnector": Edge.REDEFINES,
-    "redefinedNode": Edge.REDEFINES,
-    "redefinedEdge": Edge.REDEFINES,
-    "redefinedState": Edge.REDEFINES,
-    "redefinedTransition": Edge.REDEFINES,
-    "extendedRegion": Edge.REDEFINES,
-    "extendedStateMachine": Edge.REDEFINES,
-    "memberEnd": Edge.END,
-    "role": Edge.ROLE,
-    "client": Edge.CLIENT,
-    "supplier": Edge.SUPPLIER,
-    "utilizedElement": Edge.SUPPLIER,
-    "deployedArtifact": Edge.SUPPLIER,
-    "realizingClassifier": Edge.CLIENT,
-    "conveyed": Edge.CONVEYS,
-    "informationSource": Edge.FLOW_SOURCE,
-    "informationTarget": Edge.FLOW_TARGET,
-    "realization": Edge.REALIZING,
-    "realizingConnector": Edge.REALIZING,
-    "realizingActivityEdge": Edge.REALIZING,
-    "realizingMessage": Edge.REALIZING,
-    "represented": Edge.REPRESENTS,
-    "annotatedElement": Edge.REFERENCES,
-    "constrainedElement": Edge.REFERENCES,
-    "importedPackage": Edge.REFERENCES,
-    "importedElement": Edge.REFERENCES,
-    "mergedPackage": Edge.REFERENCES,
-    "classifierBehavior": Edge.CLASSIFIER_BEHAVIOR,
-    "method": Edge.METHOD,
-    "behavior": Edge.CALLS,
-    "operation": Edge.CALLS,
-    "signal": Edge.CALLS,
-    "structuralFeature": Edge.CALLS,
-    "variable": Edge.CALLS,
-    "unmarshallType": Edge.CALLS,
-    "signature": Edge.CALLS,
-    "submachine": Edge.CALLS,
-    "classifier": Edge.INSTANCE_OF,
-    "definingFeature": Edge.INSTANCE_OF,
-    "source": Edge.FLOW_SOURCE,
-    "target": Edge.FLOW_TARGET,
-    "represents": Edge.REPRESENTS,
-    "inPartition": Edge.IN_PARTITION,
-    "inInterruptibleRegion": Edge.IN_PARTITION,
-    "parameter": Edge.REFERENCES,
-    "subject": Edge.SUBJECT,
-    "extendedCase": Edge.EXTENDS,
-    "extensionLocation": Edge.REFERENCES,
-    "covered": Edge.COVERS,
-    "sendEvent": Edge.SEND_EVENT,
-    "receiveEvent": Edge.RECEIVE_EVENT,
-    "start": Edge.START,
-    "finish": Edge.FINISH,
-    "action": Edge.CALLS,
-    "refersTo": Edge.CALLS,
-    "before": Edge.FLOW_SOURCE,
-    "after": Edge.FLOW_TARGET,
-    "formal": Edge.INSTANCE_OF,
-    "actual": Edge.REFERENCES,
-    "parameteredElement": Edge.REFERENCES,
-    "generalization": Edge.REFERENCES,
-    "powertype": Edge.TYPED_BY,
-    "entry": Edge.REFERENCES,
-    "exit": Edge.REFERENCES,
+    feature: edge for edge, features in _FEATURES_BY_EDGE.items() for feature in features.split()
 }
 """Edge of a feature that refers to elements; ``REFERENCES_BY_KIND`` overrides it for some kinds."""
 
@@ -131,87 +98,20 @@ REVERSED: dict[tuple[Kind, str], Edge] = {
 }
 """Features whose edge leads from the target to the element that has the feature."""
 
-REDUNDANT = frozenset(
-    {
-        "incoming",
-        "outgoing",
-        "clientDependency",
-        "supplierDependency",
-        "navigableOwnedEnd",
-        "association",
-        "coveredBy",
-        "specialization",
-        "powertypeExtent",
-        "endType",
-        "relatedElement",
-        "relatedType",
-        "containedEdge",
-        "containedNode",
-        "edge",
-        "group",
-        "inGroup",
-        "inStructuredNode",
-        "node",
-        "partition",
-        "structuredNode",
-        "owner",
-        "ownedMember",
-        "member",
-        "metaclassReference",
-        "metamodelReference",
-        "interfaceRealization",
-        "importingNamespace",
-        "receivingPackage",
-        "applyingPackage",
-        "informationFlow",
-        "class",
-        "ownedEnd",
-        "container",
-        "context",
-        "activity",
-        "state",
-        "stateMachine",
-        "owningPackage",
-        "interaction",
-        "collaborationRole",
-        "attribute",
-        "feature",
-        "required",
-        "provided",
-        "result",
-        "argument",
-        "owningProperty",
-        "owningParameter",
-        "owningExpression",
-        "subExpression",
-        "bodyPin",
-        "message",
-        "useCase",
-        "toBefore",
-        "toAfter",
-        "execution",
-        "enclosingInteraction",
-        "enclosingOperand",
-        "extension",
-        "includingCase",
-        "specificMachine",
-        "parameterSet",
-        "scope",
-        "activityScope",
-        "boundElement",
-        "template",
-        "templateBinding",
-        "templateParameter",
-        "owningTemplateParameter",
-        "ownedRule",
-        "packageImport",
-        "elementImport",
-        "contract",
-        "specific",
-        "redefinitionContext",
-        "subsettingContext",
-    }
-)
+_REDUNDANT_WORDS = """
+    incoming outgoing clientDependency supplierDependency navigableOwnedEnd association coveredBy
+    specialization powertypeExtent endType relatedElement relatedType containedEdge containedNode
+    edge group inGroup inStructuredNode node partition structuredNode owner ownedMember member
+    metaclassReference metamodelReference interfaceRealization importingNamespace receivingPackage
+    applyingPackage informationFlow class ownedEnd container context activity state stateMachine
+    owningPackage interaction collaborationRole attribute feature required provided result argument
+    owningProperty owningParameter owningExpression subExpression bodyPin message useCase toBefore
+    toAfter execution enclosingInteraction enclosingOperand extension includingCase specificMachine
+    parameterSet scope activityScope boundElement template templateBinding templateParameter
+    owningTemplateParameter ownedRule packageImport elementImport contract specific
+    redefinitionContext subsettingContext
+"""
+REDUNDANT = frozenset(_REDUNDANT_WORDS.split())
 """References that repeat the reference of the other end, or ownership; no edge follows them."""
 
 TRUE = frozenset({"true", "1"})
@@ -287,18 +187,10 @@ STATE_BEHAVIOURS = {
     "effect": Edge.EFFECT,
 }
 
-LISTS = frozenset(
-    {
-        "test",
-        "body_part",
-        "setup_part",
-        "loop_variable",
-        "body_output",
-        "input_element",
-        "output_element",
-        "observations",
-    }
-)
+_LISTS_WORDS = """
+    test body_part setup_part loop_variable body_output input_element output_element observations
+"""
+LISTS = frozenset(_LISTS_WORDS.split())
 """Attributes with ids that are tuples even if there is only one id."""
 
 TARGET_KINDS: dict[str, Kind] = {
