@@ -27,7 +27,15 @@ _DEPENDENCIES = {
     "Allocate": "abstraction",
 }
 
+_KINDS_BY_NAME = """
+    Package Profile Stereotype Interface Signal DataType Enumeration EnumerationLiteral Actor
+    UseCase Slot Operation Reception Parameter Constraint Comment Connector ItemFlow Activity
+    ControlFlow ObjectFlow StateMachine Region State FinalState Transition Trigger Interaction
+    Lifeline Message
+"""
+"""Types whose kind has the same name."""
 KINDS: dict[str, tuple[Kind, str]] = {
+    **{name: (Kind(name), "") for name in _KINDS_BY_NAME.split()},
     **dict.fromkeys(_CLASSES, (Kind.CLASS, "")),
     **dict.fromkeys(_PROPERTIES, (Kind.PROPERTY, "")),
     **dict.fromkeys(("Port", "ProxyPort", "FullPort", "FlowPort"), (Kind.PORT, "")),
@@ -36,30 +44,11 @@ KINDS: dict[str, tuple[Kind, str]] = {
         ("Association", "Composition", "Aggregation", "AssociationBlock"), (Kind.ASSOCIATION, "")
     ),
     "Model": (Kind.PACKAGE, "model"),
-    "Package": (Kind.PACKAGE, ""),
-    "Profile": (Kind.PROFILE, ""),
-    "Stereotype": (Kind.STEREOTYPE, ""),
-    "Interface": (Kind.INTERFACE, ""),
-    "Signal": (Kind.SIGNAL, ""),
     "ValueType": (Kind.DATA_TYPE, ""),
-    "DataType": (Kind.DATA_TYPE, ""),
-    "Enumeration": (Kind.ENUMERATION, ""),
-    "EnumerationLiteral": (Kind.ENUMERATION_LITERAL, ""),
-    "Actor": (Kind.ACTOR, ""),
-    "UseCase": (Kind.USE_CASE, ""),
     "InstanceSpecification": (Kind.INSTANCE, ""),
     "Unit": (Kind.INSTANCE, ""),
     "QuantityKind": (Kind.INSTANCE, ""),
-    "Slot": (Kind.SLOT, ""),
-    "Operation": (Kind.OPERATION, ""),
-    "Reception": (Kind.RECEPTION, ""),
-    "Parameter": (Kind.PARAMETER, ""),
-    "Constraint": (Kind.CONSTRAINT, ""),
-    "Comment": (Kind.COMMENT, ""),
-    "Connector": (Kind.CONNECTOR, ""),
     "InformationFlow": (Kind.ITEM_FLOW, ""),
-    "ItemFlow": (Kind.ITEM_FLOW, ""),
-    "Activity": (Kind.ACTIVITY, ""),
     "OpaqueBehavior": (Kind.ACTIVITY, "opaque"),
     "FunctionBehavior": (Kind.ACTIVITY, "function"),
     "OpaqueAction": (Kind.ACTION, "opaque"),
@@ -80,23 +69,12 @@ KINDS: dict[str, tuple[Kind, str]] = {
     "JoinNode": (Kind.CONTROL, "join"),
     "MergeNode": (Kind.CONTROL, "merge"),
     "DecisionNode": (Kind.CONTROL, "decision"),
-    "ControlFlow": (Kind.CONTROL_FLOW, ""),
-    "ObjectFlow": (Kind.OBJECT_FLOW, ""),
     "ActivityPartition": (Kind.PARTITION, ""),
-    "StateMachine": (Kind.STATE_MACHINE, ""),
-    "Region": (Kind.REGION, ""),
-    "State": (Kind.STATE, ""),
-    "FinalState": (Kind.FINAL_STATE, ""),
     "InitialPseudoState": (Kind.PSEUDOSTATE, "initial"),
     "ChoicePseudoState": (Kind.PSEUDOSTATE, "choice"),
     "JunctionPseudoState": (Kind.PSEUDOSTATE, "junction"),
     "ForkPseudoState": (Kind.PSEUDOSTATE, "fork"),
     "JoinPseudoState": (Kind.PSEUDOSTATE, "join"),
-    "Transition": (Kind.TRANSITION, ""),
-    "Trigger": (Kind.TRIGGER, ""),
-    "Interaction": (Kind.INTERACTION, ""),
-    "Lifeline": (Kind.LIFELINE, ""),
-    "Message": (Kind.MESSAGE, ""),
 }
 """Kind and subkind by type without prefix."""
 

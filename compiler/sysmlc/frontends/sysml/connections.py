@@ -37,7 +37,7 @@ def lower_connector(lowering: Lowering, node: Node, owner: Element, role: str = 
         _lower_end(lowering, end, connector)
     for type_ in lowering.trees.types_of(node):
         if lowering.trees.document_of(type_) is not None:
-            _defer_type(lowering, connector, type_)
+            lowering.defer_edges(Edge.TYPED_BY, connector, [type_])
     for member in nodes.body_of(node):
         if member in ends:
             lowering.lower_annotations(member, connector)
@@ -48,12 +48,6 @@ def lower_connector(lowering: Lowering, node: Node, owner: Element, role: str = 
         else:
             lowering.verdicts.mark_approximated(member, "a feature of a connection", "nothing")
     return connector
-
-
-def _defer_type(lowering: Lowering, connector: Element, type_: Node) -> None:
-    lowering.queue.defer_until_elements(
-        lambda: lowering.connect_node(Edge.TYPED_BY, connector, type_)
-    )
 
 
 def _lower_end(lowering: Lowering, node: Node, connector: Element) -> None:

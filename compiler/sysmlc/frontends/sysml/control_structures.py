@@ -104,9 +104,7 @@ def _lower_range(lowering: Lowering, node: Node, region: Element) -> None:
     types = lowering.trees.types_of(variable)
     if not types and feature is not None:
         types = lowering.trees.types_of(feature)
-    lowering.queue.defer_until_elements(
-        lambda: lowering.connect_nodes(Edge.TYPED_BY, element, types)
-    )
+    lowering.defer_edges(Edge.TYPED_BY, element, types)
 
 
 # -- blocks ------------------------------------------------------------------------------------

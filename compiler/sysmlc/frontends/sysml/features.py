@@ -211,9 +211,7 @@ def _add_usage_class(lowering: Lowering, node: Node, feature: Element) -> Elemen
     if feature.attrs.pop("variation", False):
         lowering.set_attributes(class_, variation=True)
     lowering.elements.usage_classes[id(node)] = class_
-    lowering.queue.defer_until_elements(
-        lambda: lowering.connect_nodes(Edge.SPECIALIZES, class_, lowering.trees.types_of(node))
-    )
+    lowering.defer_edges(Edge.SPECIALIZES, class_, lowering.trees.types_of(node))
     # Metadata may give the feature another name than the text has.
     lowering.queue.defer_until_edges(lambda: lowering.graph.rename(class_, feature.name))
     return class_

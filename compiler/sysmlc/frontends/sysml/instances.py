@@ -117,9 +117,7 @@ def lower_part(lowering: Lowering, node: Node, owner: Element) -> None:
     )
     reference = nodes.find_reference(node, "Redefinition", *nodes.SUBSETTINGS)
     lowering.connect_reference(Edge.REPRESENTS, part, reference)
-    lowering.queue.defer_until_elements(
-        lambda: lowering.connect_nodes(Edge.INSTANCE_OF, part, lowering.trees.types_of(node))
-    )
+    lowering.defer_edges(Edge.INSTANCE_OF, part, lowering.trees.types_of(node))
     lowering.queue.defer_until_edges(lambda: _name_after_part(lowering.graph, part))
     _lower_members(lowering, node, part)
 
@@ -157,9 +155,7 @@ def _set_slot_value(lowering: Lowering, slot: Element, value: Node) -> None:
         values.set_value(lowering, slot, "value", value)
         return
     quantities.set_kind(lowering.graph, slot, "value", value)
-    lowering.queue.defer_until_elements(
-        lambda: lowering.connect_nodes(Edge.REFERENCES, slot, instances)
-    )
+    lowering.defer_edges(Edge.REFERENCES, slot, instances)
 
 
 def _list_instances(trees: Trees, value: Node) -> list[Node]:

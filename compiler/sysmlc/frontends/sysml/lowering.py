@@ -145,9 +145,11 @@ class Lowering:
     def connect_reference(self, edge: Edge, source: Element, reference: Reference | None) -> None:
         """Connect an element to the target of a reference, once all elements exist."""
         if reference is not None:
-            self.queue.defer_until_elements(
-                lambda: self.connect_node(edge, source, reference.target)
-            )
+            self.defer_edges(edge, source, [reference.target])
+
+    def defer_edges(self, edge: Edge, source: Element, targets: Iterable[Node | None]) -> None:
+        """Connect an element to those of several nodes, once all elements exist."""
+        self.queue.defer_until_elements(lambda: self.connect_nodes(edge, source, targets))
 
     def connect_node(self, edge: Edge, source: Element, target: Node | None) -> None:
         """Connect an element to that of a node, or to a stub if the node is in the library.
@@ -167,7 +169,7 @@ class Lowering:
         else:
             self._report_unread_target(edge, source, target)
 
-    def connect_nodes(self, edge: Edge, source: Element, targets: Iterable[Node]) -> None:
+    def connect_nodes(self, edge: Edge, source: Element, targets: Iterable[Node | None]) -> None:
         """Connect an element to those of several nodes."""
         for target in targets:
             self.connect_node(edge, source, target)

@@ -227,17 +227,11 @@ def allocate_arguments(lowering: Lowering, node: Node, owner: Element) -> None:
         features = [feature for feature in path if feature is not None]
         if len(features) == len(path) and _is_path_of_plant(features):
             allocation = _add_allocation(lowering, member, owner, parameter, features)
-            _defer_supplier(lowering, allocation, features[-1])
+            lowering.defer_edges(Edge.SUPPLIER, allocation, [features[-1]])
 
 
 def _is_path_of_plant(features: list[Node]) -> bool:
     return bool(features) and all(feature.kind.endswith("Usage") for feature in features)
-
-
-def _defer_supplier(lowering: Lowering, allocation: Element, feature: Node) -> None:
-    lowering.queue.defer_until_elements(
-        lambda: lowering.connect_node(Edge.SUPPLIER, allocation, feature)
-    )
 
 
 def _add_allocation(

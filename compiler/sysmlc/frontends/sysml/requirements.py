@@ -167,15 +167,11 @@ def _lower_member(lowering: Lowering, node: Node, requirement: Element) -> None:
 def lower_subject(lowering: Lowering, node: Node, element: Element) -> None:
     """Connect a requirement or a use case to the types of its subject."""
     for type_ in lowering.trees.types_of(node):
-        _defer_subject(lowering, element, type_)
+        lowering.defer_edges(Edge.SUBJECT, element, [type_])
     if node.name:
         lowering.graph.set(element, subject_name=node.name)
     if nodes.value_of(node) is not None:
         lowering.verdicts.mark_approximated(node, "the value of a subject", "its type")
-
-
-def _defer_subject(lowering: Lowering, element: Element, type_: Node) -> None:
-    lowering.queue.defer_until_elements(lambda: lowering.connect_node(Edge.SUBJECT, element, type_))
 
 
 # -- satisfy and verify ------------------------------------------------------------------------
@@ -207,9 +203,7 @@ def lower_satisfaction(lowering: Lowering, node: Node, owner: Element | None) ->
     if value is None and owner is not None:
         lowering.graph.connect(Edge.CLIENT, satisfaction, owner)
     else:
-        lowering.queue.defer_until_elements(
-            lambda: lowering.connect_node(Edge.CLIENT, satisfaction, satisfying)
-        )
+        lowering.defer_edges(Edge.CLIENT, satisfaction, [satisfying])
 
 
 def _find_requirement(reference: Reference | None) -> Node | None:

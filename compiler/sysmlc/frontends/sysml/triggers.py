@@ -70,9 +70,7 @@ def _describe_payload(lowering: Lowering, trigger: Element, payload: Node) -> No
     else:
         name = nodes.name_of(payload)
         lowering.set_attributes(trigger, subkind="signal", payload=name)
-        lowering.queue.defer_until_elements(
-            lambda: lowering.connect_nodes(Edge.TYPED_BY, trigger, types)
-        )
+        lowering.defer_edges(Edge.TYPED_BY, trigger, types)
         if not types:
             lowering.connect_node(Edge.TYPED_BY, trigger, None)
         lowering.queue.defer_until_elements(lambda: _mark_call(lowering, trigger))

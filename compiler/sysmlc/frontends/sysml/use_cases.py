@@ -54,9 +54,7 @@ def _associate(lowering: Lowering, node: Node, use_case: Element) -> None:
     graph.connect(Edge.TYPED_BY, case_end, use_case)
     actor_end = lowering.add_derived(node, Kind.PROPERTY, nodes.name_of(node), association)
     graph.connect(Edge.END, association, actor_end)
-    lowering.queue.defer_until_elements(
-        lambda: lowering.connect_nodes(Edge.TYPED_BY, actor_end, lowering.trees.types_of(node))
-    )
+    lowering.defer_edges(Edge.TYPED_BY, actor_end, lowering.trees.types_of(node))
 
 
 def _find_association(lowering: Lowering, actor: Node, use_case: Element) -> Element | None:
