@@ -29,15 +29,12 @@ def overrides_attribute(types: TypeTable, document: Document, node: Node, member
         if _has_other_definition(types, document, attribute, inherited):
             return True
         for child in attribute.iter_children("Attribute"):
-            inner = _find_inner(inherited, child)
+            type = inherited.type
+            inner = type.find_member(child.tag, child.name) if type is not None else None
             if inner is None:
                 return True
             worklist.append((child, inner))
     return False
-
-
-def _find_inner(member: Member, node: Node) -> Member | None:
-    return member.type.find_member(node.tag, node.name) if member.type else None
 
 
 def iter_overriding_attributes(

@@ -56,10 +56,6 @@ def _is_step(node: Node) -> bool:
     return is_a(node.kind, "Succession")
 
 
-def _is_nameless_reference(node: Node) -> bool:
-    return node.kind == "ReferenceUsage" and not node.name
-
-
 def _add_action(
     lowering: Lowering, node: Node, owner: Element, subkind: str, **attrs: AttrValue
 ) -> Element:
@@ -98,7 +94,8 @@ def _lower_call(lowering: Lowering, node: Node, owner: Element, subkind: str) ->
     action = _add_action(lowering, node, owner, subkind or default_subkind)
     annotations.apply_task_values(lowering, node, action)
     for member in nodes.body_of(node):
-        if _is_nameless_reference(member) and "direction" not in member.attributes:
+        is_nameless = member.kind == "ReferenceUsage" and not member.name
+        if is_nameless and "direction" not in member.attributes:
             for reference in nodes.list_references(member, "FeatureTyping", "Subsetting"):
                 lowering.connect_reference(Edge.CALLS, action, reference)
         else:

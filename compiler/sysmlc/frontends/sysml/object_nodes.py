@@ -81,7 +81,9 @@ def _direction_of(node: Node) -> str:
 
 def _lower_pin(lowering: Lowering, node: Node, action: Element) -> Element:
     """Lower a parameter of an action to a pin, with the value bound to it."""
-    direction = _pin_direction(_direction_of(node))
+    direction = _direction_of(node)
+    if direction == "return":
+        direction = "out"
     attributes: dict[str, AttrValue] = {
         "direction": direction,
         "subkind": _pin_subkind(action, direction),
@@ -100,10 +102,6 @@ def _lower_pin(lowering: Lowering, node: Node, action: Element) -> Element:
         values.set_value(lowering, pin, "value", value)
     lowering.lower_annotations(node, pin)
     return pin
-
-
-def _pin_direction(parameter_direction: str) -> str:
-    return "out" if parameter_direction == "return" else parameter_direction
 
 
 def _pin_subkind(action: Element, direction: str) -> str:

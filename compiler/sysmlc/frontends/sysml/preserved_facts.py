@@ -122,16 +122,14 @@ def _find_node(trees: Trees, qualified_name: str) -> Node | None:
     node: Node | None = None
     for segment in _NAME_SEGMENT.finditer(qualified_name):
         quoted, plain = segment.groups()
-        name = plain if quoted is None else _unescape(quoted)
+        name = plain
+        if quoted is not None:
+            name = _ESCAPED.sub(lambda match: _ESCAPES.get(match[1], match[1]), quoted)
         node = next((member for member in members if nodes.name_of(member) == name), None)
         if node is None:
             return None
         members = node.members
     return node
-
-
-def _unescape(text: str) -> str:
-    return _ESCAPED.sub(lambda match: _ESCAPES.get(match[1], match[1]), text)
 
 
 def _parse_value_with_elements(lowering: Lowering, text: str) -> AttrValue:

@@ -225,13 +225,10 @@ def allocate_arguments(lowering: Lowering, node: Node, owner: Element) -> None:
             continue
         path = nodes.path_of_expression(value)
         features = [feature for feature in path if feature is not None]
-        if len(features) == len(path) and _is_path_of_plant(features):
+        is_in_plant = all(feature.kind.endswith("Usage") for feature in features)
+        if features and len(features) == len(path) and is_in_plant:
             allocation = _add_allocation(lowering, member, owner, parameter, features)
             lowering.defer_edges(Edge.SUPPLIER, allocation, [features[-1]])
-
-
-def _is_path_of_plant(features: list[Node]) -> bool:
-    return bool(features) and all(feature.kind.endswith("Usage") for feature in features)
 
 
 def _add_allocation(

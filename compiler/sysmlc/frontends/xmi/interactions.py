@@ -141,7 +141,7 @@ def _connect_lifelines(file: File, message: Element, row: int) -> None:
             end = file.find_target(reference)
             if end is not None:
                 _connect_end(file, message, edge, end)
-                has_signature = has_signature or _add_legacy_signature(file, message, end)
+                has_signature = has_signature or _add_legacy_signature(message, end)
 
 
 def _connect_end(file: File, message: Element, edge: Edge, end: Target) -> None:
@@ -153,7 +153,7 @@ def _connect_end(file: File, message: Element, edge: Edge, end: Target) -> None:
         occurrence.attrs["subkind"] = "message"
 
 
-def _add_legacy_signature(file: File, message: Element, end: Target) -> bool:
+def _add_legacy_signature(message: Element, end: Target) -> bool:
     """Refer to the signature, which UML before 2.4 writes at the event of the occurrence.
 
     Return whether the event has a signature.

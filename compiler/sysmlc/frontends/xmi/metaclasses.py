@@ -247,12 +247,9 @@ def kind_of(type_name: str) -> tuple[Kind, str] | None:
     """Return kind and subkind of a metaclass that becomes an element, else None."""
     mapped = KINDS.get(type_name)
     if mapped is None and _ACTION.match(type_name):
-        return Kind.ACTION, _action_subkind(type_name)
+        subkind = _ACTIONS.get(type_name) or to_kebab_case(type_name.removesuffix("Action"))
+        return Kind.ACTION, subkind
     return mapped
-
-
-def _action_subkind(type_name: str) -> str:
-    return _ACTIONS.get(type_name) or to_kebab_case(type_name.removesuffix("Action"))
 
 
 @cache
