@@ -89,10 +89,7 @@ def _lower_range(lowering: Lowering, node: Node, region: Element) -> None:
     """Lower the collection of a loop to a text, and its variable with the type of the elements."""
     parameter_values = map(nodes.value_of, _list_parameters(node))
     collection = next((value for value in parameter_values if value is not None), None)
-    if collection is not None:
-        lowering.queue.defer_until_elements(
-            lambda: values.set_expression(lowering, region, "collection", collection)
-        )
+    values.defer_expression(lowering, region, "collection", collection)
     variable = next(nodes.iter_by_metaclass(node, "ReferenceUsage"), None)
     if variable is None:
         return
@@ -212,9 +209,4 @@ def _add_flow(
     flow = lowering.add_derived(node, Kind.CONTROL_FLOW, "", lowering.graph.owner(source))
     lowering.graph.connect(Edge.FLOW_SOURCE, flow, source)
     lowering.graph.connect(Edge.FLOW_TARGET, flow, target)
-    if isinstance(guard, str):
-        lowering.set_attributes(flow, guard=guard)
-    elif guard is not None:
-        lowering.queue.defer_until_elements(
-            lambda: values.set_expression(lowering, flow, "guard", guard)
-        )
+    values.defer_expression(lowering, flow, "guard", guard)

@@ -79,9 +79,7 @@ def _set_body(lowering: Lowering, node: Node, constraint: Element, result: Node)
 def lower_result(lowering: Lowering, node: Node, owner: Element) -> None:
     """Lower the condition of a constraint definition to a constraint without a name."""
     constraint = lowering.add_element(node, Kind.CONSTRAINT, "", owner)
-    lowering.queue.defer_until_elements(
-        lambda: values.set_expression(lowering, constraint, "body", node)
-    )
+    values.defer_expression(lowering, constraint, "body", node)
 
 
 def _lower_constraint_usage(lowering: Lowering, node: Node, owner: Element) -> None:

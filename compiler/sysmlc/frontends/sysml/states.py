@@ -282,11 +282,7 @@ def _lower_transition(lowering: Lowering, node: Node, region: Element, previous:
     transition = lowering.add_element(
         node, Kind.TRANSITION, node.name or "", region, subkind=subkind, **attributes
     )
-    guard = guard_of(node)
-    if guard is not None:
-        lowering.queue.defer_until_elements(
-            lambda: values.set_expression(lowering, transition, "guard", guard)
-        )
+    values.defer_expression(lowering, transition, "guard", guard_of(node))
     target: End = None
     for member in node.members:
         if member.role == "trigger":

@@ -146,12 +146,7 @@ def _add_flow(
     is_object_flow = "ObjectFlow" in nodes.shipped_metadata_of(node)
     kind = Kind.OBJECT_FLOW if is_object_flow else Kind.CONTROL_FLOW
     flow = lowering.add_element(node, kind, node.name or "", body.owner)
-    if isinstance(guard, str):
-        lowering.set_attributes(flow, guard=guard)
-    elif guard is not None:
-        lowering.queue.defer_until_elements(
-            lambda: values.set_expression(lowering, flow, "guard", guard)
-        )
+    values.defer_expression(lowering, flow, "guard", guard)
     lowering.lower_annotations(node, flow)
     lowering.queue.defer_until_edges(lambda: _connect_ends(lowering, flow, (source, target), body))
     if is_object_flow:

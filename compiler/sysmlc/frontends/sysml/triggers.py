@@ -40,9 +40,7 @@ def _describe_invocation(lowering: Lowering, trigger: Element, invocation: Node)
         lowering.set_attributes(trigger, subkind="time", when=when, relative=kind == "after")
         return
     lowering.set_attributes(trigger, subkind="change")
-    lowering.queue.defer_until_elements(
-        lambda: values.set_expression(lowering, trigger, "condition", argument)
-    )
+    values.defer_expression(lowering, trigger, "condition", argument)
 
 
 def _write_time(lowering: Lowering, expression: Node) -> str:

@@ -55,9 +55,19 @@ def _set_literal(
     graph.set(element, **{key: written, f"{key}_instance": literal.id})
 
 
-def set_expression(lowering: Lowering, element: Element, key: str, expression: Node | None) -> None:
-    """Set the attribute *key* to the text of a condition or another expression."""
-    lowering.set_attributes(element, **{key: expression_text(expression, lowering)})
+def defer_expression(
+    lowering: Lowering, element: Element, key: str, expression: Node | str | None
+) -> None:
+    """Set the attribute *key* to a condition or another expression, once all elements exist.
+
+    A text such as ``else`` is set at once.
+    """
+    if isinstance(expression, str):
+        lowering.set_attributes(element, **{key: expression})
+    elif expression is not None:
+        lowering.queue.defer_until_elements(
+            lambda: lowering.set_attributes(element, **{key: expression_text(expression, lowering)})
+        )
 
 
 def expression_text(expression: Node | None, lowering: Lowering) -> str:
