@@ -174,7 +174,7 @@ def _defer_removal(lowering: Lowering, exit_: Element) -> None:
             for element in (*flows, exit_):
                 lowering.graph.remove(element)
 
-    lowering.queue.defer_until_edges(lambda: lowering.queue.defer_until_edges(remove_exit))
+    lowering.queue.defer_to_second_round(remove_exit)
 
 
 # -- nodes and flows ---------------------------------------------------------------------------

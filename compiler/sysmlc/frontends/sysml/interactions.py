@@ -116,12 +116,8 @@ def lower_message(lowering: Lowering, node: Node, owner: Element) -> None:
     lowering.queue.defer_until_edges(lambda: _connect_message(lowering, node, message))
     messages = [member for member in lowering.graph.owned(owner) if member.kind is Kind.MESSAGE]
     if messages == [message]:
-        # Deferred twice: after the connection of all messages and orderings.
-        lowering.queue.defer_until_edges(
-            lambda: lowering.queue.defer_until_edges(
-                lambda: _order_occurrences(lowering.graph, owner)
-            )
-        )
+        # After the connection of all messages and orderings.
+        lowering.queue.defer_to_second_round(lambda: _order_occurrences(lowering.graph, owner))
     annotations.lower_only_annotations(lowering, node, message, "a message", payloads)
 
 

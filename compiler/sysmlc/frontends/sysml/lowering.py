@@ -2,7 +2,7 @@
 
 Handlers add elements in the order of the text. Since a reference may lead to a later element, they
 defer work: by ``defer_until_elements`` for edges to other elements, by ``defer_until_edges`` for
-work that reads such edges. Work that must follow other deferred work is deferred twice.
+work that reads such edges. Work that must follow such work waits for the second round.
 """
 
 from collections import deque
@@ -39,6 +39,10 @@ class WorkQueue:
     def defer_until_edges(self, work: Work) -> None:
         """Run *work* once all edges exist."""
         self._until_edges.append(work)
+
+    def defer_to_second_round(self, work: Work) -> None:
+        """Run *work* once the work is done that now waits for edges or is deferred meanwhile."""
+        self.defer_until_edges(lambda: self.defer_until_edges(work))
 
     def run_until_edges(self) -> None:
         """Run the work that waits for elements, also work that this adds."""

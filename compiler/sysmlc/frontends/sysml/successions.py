@@ -123,8 +123,8 @@ def defer_implied_start(lowering: Lowering, node: Node, owner: Element, entry: E
             lowering.graph.connect(Edge.FLOW_SOURCE, flow, start)
             lowering.graph.connect(Edge.FLOW_TARGET, flow, entry)
 
-    # Deferred twice: blocks around this node add their flows in the first round.
-    lowering.queue.defer_until_edges(lambda: lowering.queue.defer_until_edges(connect_start))
+    # Blocks around this node add their flows in the first round.
+    lowering.queue.defer_to_second_round(connect_start)
 
 
 def _add_flow(
@@ -154,10 +154,8 @@ def _add_flow(
             lambda: _move_ends_to_pins(lowering.graph, lowering.elements, node, flow)
         )
     if guard is not None:
-        # Deferred twice: all flows must have their targets.
-        lowering.queue.defer_until_edges(
-            lambda: lowering.queue.defer_until_edges(lambda: _add_merge(lowering, flow))
-        )
+        # All flows must have their targets.
+        lowering.queue.defer_to_second_round(lambda: _add_merge(lowering, flow))
 
 
 def _move_ends_to_pins(graph: Graph, elements: NodeElements, node: Node, flow: Element) -> None:

@@ -36,10 +36,8 @@ def lower_extension_point(lowering: Lowering, node: Node, owner: Element | None)
 
 def _lower_actor(lowering: Lowering, node: Node, use_case: Element) -> None:
     """Lower an actor to an association with the use case (UML 2.5.1 clause 18.1.3)."""
-    # Deferred twice: associations that the model states get their ends in the first round.
-    lowering.queue.defer_until_edges(
-        lambda: lowering.queue.defer_until_edges(lambda: _associate(lowering, node, use_case))
-    )
+    # Associations that the model states get their ends in the first round.
+    lowering.queue.defer_to_second_round(lambda: _associate(lowering, node, use_case))
 
 
 def _associate(lowering: Lowering, node: Node, use_case: Element) -> None:
