@@ -277,3 +277,21 @@ def test_a_condition_that_needs_a_running_system_is_reported(condition, called):
         f"the filter of 'P' uses '{called}', which cannot be evaluated without a running system"
     )
     assert message in messages
+
+
+@pytest.mark.parametrize(
+    ("kind", "general"),
+    [
+        ("attribute", "item"),
+        ("attribute", "connection"),
+        ("item", "attribute"),
+        ("part", "connection"),
+        ("connection", "attribute"),
+        ("part", "action"),
+        ("action", "part"),
+    ],
+)
+def test_a_definition_cannot_specialise_one_of_an_excluded_kind(kind, general):
+    (message,) = list_messages(f"{general} def A; {kind} def B :> A;")
+    assert message.startswith("'B', ")
+    assert " cannot specialise 'A', " in message

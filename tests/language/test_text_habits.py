@@ -676,3 +676,21 @@ def test_a_word_with_a_syntax_error_is_not_an_unknown_name_too(member, code):
     sink = Sink()
     resolve([parse(f"part def P {{ {member} }}", "m.sysml", "sysml", sink)], load_core(), sink)
     assert [diagnostic.rule.code for diagnostic in sink] == [code]
+
+
+FOREIGN_WORDS = """
+    activity assoc association behavior block class component connector datatype decision elif
+    elseif enumeration equation extends feature final foreach full func function id initial
+    input let link method model module namespace note operation output parameter predicate
+    property proxy readonly set signal static stereotype stream struct switch text timeout type
+    typedef usecase using val value valuetype var variable virtual void wait
+"""
+
+
+@pytest.mark.parametrize("word", FOREIGN_WORDS.split())
+def test_the_first_word_of_a_member_of_another_language_is_explained(word):
+    sink = Sink()
+    parse(f"part p {{ {word} x; }}", "m.sysml", "sysml", sink)
+    advice = next(iter(sink)).help
+    assert advice.startswith(f"'{word}' is not a keyword: ")
+    assert "did you mean" not in advice
