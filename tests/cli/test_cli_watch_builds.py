@@ -15,15 +15,14 @@ from sysmlc.support import resources
 
 
 def test_outputs_are_not_updated_while_the_model_has_errors(workspace):
-    settings = Settings(emit=("graph",))
-    model = workspace.folder / "plant.ir"
-    assert watch.rebuild((model,), None, settings)
+    watcher = Watch((workspace.folder / "plant.ir",), None, Settings(emit=("graph",)), 0)
+    watcher.build()
     good = workspace.read("out/graph.json")
     workspace.write("plant.ir", 'Package pkg "Plant"\n  Class gate "Gate"\n    Port gate.in\n')
-    assert not watch.rebuild((model,), None, settings)
+    watcher.build()
     assert workspace.read("out/graph.json") == good
     workspace.write("plant.ir", 'Package pkg "Plant"\n')
-    assert watch.rebuild((model,), None, settings)
+    watcher.build()
     assert workspace.read("out/graph.json") != good
 
 
@@ -191,10 +190,10 @@ def test_changes_are_detected_by_size_and_time(tmp_path):
 
 def test_json_is_one_line_for_each_build(workspace, capsys):
     settings = Settings(emit=("graph",), form="json")
-    model = workspace.folder / "plant.ir"
-    watch.rebuild((model,), workspace.folder / "out", settings)
+    watcher = Watch((workspace.folder / "plant.ir",), workspace.folder / "out", settings, 0)
+    watcher.build()
     workspace.write("plant.ir", 'Package pkg "Plant"\n  Class gate "Gate"\n    Port gate.in\n')
-    watch.rebuild((model,), workspace.folder / "out", settings)
+    watcher.build()
     documents = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     schema = json.loads(resources.read_text("metamodels", "sysmlc-diagnostics.schema.json"))
     for document in documents:

@@ -6,7 +6,8 @@ import os
 
 import pytest
 
-from sysmlc.cli import session, watch
+from sysmlc.cli import session
+from sysmlc.cli.watching import Watch
 from sysmlc.driver.registry import list_backend_names
 
 OUTPUTS = ["coverage.json", "graph.json", "manifest.json", "trace.json"]
@@ -309,8 +310,7 @@ def test_check_writes_nothing(project):
 def test_watch_does_not_replace_foreign_files(project):
     project.write("out/trace.json", "by hand")
     before = project.snapshot()
-    settings = session.Settings(emit=("graph",))
-    assert not watch.rebuild((project.folder / "plant.ir",), None, settings)
+    Watch((project.folder / "plant.ir",), None, session.Settings(emit=("graph",)), 0).build()
     assert project.snapshot() == before
 
 

@@ -5,12 +5,13 @@ import random
 import pytest
 from contracts_in_lines import parse_contract
 from listed_runs import ListedRuns
+from msgspec.structs import replace
 
 from long_runs import quick_first
-from sysmlc.logic.contract import Class, Composite, Contract, Part
+from sysmlc.logic.contract import Class, Composite, Owner, Part
 from sysmlc.logic.evaluate import compile_evaluation
 from sysmlc.synthesis import Manager
-from sysmlc.synthesis.algebra.composition import compose_parts
+from sysmlc.synthesis.algebra.composition import _contract_with_environment, compose_parts
 
 NAMES = ("x", "y", "e")
 TRIED = 60
@@ -57,19 +58,26 @@ def random_pair(seed):
 
 
 def predict_holding(parts):
-    """Return the composition, and for each conjunct whether it is predicted to hold in each run."""
+    """Return the contract of the whole, and whether each conjunct is predicted to hold."""
     conjuncts = tuple(
         c for part in parts for c in (*part.contract.assumptions, *part.contract.guarantees)
     )
-    outside = compose_parts(Composite("c", "", parts), Manager()).contract
-    whole = Contract("c", "", outside.variables, outside.assumptions, conjuncts)
+    variables = {
+        variable.name: variable
+        for owner in (Owner.ENVIRONMENT, Owner.SYSTEM)
+        for part in parts
+        for variable in part.contract.variables
+        if variable.owner is owner
+    }
+    outside = _contract_with_environment(Composite("c", "", parts))
+    whole = replace(outside, variables=tuple(variables.values()), guarantees=conjuncts)
     composition = compose_parts(Composite("c", "", parts, (), whole), Manager())
     failing = (
         conjuncts
         if composition.conflict
         else [failure.conjunct for failure in composition.failures]
     )
-    return outside, {conjunct: conjunct not in failing for conjunct in conjuncts}
+    return whole, {conjunct: conjunct not in failing for conjunct in conjuncts}
 
 
 class ImplementedRuns(ListedRuns):
@@ -113,11 +121,11 @@ def iter_implementations(part, pick):
 def check_implementations(seed):
     """Return the predictions for a random pair and the number of confirming implementations."""
     parts, pick = random_pair(seed), random.Random(seed)
-    outside, predictions = predict_holding(parts)
-    variables = tuple(sorted(outside.variables, key=lambda variable: variable.name))
+    whole, predictions = predict_holding(parts)
+    variables = tuple(sorted(whole.variables, key=lambda variable: variable.name))
     first, second = (list(iter_implementations(part, pick))[:4] for part in parts)
     for runs in (
-        ImplementedRuns(variables, outside.assumptions, a, b) for a in first for b in second
+        ImplementedRuns(variables, whole.assumptions, a, b) for a in first for b in second
     ):
         wrong_predictions = [
             c.text

@@ -7,7 +7,7 @@ from msgspec.structs import replace
 
 from sysmlc.logic.contract import Contract
 from sysmlc.synthesis import Manager, OutsideGr1Error
-from sysmlc.synthesis.algebra.composition import conjoin_viewpoints, list_viewpoints
+from sysmlc.synthesis.algebra.composition import conjoin_viewpoints
 from sysmlc.synthesis.algebra.refinement import find_refinement_failures
 
 VARIABLES = "env power: bool\nenv door: bool\nsys lit: bool\n"
@@ -33,8 +33,11 @@ def merge_viewpoints(**sides):
 
 def select_viewpoint(whole, name):
     """Return the contract of one viewpoint."""
-    view = next(viewpoint for viewpoint in list_viewpoints(whole) if viewpoint.name == name)
-    return replace(whole, assumptions=view.assumptions, guarantees=view.guarantees)
+    assumptions, guarantees = (
+        tuple(conjunct for conjunct in side if conjunct.viewpoint == name)
+        for side in (whole.assumptions, whole.guarantees)
+    )
+    return replace(whole, assumptions=assumptions, guarantees=guarantees)
 
 
 def test_a_conjunction_refines_every_viewpoint():

@@ -2,15 +2,12 @@
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from sysmlc.cli import options
 from sysmlc.cli.limits import LIMITS
-
-if TYPE_CHECKING:
-    from sysmlc.cli.session import Settings
 
 _POLL_MILLISECONDS = 1000
 """Milliseconds after which files are checked even if the system has reported no change."""
@@ -69,14 +66,6 @@ def command(
     watched.start()
     for saved in saves:
         watched.build_if_changed(saved)
-
-
-def rebuild(models: tuple[Path, ...], output: Path | None, settings: "Settings") -> bool:
-    """Compile each unit once and write units without errors; return whether all were written."""
-    from sysmlc.cli.watching import compile_all, publish
-
-    written = [publish(result, settings) for result in compile_all(models, output, settings)]
-    return all(written)
 
 
 def _iter_saves(folders: Sequence[Path]) -> Iterator[list[Path]]:

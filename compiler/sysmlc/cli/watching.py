@@ -266,10 +266,10 @@ def compile_all(
     ]
 
 
-def publish(unit: CompiledUnit, settings: "Settings", keep_going: bool = False) -> bool:
-    """Print the findings and write the outputs; return whether they were written.
+def publish(unit: CompiledUnit, settings: "Settings", keep_going: bool) -> None:
+    """Print the findings, and write the outputs of a unit without errors.
 
-    A unit with errors is not written, unless *keep_going* is set.
+    With *keep_going* a unit with errors is written, too.
     """
     from sysmlc.cli import reports
     from sysmlc.driver import publish as write_outputs
@@ -291,7 +291,7 @@ def publish(unit: CompiledUnit, settings: "Settings", keep_going: bool = False) 
         [unit.outcome], settings, publications, {"output": summary}, is_one_line=True
     )
     if not reports.allows_sentences(settings):
-        return is_updated
+        return
     if has_blocking_errors:
         terminal.echo(f"{folder}: not updated because the model has errors")
     elif not is_updated:
@@ -299,7 +299,6 @@ def publish(unit: CompiledUnit, settings: "Settings", keep_going: bool = False) 
     else:
         held = f", {len(withheld)} withheld because of errors" if withheld else ""
         terminal.echo(f"{folder}: {len(changed)} changed{held}")
-    return is_updated
 
 
 def _list_messages(units: "list[CompiledUnit]") -> frozenset[tuple[str, str]]:

@@ -40,15 +40,13 @@ from sysmlc.synthesis.unrealizable import find_minimal_conflict
 class Composition(Struct, frozen=True):
     """The result of a composition.
 
-    ``contract`` is the contract of the parts together. ``open`` contains the assumptions of parts
-    that neither other parts nor the whole entail, ``failures`` the guarantees of the whole that the
-    parts violate, ``losses`` the runs in which a sent event is lost. If no run satisfies the
-    guarantees of all parts, ``conflict`` is a minimal set of contradicting conjuncts. ``undecided``
-    has the variables that guarantees of the whole are about although no part decides them; these
-    guarantees are not checked.
+    ``open`` contains the assumptions of parts that neither other parts nor the whole entail,
+    ``failures`` the guarantees of the whole that the parts violate, ``losses`` the runs in which a
+    sent event is lost. If no run satisfies the guarantees of all parts, ``conflict`` is a minimal
+    set of contradicting conjuncts. ``undecided`` has the variables that guarantees of the whole are
+    about although no part decides them; these guarantees are not checked.
     """
 
-    contract: Contract
     open: tuple[OpenAssumption, ...] = ()
     failures: tuple[Failure, ...] = ()
     losses: tuple[Failure, ...] = ()
@@ -89,13 +87,12 @@ def _compose(composite: Composite, manager: Manager) -> Composition:
     )
     universe = Universe(observed.contracts, manager)
     reduced_composite = replace(composite, parts=parts, wiring=wiring_contract.assumptions)
-    contract = _compose_contract(composite, whole)
     # A contradiction entails everything, so no assumption would stay open (decision 31).
     contradiction = _find_contradiction(
         reduced_composite, whole_contract.assumptions, observed.definitions, universe
     )
     if contradiction:
-        return Composition(contract, conflict=contradiction)
+        return Composition(conflict=contradiction)
     assumed = (*whole_contract.assumptions, *observed.definitions)
     endings = _find_possible_endings(reduced_composite, assumed, universe)
     discharge_result = discharge(reduced_composite, (*assumed, *endings), universe)
@@ -119,7 +116,6 @@ def _compose(composite: Composite, manager: Manager) -> Composition:
     )
     guaranteed = f.variable_names(*(conjunct.formula for conjunct in whole_contract.guarantees))
     return Composition(
-        contract,
         open_assumptions,
         failures,
         losses,
@@ -221,18 +217,6 @@ def _is_about_outside(conjunct: Conjunct, inner_names: set[str], own_names: set[
     return not names <= inner_names and not names & (inner_names - own_names)
 
 
-def _compose_contract(composite: Composite, whole: Contract) -> Contract:
-    """Return the contract of the parts together under the assumptions of the whole."""
-    guarantees = tuple(
-        conjunct for part in composite.parts for conjunct in part.contract.guarantees
-    )
-    variables = _merge_variables(composite.parts)
-    all_guarantees = (*guarantees, *composite.wiring)
-    return Contract(
-        composite.component, composite.origin, variables, whole.assumptions, all_guarantees
-    )
-
-
 def _check_drivers(parts: Sequence[Part]) -> None:
     driver_counts = Counter(name for part in parts for name in sorted(outputs_of(part)))
     for name, count in driver_counts.items():
@@ -247,15 +231,6 @@ def _find_violations(conjuncts: Iterable[Conjunct], runs: Entailment) -> Iterato
             yield Failure(conjunct, False, trace)
 
 
-def _merge_variables(parts: Sequence[Part]) -> tuple[Variable, ...]:
-    """Merge the variables by name; a variable that some part assigns is an output of the whole."""
-    merged: dict[str, Variable] = {}
-    for variable in (variable for part in parts for variable in part.contract.variables):
-        if variable.name not in merged or variable.owner is Owner.SYSTEM:
-            merged[variable.name] = variable
-    return tuple(merged.values())
-
-
 # -- conjunction of viewpoints -----------------------------------------------------------------
 
 
@@ -267,7 +242,7 @@ class Viewpoint(Struct, frozen=True):
     guarantees: tuple[Conjunct, ...]
 
 
-def list_viewpoints(contract: Contract) -> tuple[Viewpoint, ...]:
+def _list_viewpoints(contract: Contract) -> tuple[Viewpoint, ...]:
     """Return the viewpoints of a contract, in the order of their first conjuncts."""
     conjuncts = (*contract.assumptions, *contract.guarantees)
     names = dict.fromkeys(conjunct.viewpoint for conjunct in conjuncts if conjunct.viewpoint)
@@ -288,7 +263,7 @@ def conjoin_viewpoints(contract: Contract) -> Contract:
     Raises OutsideGr1Error if viewpoints with liveness guarantees have different liveness
     assumptions.
     """
-    viewpoints = list_viewpoints(contract)
+    viewpoints = _list_viewpoints(contract)
     if len({_formulas_of(viewpoint.assumptions) for viewpoint in viewpoints}) < 2:
         return contract
     _check_liveness(viewpoints)
