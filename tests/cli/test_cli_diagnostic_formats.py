@@ -113,6 +113,8 @@ def test_json_follows_its_schema():
                 "file": "plant.uml",
                 "line": 2,
                 "column": 3,
+                "end_line": 2,
+                "end_column": 32,
                 "xpath": "/uml:Model/ownedConnector[1]",
                 "severity": "error",
                 "code": "SM944",

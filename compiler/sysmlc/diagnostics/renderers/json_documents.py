@@ -37,6 +37,8 @@ def _describe_finding(finding: Finding) -> dict[str, object]:
         "file": finding.file or None,
         "line": finding.line or None,
         "column": finding.column or None,
+        "end_line": finding.end_line or None,
+        "end_column": finding.end_column or None,
         "xpath": finding.xpath or None,
         "severity": diagnostic.severity.value,
         "code": diagnostic.rule.code,
