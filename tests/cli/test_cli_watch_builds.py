@@ -3,6 +3,7 @@
 import gc
 import json
 import os
+from pathlib import Path
 
 import pytest
 import watchfiles
@@ -11,6 +12,7 @@ from jsonschema import Draft202012Validator
 from sysmlc.cli import session, watch, watching
 from sysmlc.cli.session import Settings
 from sysmlc.cli.watching import Watch
+from sysmlc.driver.inputs import SUFFIXES
 from sysmlc.support import resources
 
 
@@ -27,9 +29,8 @@ def test_outputs_are_not_updated_while_the_model_has_errors(workspace):
 
 
 def test_outputs_of_the_build_are_no_inputs():
-    assert watch._is_input(1, "/x/plant.uml")
-    assert watch._is_input(1, "/x/sysmlc.toml")
-    assert not watch._is_input(1, "/x/out/graph.json")
+    names = ("plant.uml", "sysmlc.toml", "out/graph.json")
+    assert [watch._is_input(Path("/x", name), SUFFIXES) for name in names] == [True, True, False]
 
 
 def test_a_saved_file_is_rebuilt(workspace, monkeypatch):

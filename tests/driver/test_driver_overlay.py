@@ -2,6 +2,7 @@
 
 import json
 import os
+from pathlib import Path
 
 import pytest
 from driver_helpers import list_codes, list_inputs, run_sysmlc
@@ -254,8 +255,8 @@ def build_diagram(folder):
 
 
 def test_the_watch_reacts_to_a_saved_overlay():
-    assert _is_input(None, "/models/line.overlay.yaml")
-    assert not _is_input(None, "/models/scenario.yaml")
+    assert _is_input(Path("/models/line.overlay.yaml"), frozenset())
+    assert not _is_input(Path("/models/scenario.yaml"), frozenset())
 
 
 def test_the_overlay_of_the_documentation_refines_the_example(tmp_path):

@@ -8,11 +8,13 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
+import watchfiles
 from click.testing import CliRunner
 from msgspec import Struct
 
 import sysmlc
 from sysmlc import Request, config
+from sysmlc.cli import watch
 from sysmlc.cli.group import sysmlc as sysmlc_command
 from sysmlc.config import ConfigError, read_config
 from sysmlc.driver import (
@@ -332,6 +334,42 @@ def test_a_front_end_of_another_distribution_reads_its_files_in_folders(folder):
     assert [diagnostic.message for diagnostic in compilation.diagnostics] == []
     assert [element.name for element in compilation.graph] == ["Gate", "Lamp"]
     assert [file.language for file in compilation.inputs] == ["table"]
+
+
+def test_the_commands_know_the_suffixes_of_front_ends_of_other_distributions(folder, monkeypatch):
+    sys.modules.pop("acme_table", None)
+    (folder / "acme_table.py").write_text(TABLE_MODULE)
+    install_distribution(folder, "acme", "sysmlc.frontends", "table = acme_table:FRONTEND")
+    path = folder / "plant.table"
+    path.write_text("Gate Lamp\n")
+    result = CliRunner().invoke(sysmlc_command, ["contracts", "check", str(path)])
+    assert "has no behaviour and no requirement that gives a contract" in result.stderr
+
+    def save_files(*folders, watch_filter, **_):
+        paths = ("/models/plant.table", "/models/plant.html")
+        yield {(1, saved) for saved in paths if watch_filter(1, saved)}
+
+    monkeypatch.setattr(watchfiles, "watch", save_files)
+    assert list(watch._iter_saves([folder])) == [[Path("/models/plant.table")]]
+
+
+def test_a_project_with_models_for_a_plug_in_is_whole_only_with_them(folder):
+    """Findings about the configuration hold only if all models of the project are read."""
+    sys.modules.pop("acme_table", None)
+    (folder / "acme_table.py").write_text(TABLE_MODULE)
+    install_distribution(folder, "acme", "sysmlc.frontends", "table = acme_table:FRONTEND")
+    project = folder / "project"
+    project.mkdir()
+    (project / "sysmlc.toml").write_text(
+        '[[suppress]]\nrule = "untyped-port"\nelement = "*"\nreason = "later"\n'
+    )
+    (project / "plant.table").write_text("Gate Lamp\n")
+    (project / "plant.ir").write_text('Class gate "Gate"\n')
+    results = [
+        CliRunner().invoke(sysmlc_command, ["check", str(path), "--format", "concise"])
+        for path in (project / "plant.ir", project)
+    ]
+    assert ["untyped-port" in result.stderr for result in results] == [False, True]
 
 
 def test_faults_of_plug_ins_are_findings_and_the_other_outputs_are_written(folder):

@@ -85,9 +85,12 @@ def read_contracts(
     Exits with code 2 if there is no contract.
     """
     from sysmlc.cli.session import fail
-    from sysmlc.driver.inputs import SUFFIXES
+    from sysmlc.driver.inputs import list_suffixes
+    from sysmlc.driver.registry import load_foreign_frontends
 
-    if not language and all(f.is_dir() or f.suffix.lower() in SUFFIXES for f in files):
+    # A compilation reports the plug-ins that are ignored.
+    suffixes = list_suffixes(load_foreign_frontends(note=lambda _: None))
+    if not language and all(f.is_dir() or f.suffix.lower() in suffixes for f in files):
         return _read_model(files, config, settings)
     if len(files) > 1:
         fail("several files must all be models; name one contract file at a time")

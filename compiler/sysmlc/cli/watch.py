@@ -75,9 +75,14 @@ def _iter_saves(folders: Sequence[Path]) -> Iterator[list[Path]]:
     """
     from watchfiles import watch
 
+    from sysmlc.driver.inputs import list_suffixes
+    from sysmlc.driver.registry import load_foreign_frontends
+
+    # A build reports the plug-ins that are ignored.
+    suffixes = list_suffixes(load_foreign_frontends(note=lambda _: None))
     changes = watch(
         *folders,
-        watch_filter=_is_input,
+        watch_filter=lambda _, path: _is_input(Path(path), suffixes),
         raise_interrupt=False,
         step=_QUIET_MILLISECONDS,
         rust_timeout=_POLL_MILLISECONDS,
@@ -86,12 +91,10 @@ def _iter_saves(folders: Sequence[Path]) -> Iterator[list[Path]]:
     return (sorted(Path(path).absolute() for _, path in change) for change in changes)
 
 
-def _is_input(_change: object, path: str) -> bool:
+def _is_input(file: Path, suffixes: frozenset[str]) -> bool:
     """Whether a saved file may be an input; written outputs must not start another build."""
     from sysmlc.config import FILE_NAME
-    from sysmlc.driver.inputs import SUFFIXES
     from sysmlc.overlay import SUFFIX
 
-    file = Path(path)
-    is_model = file.suffix.lower() in SUFFIXES or file.name.endswith(SUFFIX)
+    is_model = file.suffix.lower() in suffixes or file.name.endswith(SUFFIX)
     return is_model or file.name in (FILE_NAME, "pyproject.toml")

@@ -23,7 +23,7 @@ _SUFFIXES = """
     .uml .xmi .xml .mdxml .mdzip .aml .amlx .caex .mtp .ir .sysml .kerml .sysmlx .kermlx .kpar
 """
 SUFFIXES = frozenset(_SUFFIXES.split())
-"""Suffixes of the files that a search of folders considers. A named file may have any suffix."""
+"""Suffixes of the models that sysmlc reads without plug-ins (``list_suffixes``)."""
 _ARCHIVE = ".zip"
 _MAX_ENTRIES = 3
 """Entries of an archive that a message names."""
@@ -65,20 +65,27 @@ def _depth(folder: Path) -> int:
     return len(folder.parts)
 
 
+def list_suffixes(frontends: Iterable[Frontend]) -> frozenset[str]:
+    """Return the suffixes of models, including those of the front ends of plug-ins.
+
+    A search of folders considers the files with these suffixes. A named file may have any suffix.
+    """
+    return SUFFIXES.union(*(getattr(frontend, "suffixes", ()) for frontend in frontends))
+
+
 def collect_files(
     paths: Iterable[Path],
     root: Path,
     sink: Sink,
     excluded: Iterable[Path] = (),
-    suffixes: Iterable[str] = (),
+    suffixes: frozenset[str] = SUFFIXES,
 ) -> dict[Path, bool]:
     """Return the files to read, sorted by name, and whether the user named each file itself.
 
     The search of folders skips the files and folders in *excluded*, which are real paths.
-    *suffixes* are those of plug-ins.
     """
     is_named: dict[Path, bool] = {}
-    excluded, suffixes = frozenset(excluded), SUFFIXES.union(suffixes)
+    excluded = frozenset(excluded)
     for path in paths:
         absolute = _make_absolute(path)
         if absolute.is_dir():

@@ -14,7 +14,7 @@ from sysmlc.config import Config, ConfigError, expand_files
 from sysmlc.diagnostics import Diagnostic
 from sysmlc.driver import faults
 from sysmlc.driver.compilation import OpenedUnit
-from sysmlc.driver.inputs import find_model_files, find_projects
+from sysmlc.driver.inputs import find_model_files, find_projects, list_suffixes
 from sysmlc.driver.outcome import Outcome
 from sysmlc.frontends.base import Frontend
 from sysmlc.sources import SourceError, load
@@ -73,7 +73,8 @@ def _is_whole_project(config: Config, units: Sequence[OpenedUnit]) -> bool:
     read = {file.path for opened in units for file in opened.reading.files}
     frontends = units[0].frontends
     try:
-        return all(path in read or not _is_model(path, frontends) for path in _list_files(config))
+        files = _list_files(config, list_suffixes(frontends))
+        return all(path in read or not _is_model(path, frontends) for path in files)
     except ConfigError:
         return False
 
@@ -87,7 +88,7 @@ def _is_model(path: Path, frontends: Sequence[Frontend]) -> bool:
     return any(frontend.detect(source) > 0 for source in sources for frontend in frontends)
 
 
-def _list_files(config: Config) -> Iterator[Path]:
+def _list_files(config: Config, suffixes: frozenset[str]) -> Iterator[Path]:
     """Yield the real paths of the files of every ``[[model]]``, or else of the whole project.
 
     The files of the whole project are all those that are named like models.
@@ -101,6 +102,7 @@ def _list_files(config: Config) -> Iterator[Path]:
             continue
         folder = path.resolve()
         nested = frozenset(() if declared else find_projects(folder))
-        real_paths = (Path(os.path.realpath(file)) for file in find_model_files(folder, nested))
+        files = find_model_files(folder, nested, suffixes)
+        real_paths = (Path(os.path.realpath(file)) for file in files)
         # A link that leads out of the folder is not read.
         yield from (file for file in real_paths if file.is_relative_to(folder))

@@ -15,7 +15,14 @@ from msgspec import Struct
 
 from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.driver import faults
-from sysmlc.driver.inputs import Recognised, collect_files, find_allowed_roots, name_of, recognise
+from sysmlc.driver.inputs import (
+    Recognised,
+    collect_files,
+    find_allowed_roots,
+    list_suffixes,
+    name_of,
+    recognise,
+)
 from sysmlc.driver.siblings import find_siblings
 from sysmlc.frontends.base import AttachmentFrontend, DiagramReader, Frontend
 from sysmlc.ir import Graph
@@ -125,7 +132,7 @@ def read_unit(
     """
     roots = find_allowed_roots((*inputs, *overlays), root)
     reader = _Reader(root, roots, frontends, sink)
-    suffixes = (suffix for frontend in frontends for suffix in getattr(frontend, "suffixes", ()))
+    suffixes = list_suffixes(frontends)
     for path, is_named in collect_files(inputs, root, sink, excluded, suffixes).items():
         rule = faults.UNRECOGNISED if is_named else faults.SKIPPED
         reader.read(path, rule, is_named=is_named)

@@ -46,7 +46,8 @@ _INTERFACES: Mapping[str, tuple[Sequence[str], Mapping[str, type]]] = {
 }
 """The methods and the other members of plug-ins."""
 
-_FRONTENDS = tuple(f"sysmlc.frontends.{name}" for name in ("xmi", "huds", "caex", "sysml", "ir"))
+_FRONTENDS = ("xmi", "huds", "caex", "sysml", "ir")
+"""Names of the shipped front ends, which are those of their packages."""
 _BACKENDS = {
     "contracts": "sysmlc.backends.contracts:BACKEND",
     "recipe": "sysmlc.backends.recipe:BACKEND",
@@ -117,13 +118,20 @@ def load_frontends(library: str = "", note: Note = warn) -> list[Frontend]:
 
     *library* is the path of the SysML v2 standard library; empty for the installed one.
     """
-    frontends = [cast("Frontend", import_module(name).FRONTEND) for name in _FRONTENDS]
+    frontends = [
+        cast("Frontend", import_module(f"sysmlc.frontends.{name}").FRONTEND) for name in _FRONTENDS
+    ]
     if library:
         frontends = [
             f.with_library(library) if isinstance(f, LibraryFrontend) else f for f in frontends
         ]
-    foreign = _find_foreign(FRONTEND_GROUP, [frontend.name for frontend in frontends], note)
-    return [*_load_usable(foreign, "front end", note), *frontends]
+    return [*load_foreign_frontends(note), *frontends]
+
+
+def load_foreign_frontends(note: Note = warn) -> list[Frontend]:
+    """Return the front ends of plug-ins."""
+    foreign = _find_foreign(FRONTEND_GROUP, _FRONTENDS, note)
+    return list(_load_usable(foreign, "front end", note))
 
 
 def load_passes(options: Mapping[str, Mapping[str, object]], note: Note = warn) -> list[Pass]:
