@@ -1,10 +1,19 @@
 """The pass ``recipe``: the service graphs of tasks, with their loops, guards and assignments."""
 
-from recipe_runs import derive_model, derive_service_graph, print_application, shorten_id
+import pytest
+from pass_runs import list_codes
+from recipe_runs import (
+    derive_model,
+    derive_service_graph,
+    print_application,
+    run_recipe,
+    shorten_id,
+)
 
 import recipe_samples as samples
 from sysmlc.ir.expressions import Binary, Literal, Unary
 from sysmlc.recipe.expression import make_variable
+from sysmlc.recipe.model import Model
 
 
 def test_results_are_assigned_to_variables_and_guards_are_expressions():
@@ -119,6 +128,44 @@ def test_a_structured_node_that_only_groups_steps_is_no_step():
 def test_else_is_written_in_any_letter_case():
     _, graph = derive_service_graph("s g", "g l", "l d", "d a ok", "d b Else", "a m", "b m", "m e")
     assert [(edge.text, edge.guard) for edge in graph.edges if edge.is_else] == [("Else", None)]
+
+
+COMBINED_STEPS = ("s g", "g d", "d l", "d a", "l m", "a m", "m b", "m x", "b y", "x y", "y e")
+"""Two branches that meet at node m, from which two branches lead to node y."""
+
+
+@pytest.mark.parametrize(
+    ("first", "drawn", "last", "kinds"),
+    [
+        ("fork", "fork", "join", ("join", "fork")),
+        ("fork", "join", "join", ("join", "fork")),
+        ("decision", "merge", "merge", ("merge", "decision")),
+    ],
+)
+def test_a_control_node_that_stands_for_two_becomes_two(first, drawn, last, kinds):
+    nodes = samples.NODES.replace('subkind="merge"', f'subkind="{drawn}"')
+    nodes = nodes.replace('subkind="decision"', f'subkind="{first}"')
+    nodes += f"""\
+    Action x "look again" subkind="call-behavior"
+      -> calls look
+    Control y "last" subkind="{last}"
+"""
+    text = samples.task(nodes=nodes, steps=COMBINED_STEPS)
+    graph, sink = run_recipe(text)
+    (model,) = graph.derived(Model)
+    (service_graph,) = model.service_graphs
+    kinds_by_id = {shorten_id(node.id): node.kind for node in service_graph.nodes}
+    assert (kinds_by_id["after"], kinds_by_id[kinds[1]]) == kinds
+    incoming = {("look", "after"), ("place", "after"), ("after", kinds[1])}
+    outgoing = {(kinds[1], "drop"), (kinds[1], "look again")}
+    assert incoming | outgoing <= list_shown_pairs(service_graph)
+    assert "SM604" not in list_codes(sink)
+
+
+def test_a_merge_with_several_outgoing_flows_can_leave_a_loop():
+    """Contracts read it as a merge and a decision."""
+    nodes, _ = derive_service_graph("s m", "m l ok", "l m", "m e else")
+    assert (nodes["after"].kind, nodes["decision"].kind) == ("merge", "loop")
 
 
 def test_an_activity_without_a_token_game_has_a_graph():

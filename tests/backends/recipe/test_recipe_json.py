@@ -21,6 +21,8 @@ from sysmlc.ir import parse_text
 
 INPUTS = (InputFile("b.uml", "0" * 64, "xmi"), InputFile("a.uml", "1" * 64, "xmi"))
 LOOP = ("s m", "m l", "l d", "d m ok", "d g else", "g a", "a b", "b e")
+COMBINED = ("s g", "g l", "l m", "m a ok", "m d else", "d b", "a e", "b e")
+"""Two flows leave the merge, which stands for a merge and a decision."""
 
 
 def emit(text: str):
@@ -41,7 +43,7 @@ def test_the_schema_is_valid_json_schema():
     Draft202012Validator.check_schema(SCHEMA)
 
 
-VALID = [samples.task(), samples.task(steps=LOOP), samples.recipe()]
+VALID = [samples.task(), samples.task(steps=LOOP), samples.task(steps=COMBINED), samples.recipe()]
 VALID += [
     rule.read_page().right
     for rule in load_full_catalogue().values()

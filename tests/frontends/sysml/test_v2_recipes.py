@@ -123,6 +123,24 @@ def test_a_block_with_branches_at_once_stays_one_step():
     assert "SM615" in codes
 
 
+def test_a_merge_with_several_successions_is_followed_by_a_fork():
+    """Only 'decide' chooses in SysML v2; UML takes such a merge as a merge and a decision."""
+    model, codes = recipe("""
+        first start; then merge again;
+        first again then go;
+        first again then come;
+        action go : Move; then both;
+        action come : Move; then both;
+        join both; then done;""")
+    (graph,) = model.function_graphs
+    assert [(node.id.rpartition("::")[2], node.kind) for node in graph.nodes][1:3] == [
+        ("again", "merge"),
+        ("fork", "fork"),
+    ]
+    assert list_edges(graph)[1:4] == ["again -> fork", "fork -> come", "fork -> go"]
+    assert "SM604" not in codes
+
+
 def test_a_helper_has_a_graph_of_its_own():
     helper = """
     action def Wait {

@@ -278,9 +278,11 @@ def _check_shape(draft: Draft, node: Element) -> None:
     if node.kind is not Kind.CONTROL:
         return
     incoming, outgoing = len(draft.primary_flows(node)), len(draft.drawing.outgoing(node))
+    # In SysML v2 only 'decide' chooses.
+    choice = "fork" if draft.follows_v2 else "decision"
     shapes = {
         "decision": (incoming > 1, f"{incoming} incoming flows", "a merge and a decision"),
-        "merge": (outgoing > 1, f"{outgoing} outgoing flows", "a merge and a decision"),
+        "merge": (outgoing > 1, f"{outgoing} outgoing flows", f"a merge and a {choice}"),
         "fork": (incoming > 1, f"{incoming} incoming flows", "a join and a fork"),
         "join": (outgoing > 1, f"{outgoing} outgoing flows", "a join and a fork"),
     }

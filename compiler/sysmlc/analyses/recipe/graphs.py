@@ -1,5 +1,6 @@
 """Graphs of tasks, whose nodes are services, and graphs of services, whose nodes are functions."""
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -88,6 +89,7 @@ def _build_flow_graph(context: Context, activity: Element, activity_level: str) 
         _connect_region(context, drawn, region, draft)
     _add_ends(context, activity, draft)
     _add_results(context, activity, data, draft)
+    _split_combined_nodes(context, activity, draft)
     graph = FlowGraph(
         context.name(activity),
         data.list_parameters("in", "inout"),
@@ -314,6 +316,36 @@ def _find_item(context: Context, flow: Element) -> str:
     ends = (query.flow_source(context.graph, flow), query.flow_target(context.graph, flow))
     types = (query.type_of(context.graph, end) for end in ends if end is not None)
     return next((context.name(type_) for type_ in types if type_ is not None), "")
+
+
+# -- combined control nodes --------------------------------------------------------------------
+
+
+def _split_combined_nodes(context: Context, activity: Element, draft: Draft) -> None:
+    """Replace control nodes that stand for two, as in token graphs; the first keeps the id.
+
+    A fork with several incoming edges and a join with several outgoing ones become a join and a
+    fork. A merge with several outgoing edges becomes a merge and a decision, in SysML v2 a merge
+    and a fork, because there only ``decide`` chooses.
+    """
+    targets = Counter(edge.target for edge in draft.edges)
+    sources = Counter(edge.source for edge in draft.edges)
+    follows_v2 = query.follows_v2(context.graph, activity)
+    for number, node in enumerate(draft.nodes[:]):
+        is_join = node.kind == "join" or (node.kind == "fork" and targets[node.id] > 1)
+        if is_join:
+            draft.nodes[number] = replace(node, kind="join")
+        if sources[node.id] > 1 and (is_join or node.kind == "merge"):
+            # A token that leaves a block takes all its edges.
+            is_end_of_block = node.id != draft.first.get(node.element)
+            kind = "fork" if is_join or is_end_of_block or follows_v2 else "decision"
+            second = replace(node, id=f"{node.id}::{kind}", kind=kind)
+            draft.nodes.append(second)
+            draft.edges = [
+                replace(edge, source=second.id) if edge.source == node.id else edge
+                for edge in draft.edges
+            ]
+            draft.edges.append(FlowEdge(node.id, second.id, element=node.element))
 
 
 # -- bounds ------------------------------------------------------------------------------------
