@@ -31,6 +31,7 @@ from sysmlc.passes import pipeline
 
 _PROJECT = Path(__file__).parents[2] / "pyproject.toml"
 _RECIPE = _PROJECT.parent / "examples" / "lego-recipe" / "lego-recipe.uml"
+_GATE = _PROJECT.parent / "examples" / "baygate-behaviour" / "baygate-behaviour.uml"
 
 
 def test_the_default_back_ends_run_if_none_is_named():
@@ -232,6 +233,32 @@ def test_a_back_end_that_cannot_be_loaded_is_an_error_only_if_it_is_named(folder
     assert [backend.name for backend in backends] == names
     with pytest.raises(BackendError, match="back end 'shout' cannot be loaded"):
         select_backends(["shout"])
+
+
+def test_a_shipped_back_end_that_cannot_be_loaded_is_an_error_only_if_it_is_named(monkeypatch):
+    monkeypatch.setitem(registry._BACKENDS, "recipe", "no_such_module:BACKEND")
+    reason = "back end 'recipe' cannot be loaded: ModuleNotFoundError: No module named "
+    with pytest.warns(PlugInWarning, match=f"^{reason}'no_such_module'; its outputs are missing$"):
+        backends = select_backends(["+ir"])
+    assert [backend.name for backend in backends] == ["contracts", "ir", "plantuml", "platform"]
+    for names in (["recipe"], ["+recipe"]):
+        with pytest.raises(BackendError, match=reason):
+            select_backends(names)
+    with pytest.warns(PlugInWarning, match=reason):
+        result = CliRunner().invoke(sysmlc_command, ["backends"])
+    assert (result.exit_code, " recipe " in result.stdout) == (0, False)
+    assert "* platform " in result.stdout
+
+
+def test_a_package_that_an_analysis_needs_is_named_if_it_is_missing(monkeypatch):
+    """SM917: the verdicts on contracts need the package 'dd'."""
+    monkeypatch.setitem(sys.modules, "dd", None)
+    monkeypatch.setitem(sys.modules, "dd.cudd", None)
+    monkeypatch.setitem(sys.modules, "dd.autoref", None)
+    compilation = compile_model(Request((_GATE,)), analyses=["verdicts"])
+    (diagnostic,) = (d for d in compilation.diagnostics if d.rule.code == "SM917")
+    assert diagnostic.message.startswith("analysis verdicts cannot load the package 'dd': ")
+    assert compilation.exit_code() == 2
 
 
 def test_a_pass_of_another_distribution_runs_after_its_predecessors(folder):

@@ -371,8 +371,13 @@ class _CompilationRun:
             self._observer.fault(where, format_exc())
             text = f"{type(problem).__name__}: {problem}"
             source = registry.describe_source(step, problem)
-            rule = plug_in_rule if source else faults.INTERNAL_FAULT
-            self._sink.report(rule, Subject(), where=where, problem=text, source=source)
+            package = faults.find_missing_package(problem)
+            rule = faults.MISSING_PACKAGE if package else faults.INTERNAL_FAULT
+            if source:
+                rule = plug_in_rule
+            self._sink.report(
+                rule, Subject(), where=where, problem=text, source=source, package=package
+            )
             return False
         return True
 

@@ -138,7 +138,7 @@ PLUG_IN_IGNORED = rule(
     "plug-in-ignored",
     Severity.WARNING,
     "{reason}",
-    help="repair the plug-in or uninstall it",
+    help="install the missing package, or repair or uninstall the plug-in",
 )
 PLUG_IN_FAULT = rule(
     "SM915",
@@ -153,6 +153,13 @@ PLUG_IN_STOP = rule(
     Severity.ERROR,
     "{where} failed, so that nothing is written: {problem} ({source})",
     help="report it to the authors of the plug-in, or uninstall the plug-in",
+)
+MISSING_PACKAGE = rule(
+    "SM917",
+    "missing-package",
+    Severity.ERROR,
+    "{where} cannot load the package '{package}': {problem}",
+    help="install it; docs/dependencies.md lists the packages that sysmlc needs",
 )
 INVALID_GRAPH = rule(
     "SM901",
@@ -193,6 +200,7 @@ STOPPING = frozenset(
         CHANGING,
         INTERNAL_FAULT,
         PLUG_IN_STOP,
+        MISSING_PACKAGE,
         INVALID_GRAPH,
     )
 )
@@ -217,6 +225,13 @@ def compute_exit_code(diagnostics: Iterable[Diagnostic], strict: bool = False) -
 def about_file(name: str) -> Subject:
     """Return a file as the subject of a diagnostic."""
     return Subject(place=Place(name))
+
+
+def find_missing_package(problem: Exception) -> str:
+    """Return the package of others that an ImportError names; empty for any other problem."""
+    name = (problem.name or "") if isinstance(problem, ImportError) else ""
+    package = name.partition(".")[0]
+    return "" if package == "sysmlc" else package
 
 
 def report_ignored_plug_in(sink: Sink, reason: str) -> None:

@@ -4,8 +4,8 @@ Other distributions add front ends, passes and back ends by entry points. A pass
 after those of sysmlc. The rules of a plug-in are those that its modules define when they are
 imported.
 
-A plug-in that cannot be used, and that no option names, is ignored. Functions that load plug-ins
-call their parameter *note* with the reason; by default it issues a PlugInWarning.
+A plug-in or a back end that cannot be used, and that no option names, is ignored. Functions that
+load them call their parameter *note* with the reason; by default it issues a PlugInWarning.
 """
 
 import dataclasses
@@ -310,17 +310,17 @@ def load_backends(names: Iterable[str]) -> list[Backend]:
 
 
 def load_all_backends() -> list[Backend]:
-    """Load all back ends, sorted by name, without plug-ins that cannot be used."""
+    """Load all back ends, sorted by name, without those that cannot be used."""
     foreign = _find_foreign(BACKEND_GROUP, _BACKENDS, warn)
-    backends = [_load(name, {}) for name in _BACKENDS]
-    backends += _load_usable(foreign, "back end", warn)
+    backends = [*_load_shipped(_BACKENDS, warn), *_load_usable(foreign, "back end", warn)]
     return sorted(backends, key=lambda backend: backend.name)
 
 
 def select_backends(wanted: Sequence[str], note: Note = warn) -> list[Backend]:
     """Load the back ends for ``--emit``: names replace the default set, ``+name`` adds to it.
 
-    Raises BackendError, whose message suggests names.
+    One of the default set that cannot be loaded is left out. Raises BackendError for a name that is
+    unknown, with a suggestion, or cannot be loaded.
     """
     plain = [name for name in wanted if not name.startswith("+")]
     added = [name[1:] for name in wanted if name.startswith("+")]
@@ -330,7 +330,8 @@ def select_backends(wanted: Sequence[str], note: Note = warn) -> list[Backend]:
     # Only the object says whether a plug-in runs by default.
     unnamed = {name: entry for name, entry in foreign.items() if name not in added}
     plug_ins = _load_usable(unnamed, "back end", note)
-    backends = [_load(name, foreign) for name in sorted({*_DEFAULT, *added})]
+    backends = [_load(name, foreign) for name in dict.fromkeys(added)]
+    backends += _load_shipped(sorted(_DEFAULT.difference(added)), note)
     backends += [backend for backend in plug_ins if backend.is_default]
     return sorted(backends, key=lambda backend: backend.name)
 
@@ -384,6 +385,15 @@ def describe_unknown_rule(name: str, rules: Iterable[Rule]) -> str:
     return f"unknown rule '{name}'; {advice}"
 
 
+def _load_shipped(names: Iterable[str], note: Note) -> Iterator[Backend]:
+    """Yield the shipped back ends with these names that can be loaded."""
+    for name in names:
+        try:
+            yield _load(name, {})
+        except BackendError as problem:
+            note(f"{problem}; its outputs are missing")
+
+
 def _load(name: str, foreign: Mapping[str, EntryPoint]) -> Backend:
     """Return the back end with this name. Raises BackendError."""
     names = {*_BACKENDS, *foreign}
@@ -397,7 +407,8 @@ def _load(name: str, foreign: Mapping[str, EntryPoint]) -> Backend:
     except PlugInError as problem:
         raise BackendError(str(problem)) from problem
     except Exception as problem:
-        raise BackendError(f"back end '{name}' cannot be loaded: {problem!r}") from problem
+        reason = f"{type(problem).__name__}: {problem}"
+        raise BackendError(f"back end '{name}' cannot be loaded: {reason}") from problem
     list_needs([backend])
     return backend
 
