@@ -1,11 +1,14 @@
 """Expressions in their context: domains of properties, and elaboration to formulas."""
 
+from functools import partial
+
 import pytest
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir.text import parse_text
 from sysmlc.logic.contract import BooleanDomain, EnumerationDomain, IntegerDomain
 from sysmlc.logic.expressions.context import context_of
+from sysmlc.logic.expressions.context import find_symbol as context_symbol
 from sysmlc.logic.expressions.elaboration import (
     ElaborationError,
     Fault,
@@ -140,6 +143,72 @@ def test_an_assumed_range_reaches_beyond_the_thresholds_of_guards(guard, low, hi
     pipeline.load("expressions").run(graph, Sink())
     features = context_of(graph, graph["c"], behaviour=graph["s"]).features
     assert features["bay"].domain == IntegerDomain(low, high)
+
+
+# -- elements of the same name in several packages ---------------------------------------------
+
+PACKAGES = """\
+Package near "Near"
+  Enumeration near.mode "Mode"
+    EnumerationLiteral near.off "off" value=1
+    EnumerationLiteral near.slow "slow" value=2
+  Instance near.limit "LIMIT" value=3
+Package far "Far"
+  Enumeration far.mode "Mode"
+    EnumerationLiteral far.slow "slow" value=5
+    EnumerationLiteral far.off "off" value=6
+    EnumerationLiteral far.auto "auto"
+  Instance far.limit "LIMIT" value=5
+Package p "P"
+  Class c "C"
+    Property a "a"
+      -> typed-by near.mode
+    Property b "b"
+      -> typed-by far.mode
+    Property n "n"
+      -> typed-by int
+    StateMachine s
+      Region r
+        Transition t guard="{guard}"
+      {scope}
+DataType int "Integer"
+"""
+IMPORT = 'Import i subkind="package"\n        -> references '
+
+
+def print_guard(guard, scope=""):
+    """Return the formula of a guard in a model with two enumerations and two constants."""
+    graph = parse_text(PACKAGES.replace("{guard}", guard).replace("{scope}", scope))
+    pipeline.load("expressions").run(graph, Sink())
+    context = context_of(graph, graph["c"], behaviour=graph["s"])
+    tree = graph["t"].attrs["guard"].tree
+    return print_formula(elaborate_condition(tree, partial(context_symbol, context)))
+
+
+@pytest.mark.parametrize(
+    ("guard", "formula"),
+    [
+        ("Near::Mode::slow == a and Far::Mode::slow == b", "slow=a & slow=b"),
+        ("Mode::slow == a and Mode::slow == b", "slow=a & slow=b"),
+        ("Mode::auto == b", "auto=b"),
+        ("(if n == 0 ? Far::Mode::off else Far::Mode::auto) == b", "n=0 & off=b | !n=0 & auto=b"),
+        ("n == Near::Mode::slow and n != Far::Mode::slow", "n=2 & n!=5"),
+        ("n >= Near::LIMIT and n <= Far::LIMIT", "n>=3 & n<=5"),
+    ],
+)
+def test_enumerations_and_constants_of_one_name_are_distinct(guard, formula):
+    assert print_guard(guard) == formula
+
+
+@pytest.mark.parametrize(("package", "number", "limit"), [("near", 2, 3), ("far", 5, 5)])
+def test_an_import_decides_which_of_them_a_name_denotes(package, number, limit):
+    guard = "n == Mode::slow and n < LIMIT"
+    assert print_guard(guard, IMPORT + package) == f"n={number} & n<{limit}"
+
+
+def test_a_literal_of_several_enumerations_has_no_number():
+    with pytest.raises(ElaborationError, match="'Mode::slow' is a literal of several enum"):
+        print_guard("n == Mode::slow")
 
 
 # -- elaboration -------------------------------------------------------------------------------

@@ -514,3 +514,37 @@ def test_values_of_what_a_loop_is_at_are_variables_of_the_contract():
     names, codes = find_contract(LOOP, "P::Count")
     assert "env p_free" in names
     assert "SM458" not in codes
+
+
+def test_enumerations_and_constants_of_one_name_are_distinct_in_a_contract():
+    reading = read(
+        """
+package P {
+    private import ScalarValues::*;
+    package A { enum def Mode { off = 1; slow = 2; } attribute LIMIT : Integer = 3; }
+    package B { enum def Mode { slow = 4; off = 6; auto = 7; } attribute LIMIT : Integer = 5; }
+    part def Pump {
+        private import A::*;
+        in attribute a : A::Mode;
+        in attribute n : Integer { assert constraint { n >= 0 and n <= 7 } }
+        attribute b : B::Mode := B::Mode::off;
+        exhibit state run {
+            private import B::*;
+            entry; then idle;
+            state idle;
+            state busy { entry action { assign b := B::Mode::auto; } }
+            transition first idle if A::Mode::slow == a and n >= LIMIT then busy;
+            transition first busy if n >= A::LIMIT and n != B::Mode::slow then idle;
+        }
+    }
+}
+""",
+        passes=ALL,
+    )
+    (contract,) = reading.graph.derived(Contract)
+    domains = {variable.name: describe(variable.domain) for variable in contract.variables}
+    assert (domains["a"], domains["b"]) == ("off, slow", "slow, off, auto")
+    formulas = {print_formula(conjunct.formula) for conjunct in contract.guarantees}
+    assert "state=idle & slow=a & n>=5 -> state'=busy & b'=auto" in formulas
+    assert "state=busy & n>=3 & n!=4 -> state'=idle" in formulas
+    assert reading.list_codes() == []

@@ -77,11 +77,6 @@ class Context(Struct, frozen=True):
         """The variable of each feature by name; the domains of the features are not computed."""
         return self.features.variables if isinstance(self.features, _FeatureTable) else {}
 
-    @property
-    def literals(self) -> dict[str, tuple[str, str]]:
-        """Enumeration and identifier of each literal, by plain and by qualified name."""
-        return self.enumerations.literals
-
 
 def context_of(
     graph: Graph,
@@ -128,29 +123,23 @@ def find_symbol(context: Context, name: str, element: str = "") -> Symbol | None
 
 
 def find_literal(context: Context, name: str, element: str = "") -> Symbol | None:
-    """Return the symbol of an enumeration literal with a qualified name, or of a constant.
+    """Return the symbol of an enumeration literal, or of a constant, with the id *element*.
 
-    ``Mode::auto`` is a literal. ``Limits::MAX`` is a constant of a package that is visible from the
-    classifier, as ``MAX`` in the packages around it; or it is the constant with the id *element*.
+    Without such an element, ``Mode::auto`` is a literal, and ``Limits::MAX`` is a constant of a
+    package that is visible from the classifier, as ``MAX`` in the packages around it.
     """
-    constants = context.enumerations.constants_by_id
-    if element in constants:
-        constant = constants[element]
-        return None if constant is None else Symbol(const(constant[0]), constant[1])
-    entry = context.literals.get(name)
-    if entry is None or ("::" not in name and "." not in name):
-        return _find_constant(context, name)
-    enumeration, identifier = entry
-    domain = context.enumerations.domains[enumeration]
-    return Symbol(const(identifier), domain, context.enumerations.numbers.get(name))
+    enumerations = context.enumerations
+    if element in enumerations.constants_by_id:
+        return enumerations.constants_by_id[element]
+    literal = enumerations.literals_by_id.get(element) or enumerations.literals.get(name)
+    return literal or _find_constant(context, name)
 
 
 def _find_constant(context: Context, name: str) -> Symbol | None:
     """Return the symbol of the package's attribute that a name means in the nearest namespace."""
     constants, path = context.enumerations.constants, context.namespace.split("::")
     names = ("::".join((*path[:length], name)) for length in range(len(path), -1, -1))
-    constant = next((constants[key] for key in names if key in constants), None)
-    return None if constant is None else Symbol(const(constant[0]), constant[1])
+    return next((constants[key] for key in names if key in constants), None)
 
 
 def describe_missing_range(id: str) -> str:
@@ -384,14 +373,13 @@ def _find_mentioned_values(
     """
     texts: dict[str, None] = {}
     numbers: dict[str, dict[int, None]] = {}
-    numbers_by_name = {**enumerations.numbers, **enumerations.integers}
     for element, node in _iter_nodes(graph, behaviour):
         if isinstance(node, LiteralExpression) and isinstance(node.value, str):
             texts[node.value] = None
         for name, op, value in _iter_comparisons(node):
             # A computed threshold widens no range.
             is_plain = not isinstance(value, Binary)
-            number = evaluate_integer(value, numbers_by_name) if is_plain else None
+            number = evaluate_integer(value, enumerations.numbers) if is_plain else None
             if number is not None and abs(number) <= _GREATEST:
                 step = 0 if element.kind is Kind.CONSTRAINT else _NEXT.get(op, 0)
                 numbers.setdefault(name, {}).update({number: None, number + step: None})

@@ -189,8 +189,11 @@ def _elaborate_name(
     if isinstance(expected, IntegerDomain) and symbol.number is not None:
         return _make_value(Const(symbol.number), IntegerDomain(symbol.number, symbol.number))
     if symbol.domain is None:
-        obstacle = "several values" if symbol.has_several_values else "no finite type"
-        message = f"'{name}' has {obstacle}"
+        if isinstance(symbol.formula, Const):
+            message = f"'{name}' is a literal of several enumerations"
+        else:
+            obstacle = "several values" if symbol.has_several_values else "no finite type"
+            message = f"'{name}' has {obstacle}"
         raise ElaborationError(Fault.UNSUPPORTED, message, name)
     return _make_value(symbol.formula, symbol.domain)
 

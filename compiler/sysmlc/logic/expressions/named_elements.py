@@ -8,8 +8,9 @@ from collections.abc import Iterable, Iterator
 from functools import cached_property
 
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, query
-from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, IntegerDomain
-from sysmlc.logic.formula import Literal
+from sysmlc.logic.contract import BooleanDomain, EnumerationDomain, IntegerDomain
+from sysmlc.logic.expressions.elaboration import Symbol
+from sysmlc.logic.formula import const
 from sysmlc.logic.identifiers import make_unique
 
 VALUE_KINDS = (Kind.PROPERTY, Kind.PORT, Kind.FLOW_PROPERTY, Kind.PARAMETER)
@@ -236,18 +237,39 @@ class Enumerations:
         self.revision = graph.revision
 
     @cached_property
-    def literals(self) -> dict[str, tuple[str, str]]:
-        """Enumeration and identifier of each literal, by plain and by qualified name."""
-        literals: dict[str, tuple[str, str]] = {}
+    def literals_by_id(self) -> dict[str, Symbol]:
+        """The symbol of each literal by its id."""
+        literals = {}
         for enumeration in self._graph.of_kind(Kind.ENUMERATION):
-            for name, identifier in literals_of(self._graph, enumeration).items():
-                for spelling in (name, *_qualified_names(enumeration.name, name)):
-                    literals.setdefault(spelling, (enumeration.name, identifier))
+            identifiers = literals_of(self._graph, enumeration)
+            domain = EnumerationDomain(tuple(identifiers.values()))
+            for literal in self._graph.owned(enumeration):
+                if literal.kind is Kind.ENUMERATION_LITERAL:
+                    value = literal.attrs.get("value")
+                    number = value if type(value) is int else None
+                    literals[literal.id] = Symbol(const(identifiers[literal.name]), domain, number)
         return literals
 
     @cached_property
-    def constants(self) -> dict[str, tuple[Literal, Domain] | None]:
-        """Value and domain of each attribute of a package with a bound value, by qualified name.
+    def literals(self) -> dict[str, Symbol]:
+        """The symbol of each literal by the names ``Mode::auto`` and ``Mode.auto``.
+
+        A name of several literals that differ, such as those of two packages, has no domain.
+        """
+        literals: dict[str, Symbol] = {}
+        for id, symbol in self.literals_by_id.items():
+            literal = self._graph[id]
+            enumeration = self._graph.owner(literal)
+            assert enumeration is not None
+            for separator in ("::", "."):
+                name = f"{enumeration.name}{separator}{literal.name}"
+                if literals.setdefault(name, symbol) != symbol:
+                    literals[name] = Symbol(symbol.formula, None)
+        return literals
+
+    @cached_property
+    def constants(self) -> dict[str, Symbol | None]:
+        """The symbol of each attribute of a package with a bound value, by qualified name.
 
         None stands for an attribute whose value may change, or has no finite type.
         """
@@ -255,48 +277,32 @@ class Enumerations:
         return {self._graph.qualified_name(self._graph[id]): value for id, value in constants}
 
     @cached_property
-    def constants_by_id(self) -> dict[str, tuple[Literal, Domain] | None]:
-        """The same values by the ids of the attributes."""
+    def constants_by_id(self) -> dict[str, Symbol | None]:
+        """The same symbols by the ids of the attributes."""
         attributes = self._graph.of_kind(Kind.INSTANCE)
         return {attribute.id: self._read_constant(attribute) for attribute in attributes}
 
     @cached_property
     def integers(self) -> dict[str, int]:
         """The constants that are Integers, by id."""
-        values = ((id, constant[0]) for id, constant in self.constants_by_id.items() if constant)
+        values = ((id, constant_value(self._graph[id])) for id in self.constants_by_id)
         return {id: value for id, value in values if type(value) is int}
 
-    def _read_constant(self, attribute: Element) -> tuple[Literal, Domain] | None:
+    def _read_constant(self, attribute: Element) -> Symbol | None:
         value = constant_value(attribute)
         if isinstance(value, bool):
-            return value, BooleanDomain()
+            return Symbol(const(value), BooleanDomain())
         if isinstance(value, int):
-            return value, IntegerDomain(value, value)
-        literal = self._graph.get(str(attribute.attrs.get("value_instance")))
-        enumeration = None if literal is None else self._graph.owner(literal)
-        if value is None or enumeration is None or enumeration.kind is not Kind.ENUMERATION:
-            return None
-        identifiers = literals_of(self._graph, enumeration)
-        return identifiers[str(value)], EnumerationDomain(tuple(identifiers.values()))
-
-    @cached_property
-    def domains(self) -> dict[str, EnumerationDomain]:
-        """The domain of each enumeration, by name."""
-        identifiers: dict[str, dict[str, None]] = {}
-        for enumeration, identifier in self.literals.values():
-            identifiers.setdefault(enumeration, {})[identifier] = None
-        return {name: EnumerationDomain(tuple(members)) for name, members in identifiers.items()}
+            return Symbol(const(value), IntegerDomain(value, value))
+        literal = self.literals_by_id.get(str(attribute.attrs.get("value_instance")))
+        return literal if value is not None else None
 
     @cached_property
     def numbers(self) -> dict[str, int]:
-        """The number that each literal with a number stands for, by qualified name."""
-        numbers: dict[str, int] = {}
-        for literal in self._graph.of_kind(Kind.ENUMERATION_LITERAL):
-            owner, value = self._graph.owner(literal), literal.attrs.get("value")
-            if owner is not None and isinstance(value, int) and not isinstance(value, bool):
-                for name in _qualified_names(owner.name, literal.name):
-                    numbers.setdefault(name, value)
-        return numbers
+        """The numbers of literals and Integer constants, by the ids and the names of literals."""
+        literals = {**self.literals, **self.literals_by_id}.items()
+        numbers = {key: symbol.number for key, symbol in literals if symbol.number is not None}
+        return numbers | self.integers
 
 
 def enumerations_of(graph: Graph) -> Enumerations:
@@ -307,7 +313,3 @@ def enumerations_of(graph: Graph) -> Enumerations:
     enumerations = Enumerations(graph)
     graph.store(Enumerations, (enumerations,))
     return enumerations
-
-
-def _qualified_names(enumeration: str, literal: str) -> tuple[str, str]:
-    return f"{enumeration}::{literal}", f"{enumeration}.{literal}"

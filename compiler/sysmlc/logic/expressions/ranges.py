@@ -193,7 +193,7 @@ def evaluate_integer(expression: Expression, constants: Mapping[str, int]) -> in
     match expression:
         case LiteralExpression(value) if isinstance(value, int) and not isinstance(value, bool):
             return value
-        case Name(element=element) if element in constants:
+        case Name(element=element) | Member(element=element) if element in constants:
             return constants[element]
         case Name() | Member():
             return constants.get(name_of(expression) or "")

@@ -80,7 +80,7 @@ class Scope(Struct, frozen=True):
             return Symbol(formula, feature.domain, has_several_values=several)
         variable = self.variables.get(name)
         if variable is None:
-            return find_literal(self.context, name)
+            return find_literal(self.context, name, element)
         return Symbol(var(name), variable.domain)
 
     def find_feature(self, name: str) -> Feature | None:
@@ -131,9 +131,8 @@ class Scope(Struct, frozen=True):
         names = self.list_names(kind)
         last = re.split(r"::|\.", name)[-1]
         machine = f"{name}.state"
-        if similar := find_similar(
-            name, [*names, *(name for name in self.context.literals if "::" in name)]
-        ):
+        literals = (name for name in self.context.enumerations.literals if "::" in name)
+        if similar := find_similar(name, [*names, *literals]):
             candidates = [similar]
         elif self.names is not None and self.names.find(machine):
             candidates = [machine]
