@@ -14,6 +14,8 @@ def find_unreported(graph, losses, changes):
 
 
 def _is_reported(graph, losses, by_name, change):
+    if change.aspect == "trigger" and change.after == f"{change.before} s":
+        return True  # nothing is lost: a number without a unit is in seconds
     if change.old is not None:
         return any(element.id in losses for element in _iter_near(graph, graph[change.old.id]))
     return any(
