@@ -40,6 +40,7 @@ class _Entry(Struct, frozen=True):
 
 _ANALYSES = {
     "activities": _Entry("sysmlc.analyses.activities:Activities"),
+    # Recipes draw the token graphs again, without reports: ``activities`` reports the faults.
     "recipe": _Entry("sysmlc.analyses.recipe:Recipe", ("activities",)),
     "platform": _Entry("sysmlc.analyses.platform:Platform", ("recipe",)),
     "robots": _Entry("sysmlc.analyses.robots:Robots", library="Floors"),

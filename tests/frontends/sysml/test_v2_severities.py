@@ -112,7 +112,7 @@ package P {
     assert "env look_mass" not in names
 
 
-ACTIONS = ["SM402", "SM412", "SM450", "SM451", "SM454", "SM457", "SM464", "SM466", "SM486"]
+ACTIONS = ["SM402", "SM412", "SM450", "SM451", "SM454", "SM457", "SM464", "SM465", "SM466", "SM486"]
 
 
 @pytest.mark.parametrize(
@@ -161,7 +161,10 @@ def test_several_successions_after_the_start_are_all_taken():
     both = "first start then a; first start then b; action a; action b;"
     assert list_action_findings(f"action run {{ {both} }}") == []
     merged = "first start; then merge m; first m then a; first m then b; action a; action b;"
-    assert list_action_findings(f"action run {{ {merged} }}") == []
+    assert list_action_findings(f"action run {{ {merged} }}") == [
+        "SM465: merge 'm' is drawn with 2 outgoing flows; it is taken as a merge and a fork",
+        "help: draw two control nodes",
+    ]
 
 
 def test_a_step_may_specialise_a_step():
