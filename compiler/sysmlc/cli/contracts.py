@@ -1,6 +1,6 @@
 """``sysmlc contracts``: checks of contracts, by themselves and against one another."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,12 +14,12 @@ from sysmlc.cli.recorded_runs import accept_command
 from sysmlc.support.counts import count
 
 if TYPE_CHECKING:
+    from sysmlc.analyses.verdicts import ContractChecks
     from sysmlc.cli.contract_files import ContractFile
     from sysmlc.cli.session import Settings
     from sysmlc.diagnostics.renderers import Finding
     from sysmlc.logic.requirements.statements import StatedRequirement
     from sysmlc.recipe.recipe_times import LimitVerdict
-    from sysmlc.synthesis.composition_check import CompositionVerdict
     from sysmlc.synthesis.contract_checks import CheckedContract
     from sysmlc.synthesis.decision import Options
     from sysmlc.synthesis.requirement_verdicts import RequirementVerdict
@@ -106,18 +106,55 @@ def _check(
     options: "Options",
     output: Path | None,
 ) -> int:
-    from sysmlc.analyses.verdicts import ContractChecks, UnknownComponentError, Verdicts
+    """Decide the contracts, show the verdicts, and return the exit code."""
     from sysmlc.cli.contract_files import show_results
-    from sysmlc.cli.reports import publish_results
-    from sysmlc.cli.session import fail
     from sysmlc.ir.query.libraries import find_unused_library_elements
     from sysmlc.logic.requirements.statements import list_stated_requirements
     from sysmlc.recipe.model import Model
     from sysmlc.recipe.recipe_times import decide_limits
-    from sysmlc.synthesis.witnesses import witness_files
+
+    graph = contract_file.graph
+    unused = find_unused_library_elements(graph)
+    checks = _decide_contracts(contract_file, component, unused, options)
+    time_verdicts = decide_limits(graph.derived(Model))
+    stated = list_stated_requirements(graph, contract_file.contracts, contract_file.reasons, unused)
+    requirements = [item for item in stated if component in ("", item.component)]
+    verdicts = list_verdicts(requirements, checks.contracts, time_verdicts)
+    refusals = _draw_runs(checks, output, contract_file, settings) if output is not None else ()
+    show_results(
+        contract_file,
+        settings,
+        (
+            *(line for item in checks.contracts for line in _format_result(item, settings.verbose)),
+            *(result.text() for result in checks.compositions),
+            *describe_omitted(requirements, checks.contracts, time_verdicts),
+            *describe_texts(requirements, time_verdicts, settings.verbose),
+        ),
+        {"requirements": verdicts, "behaviours": list_behaviours(checks.contracts)},
+        refusals,
+    )
+    is_checked = contract_file.is_whole and bool(checks.contracts or checks.compositions)
+    if refusals or not is_checked:
+        return 2
+    formal = [requirement for requirement in requirements if requirement.is_formal]
+    formal_verdicts = list_verdicts(formal, checks.contracts, time_verdicts)
+    if settings.strict and any(entry["verdict"] == "not-decided" for entry in formal_verdicts):
+        return 1
+    return _find_exit_code(contract_file, checks, settings)
+
+
+def _decide_contracts(
+    contract_file: "ContractFile", component: str, unused: Collection[str], options: "Options"
+) -> "ContractChecks":
+    """Return the verdicts on the contracts, and report their findings to the sink of the file.
+
+    *unused* are the elements of libraries that the model does not use. Exits with code 2 if the
+    component is unknown, or if none is named and all contracts are about such elements.
+    """
+    from sysmlc.analyses.verdicts import ContractChecks, UnknownComponentError, Verdicts
+    from sysmlc.cli.session import fail
 
     graph, contracts = contract_file.graph, contract_file.contracts
-    unused = find_unused_library_elements(graph)
     if contracts and not component and all(item.origin in unused for item in contracts):
         fail("all contracts are about libraries that the model does not use; name one with -c")
     try:
@@ -127,51 +164,23 @@ def _check(
         fail(str(problem))
     (checks,) = graph.derived(ContractChecks)
     contract_file.sink.extend(checks.diagnostics)
-    alone, together = checks.contracts, checks.compositions
-    time_verdicts = decide_limits(graph.derived(Model))
-    requirements = [
-        item
-        for item in list_stated_requirements(graph, contracts, contract_file.reasons, unused)
-        if component in ("", item.component)
-    ]
-    refusals: Sequence[Finding] = ()
-    if output is not None:
-        runs = [run for result in alone for run in result.witnesses]
-        runs += (run for result in together for run in result.witnesses)
-        refusals = publish_results(
-            "contracts", witness_files(runs), output, [contract_file], settings
-        )
-    show_results(
-        contract_file,
-        settings,
-        (
-            *(line for result in alone for line in _format_result(result, settings.verbose)),
-            *(result.text() for result in together),
-            *describe_omitted(requirements, alone, time_verdicts),
-            *describe_texts(requirements, time_verdicts, settings.verbose),
-        ),
-        {
-            "requirements": list_verdicts(requirements, alone, time_verdicts),
-            "behaviours": list_behaviours(alone),
-        },
-        refusals,
-    )
-    if refusals:
-        return 2
-    if not contract_file.is_whole or not (alone or together):
-        return 2
-    formal = [requirement for requirement in requirements if requirement.is_formal]
-    verdicts = list_verdicts(formal, alone, time_verdicts)
-    if settings.strict and any(entry["verdict"] == "not-decided" for entry in verdicts):
-        return 1
-    return _find_exit_code(contract_file, alone, together, settings)
+    return checks
+
+
+def _draw_runs(
+    checks: "ContractChecks", output: Path, contract_file: "ContractFile", settings: "Settings"
+) -> "Sequence[Finding]":
+    """Draw the runs that violate something; return the reasons if nothing was written."""
+    from sysmlc.cli.reports import publish_results
+    from sysmlc.synthesis.witnesses import witness_files
+
+    runs = [run for result in checks.contracts for run in result.witnesses]
+    runs += (run for result in checks.compositions for run in result.witnesses)
+    return publish_results("contracts", witness_files(runs), output, [contract_file], settings)
 
 
 def _find_exit_code(
-    contract_file: "ContractFile",
-    alone: "Iterable[CheckedContract]",
-    together: "Iterable[CompositionVerdict]",
-    settings: "Settings",
+    contract_file: "ContractFile", checks: "ContractChecks", settings: "Settings"
 ) -> int:
     """Return 1 if something is violated, else 2 if something is not decided, else 1 after errors.
 
@@ -181,11 +190,11 @@ def _find_exit_code(
     from sysmlc.cli.reports import is_reported
     from sysmlc.driver.faults import compute_exit_code
 
-    answers = [result.is_satisfied for result in together]
-    answers += [result.is_implemented is not False for result in alone]
+    answers = [result.is_satisfied for result in checks.compositions]
+    answers += [result.is_implemented is not False for result in checks.contracts]
     answers += [
         result.verdict.is_realizable
-        for result in alone
+        for result in checks.contracts
         if not (result.is_checked_by_behaviour and result.verdict.is_realizable is None)
     ]
     if False in answers:
