@@ -83,6 +83,8 @@ def test_a_run_in_json(workspace, form):
         ("run.json", "{", "run.json:1:1: it is not JSON"),
         ("run.json", '[{"go": "\\ud800"}]', "only half of a character"),
         ("run.json", "3", "it is not a list of steps"),
+        ("run.json", '[{"go": true,\n"go": false}]', "run.json:2:1: the name 'go' occurs twice"),
+        ("run.json", '{"steps": [],\n"steps": []}', "run.json:2:1: the member 'steps' occurs"),
         ("run.json", "[\n3]", "step 1 is not an object"),
         ("run.json", '[{"go": true},\n{"done": true}]', "run.json:2:1: not each step has a value"),
         ("run.json", '[{"go": true, "level": 1.5}]', "'1.5' is not a value of 'level'"),

@@ -100,8 +100,10 @@ Package p "Plant"
         State t.x "waiting"
         Transition t.t guard="{text}"
           -> trigger t.g
+          Activity t.y "level"
           Trigger t.g payload="order"
             -> typed-by g
+    Activity t.z "weigh"
     Activity t.d "fill"
       Property t.p "load"
       Action t.w "weigh"

@@ -10,9 +10,11 @@ from sysmlc.ir.expressions import Expression, Member, Name, Statement
 from sysmlc.logic.expressions.named_elements import VALUE_KINDS, find_named_values
 
 _Node = TypeVar("_Node")
-_FIRST = (*VALUE_KINDS, *query.CLASSIFIERS, Kind.PACKAGE)
+_TYPES = tuple(kind for kind in query.CLASSIFIERS if kind not in query.BEHAVIORS)
+_FIRST = (*VALUE_KINDS, *_TYPES, Kind.PACKAGE)
 """Kinds of the elements that hide all others of the same name, also nearer ones."""
-_LATER = (Kind.INSTANCE, Kind.OPERATION, Kind.TRIGGER, Kind.ACTION, Kind.STRUCTURED)
+_STEPS = (Kind.TRIGGER, Kind.ACTION, Kind.STRUCTURED)
+_LATER = (Kind.INSTANCE, Kind.OPERATION, *query.BEHAVIORS, *_STEPS)
 _MEMBERS = (*_LATER, Kind.PIN, Kind.ENUMERATION_LITERAL, *_FIRST)
 """Kinds of the members of a scope, of which later ones hide earlier ones."""
 _QUALIFIED = (Kind.ENUMERATION_LITERAL, Kind.PROPERTY, Kind.PORT, Kind.OPERATION, Kind.INSTANCE)

@@ -165,6 +165,8 @@ def _read_json(text: str) -> list[_Row]:
         document = parse_json(text)
     except DocumentError as error:
         raise _RunFileError(error.problem, error.spot.line) from None
+    for name, spot in document.repeated:
+        raise _RunFileError(f"the member '{name}' occurs twice", spot.line)
     steps = (document.get("steps") or document).items
     if steps is None:
         raise _RunFileError("it is not a list of steps, nor an object with the member 'steps'", 1)
@@ -173,6 +175,8 @@ def _read_json(text: str) -> list[_Row]:
         if step.entries is None:
             reason = f"step {number} is not an object with a value for each variable"
             raise _RunFileError(reason, step.spot.line)
+        for name, spot in step.repeated:
+            raise _RunFileError(f"the name '{name}' occurs twice in step {number}", spot.line)
         cells = {name: value.as_json() for name, value in step.entries.items()}
         rows.append(_Row(step.spot.line, cells))
     return rows
