@@ -26,6 +26,12 @@ def test_a_failing_write_leaves_the_old_file_and_nothing_else(tmp_path, monkeypa
     assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
 
 
+@pytest.mark.parametrize("text", ["\ud800", b"bytes"])
+def test_a_text_that_cannot_be_written_is_refused_when_it_is_added(text):
+    with pytest.raises((UnicodeEncodeError, AttributeError)):
+        Output().add("a.txt", text)
+
+
 def test_artefacts_come_sorted_and_their_traces_without_repetition():
     output = Output()
     output.add("b.txt", "", trace=["x", "y", "x"])

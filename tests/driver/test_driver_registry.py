@@ -291,6 +291,8 @@ PLUG_IN_FAULTS = {
     "THING = 3": "has no member 'name' of type str (SOURCE)",
     "class THING: name = 'thing'": "is a class: name an instance of it (SOURCE)",
     f"{SPACE}, name='thing')": "has no method 'METHOD' (SOURCE)",
+    "class Thing:\n name = property(lambda self: 1 / 0)\nTHING = Thing()": "cannot be loaded: "
+    "ZeroDivisionError: division by zero (SOURCE, 2)",
     f"{SPACE}, name='x', {METHODS})": "is called 'x': "
     "the names of the KIND and of its entry point must be equal (SOURCE)",
 }
@@ -318,6 +320,28 @@ def test_a_plug_in_that_cannot_be_used_is_a_warning_with_its_place(folder, conte
     fault = fault.replace("SOURCE", "acme_plug:THING of acme")
     messages = [str(warning.message) for warning in warnings]
     assert messages == [f"{kind} 'thing' {fault}; the plug-in is ignored"]
+
+
+@pytest.mark.parametrize(
+    ("member", "load", "fault"),
+    [
+        ("after=(1,)", registry.load_passes, "has a member 'after' with other items than texts"),
+        ("suffixes=None", registry.load_frontends, "has no member 'suffixes' of type tuple"),
+        ("is_last='no'", select_backends, "has no member 'is_last' of type bool"),
+        ("needs='recipe'", select_backends, "has no member 'needs' of type tuple"),
+        ("needs=('recip',)", select_backends, "needs the unknown analysis 'recip'; did you mean"),
+    ],
+)
+def test_a_plug_in_with_a_wrong_member_is_ignored(folder, member, load, fault):
+    sys.modules.pop("acme_plug", None)
+    members = f"name='thing', summary='', is_default=True, {METHODS}"
+    other = "" if member.startswith("after") else ", after=()"
+    (folder / "acme_plug.py").write_text(f"{SPACE.partition('(')[0]}({members}{other}, {member})")
+    for kind in ("frontends", "passes", "backends"):
+        install_distribution(folder, kind, f"sysmlc.{kind}", "thing = acme_plug:THING")
+    with pytest.warns(PlugInWarning, match=fault):
+        plug_ins = load({} if load is registry.load_passes else ())
+    assert "thing" not in {plug_in.name for plug_in in plug_ins}
 
 
 TABLE_MODULE = """\

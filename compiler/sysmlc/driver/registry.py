@@ -45,6 +45,11 @@ _INTERFACES: Mapping[str, tuple[Sequence[str], Mapping[str, type]]] = {
     "back end": (("emit",), {"name": str, "summary": str, "is_default": bool}),
 }
 """The methods and the other members of plug-ins."""
+_OPTIONAL: Mapping[str, Mapping[str, type]] = {
+    "front end": {"suffixes": tuple},
+    "back end": {"needs": tuple, "is_last": bool},
+}
+"""Members that plug-ins may lack. The items of a tuple are texts."""
 
 _FRONTENDS = ("xmi", "huds", "caex", "sysml", "ir")
 """Names of the shipped front ends, which are those of their packages."""
@@ -189,9 +194,12 @@ def _load_usable(entries: Mapping[str, EntryPoint], kind: str, note: Note) -> It
     """Yield the plug-ins that can be loaded."""
     for entry in entries.values():
         try:
-            yield _load_plug_in(entry, kind)
-        except PlugInError as problem:
+            plug_in = cast("Any", _load_plug_in(entry, kind))
+            list_needs([plug_in] if kind == "back end" else [])
+        except (PlugInError, BackendError) as problem:
             note(f"{problem}; {_IGNORED}")
+        else:
+            yield plug_in
 
 
 def _load_plug_in(entry: EntryPoint, kind: str) -> object:
@@ -200,12 +208,12 @@ def _load_plug_in(entry: EntryPoint, kind: str) -> object:
     source = f"{entry.value}{distribution}"
     try:
         plug_in = entry.load()
-    # A module may call sys.exit() when it is imported.
+        fault = _find_interface_fault(plug_in, kind)
+    # A module may call sys.exit() when it is imported, and members may be computed.
     except (Exception, SystemExit) as problem:
         place = _find_fault(problem, entry.module)
         text = f"{kind} '{entry.name}' cannot be loaded: {type(problem).__name__}: {problem}"
         raise PlugInError(f"{text} ({source}{place})") from problem
-    fault = _find_interface_fault(plug_in, kind)
     if fault:
         raise PlugInError(f"{kind} '{entry.name}' {fault} ({source})")
     name = cast("Any", plug_in).name
@@ -225,11 +233,16 @@ def check_interfaces(steps: Iterable[object], kind: str) -> None:
 
 def _find_interface_fault(step: object, kind: str) -> str:
     methods, members = _INTERFACES[kind]
+    optional = _OPTIONAL.get(kind, {})
+    members = {**members, **{name: optional[name] for name in optional if hasattr(step, name)}}
     if isinstance(step, type):
         return "is a class: name an instance of it"
     for member, type_ in members.items():
-        if not isinstance(getattr(step, member, None), type_):
+        value = getattr(step, member, None)
+        if not isinstance(value, type_):
             return f"has no member '{member}' of type {type_.__name__}"
+        if isinstance(value, tuple) and not all(isinstance(item, str) for item in value):
+            return f"has a member '{member}' with other items than texts"
     missing = [method for method in methods if not callable(getattr(step, method, None))]
     return f"has no method '{missing[0]}'" if missing else ""
 

@@ -131,6 +131,8 @@ class Output:
         The manifest lists *name*, the full name after which the file is named.
         """
         check_output_path(path)
+        # Raises an error here, in the back end, instead of when the file is written.
+        text.encode()
         if path in self._artefacts:
             raise ValueError(f"output path {path!r} is written twice")
         if self._last_trace[0] is not trace or not isinstance(trace, tuple):
