@@ -195,6 +195,14 @@ def test_a_wrong_option_is_refused_with_what_is_expected(options, error, message
         sysmlc.compile_texts({"a.sysml": "package A;"}, **options)
 
 
+def test_a_text_with_half_a_character_is_a_finding():
+    sink = sysmlc.Sink()
+    (lamp,) = sysmlc.read_contracts("G lit\n.outputs lit\n", sysmlc.Sink(), "spot")
+    assert sysmlc.accept_run(lamp, "lit\n\ud800\n", sink) is None
+    sysmlc.simulate(sysmlc.compile_texts({}), "\ud800", sink)
+    assert [diagnostic.rule.code for diagnostic in sink] == ["SM591", "SM550"]
+
+
 @pytest.mark.parametrize(
     ("call", "error", "message"),
     [

@@ -76,7 +76,8 @@ def simulate(compilation: Compilation, scenarios: str, sink: Sink) -> Simulation
 
     Faults of the text are reported to *sink*, and the result has no scenario with a fault.
     """
-    return run_scenarios(compilation.graph, Source("scenario.yaml", scenarios.encode()), sink)
+    source = Source("scenario.yaml", scenarios.encode(errors="surrogatepass"))
+    return run_scenarios(compilation.graph, source, sink)
 
 
 # -- formats of contracts --------------------------------------------------------------------------
@@ -112,4 +113,5 @@ def accept_run(contract: Contract, run: str, sink: Sink) -> RunVerdict | None:
     The first violation is reported to *sink*, as are faults of the text; then the result is None.
     """
     name = "run.json" if run.lstrip().startswith(("[", "{")) else "run.csv"
-    return accept_recorded_run(contract, Source(name, run.encode()), lambda _: Subject(), sink)
+    source = Source(name, run.encode(errors="surrogatepass"))
+    return accept_recorded_run(contract, source, lambda _: Subject(), sink)
