@@ -206,6 +206,13 @@ def test_an_import_decides_which_of_them_a_name_denotes(package, number, limit):
     assert print_guard(guard, IMPORT + package) == f"n={number} & n<{limit}"
 
 
+def test_a_literal_of_another_enumeration_is_a_type_mismatch():
+    for guard in ("a == Far::Mode::off", "Far::Mode::off == a"):
+        with pytest.raises(ElaborationError, match="is one of") as caught:
+            print_guard(guard)
+        assert caught.value.fault is Fault.TYPE
+
+
 def test_a_literal_of_several_enumerations_has_no_number():
     with pytest.raises(ElaborationError, match="'Mode::slow' is a literal of several enum"):
         print_guard("n == Mode::slow")

@@ -178,10 +178,14 @@ def _elaborate_name(
     symbol = find_symbol(expression, scope)
     last = last_name(name)
     if isinstance(expected, EnumerationDomain) and last in expected.literals and not expected.texts:
-        # A property, or a constant of the same type, hides a literal of the same name.
-        is_constant = symbol is not None and isinstance(symbol.formula, Const)
-        is_property = symbol is not None and not (is_constant and symbol.domain != expected)
-        if not is_property:
+        # A property, or a constant of the same type, hides a literal of the same name. A qualified
+        # name may denote a literal of another enumeration.
+        is_hidden = symbol is not None and (
+            not isinstance(symbol.formula, Const)
+            or symbol.domain == expected
+            or (name != last and isinstance(symbol.domain, EnumerationDomain))
+        )
+        if not is_hidden:
             return _make_value(Const(last), expected)
     if symbol is None:
         fault = Fault.UNKNOWN if dotted_name(expression) else Fault.UNSUPPORTED
