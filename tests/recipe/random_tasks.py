@@ -9,8 +9,7 @@ from random import Random
 
 from msgspec.structs import replace
 
-from sysmlc.analyses.activities import Activities
-from sysmlc.analyses.recipe import Recipe
+from refinement import run_steps
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import parse_text
 from sysmlc.logic import evaluate
@@ -199,7 +198,7 @@ def _print_default(value: object) -> str:
 def derive_task(graph: TaskGraph) -> Task:
     """Return the task with its derived data."""
     ir_graph = parse_text(str(graph))
-    Recipe().run(ir_graph, Sink())
+    run_steps(("expressions", "recipe"), ir_graph, Sink())
     (model,) = ir_graph.derived(Model)
     (task,) = model.recipe.tasks
     return task
@@ -208,7 +207,7 @@ def derive_task(graph: TaskGraph) -> Task:
 def build_token_graph(graph: TaskGraph) -> TokenGraph:
     """Return the token graph of the task, which starts in the first step."""
     ir_graph = parse_text(str(graph))
-    Activities().run(ir_graph, Sink())
+    run_steps(("expressions", "activities"), ir_graph, Sink())
     tokens = next(tokens for tokens in ir_graph.derived(TokenGraph) if tokens.activity == "t")
     return replace(tokens, handshake=Handshake("running", "finished", is_started=True))
 
