@@ -39,7 +39,7 @@ STOPPED = CHOICE.replace("first Measure", "first Measure accept Stop")
 DIRECT = "transition first Measure if not ok then Bad; transition first Measure if ok then Good;"
 GUARDED = "transition first Measure accept Stop if ok then Good;"
 RAISED = "transition first Measure accept Stop do assign level := level + 1 then Good;"
-C_TEXT = '{ language "C" /* ok = true; */ }'
+C_TEXT = '{ language "C" /* ok |= 1; */ }'
 STOPS = "& state=Measure & event=Stop ->"
 
 

@@ -88,6 +88,12 @@ def test_effects_are_assignments_invocations_and_sent_signals():
     assert parse_effect(";;") == ()
 
 
+def test_two_equal_signs_in_a_statement_have_no_meaning():
+    with pytest.raises(ExpressionError, match="write ':=' to assign, or '==' to compare"):
+        parse_effect("a = b = c")
+    assert parse_effect("a := b = c") == parse_effect("a = b == c")
+
+
 @pytest.mark.parametrize("text", ["f(x) := 2", "3", "x > 2"])
 def test_an_expression_that_is_not_a_call_is_no_effect(text):
     with pytest.raises(ExpressionError):

@@ -20,14 +20,16 @@ def test_columns_count_characters_in_every_encoding(encoding):
     text = f'<?xml version="1.0" encoding="{declaration}"?>\r\n<a>\n  <é/><b ä="ü"/> <c/>\n</a>'
     line = '  <é/><b ä="ü"/> <c/>'
     assert find_locations(text, Place("f", 3), Place("f", 0), encoding=encoding) == [
-        Location(3, 18, line),
-        Location(2, 1, "<a>"),
+        Location(3, 18, line, end_line=3, end_column=22),
+        Location(2, 1, "<a>", end_line=2, end_column=4),
     ]
 
 
 def test_lines_after_65535_are_correct():
     text = "<a>" + "\n" * 70_000 + "  <b/></a>"
-    assert find_locations(text, Place("f", 1)) == [Location(70_001, 3, "  <b/></a>")]
+    assert find_locations(text, Place("f", 1)) == [
+        Location(70_001, 3, "  <b/></a>", end_line=70_001, end_column=7)
+    ]
 
 
 def test_columns_in_files_of_one_line_are_correct():
@@ -37,11 +39,15 @@ def test_columns_in_files_of_one_line_are_correct():
 
 
 def test_places_in_text_are_byte_offsets():
-    assert find_locations("part é;\r\nport p", Place("f", offset=15)) == [Location(2, 6, "port p")]
+    assert find_locations("part é;\r\nport p", Place("f", offset=15)) == [
+        Location(2, 6, "port p", end_line=2, end_column=7)
+    ]
 
 
 def test_places_with_line_and_column_get_the_text_of_the_line():
-    assert find_locations("one\ntwo", Place("f", line=2, column=3)) == [Location(2, 3, "two")]
+    assert find_locations("one\ntwo", Place("f", line=2, column=3)) == [
+        Location(2, 3, "two", end_line=2, end_column=4)
+    ]
 
 
 def test_unknown_ordinals_and_files_have_no_location():
@@ -49,7 +55,9 @@ def test_unknown_ordinals_and_files_have_no_location():
 
 
 def test_elements_before_a_syntax_error_are_located():
-    assert find_locations("<a>\n<b></a>", Place("f", 1)) == [Location(2, 1, "<b></a>")]
+    assert find_locations("<a>\n<b></a>", Place("f", 1)) == [
+        Location(2, 1, "<b></a>", end_line=2, end_column=4)
+    ]
 
 
 TEXTS_WITH_HIDDEN_TAGS = [
@@ -102,4 +110,6 @@ def test_the_excerpt_of_a_long_line_is_the_part_around_the_column():
 @pytest.mark.parametrize("name", ["base64", "idna", "rot13", "klingon", "unicode_escape"])
 def test_an_unknown_encoding_does_not_prevent_locations(name):
     text = f'<?xml version="1.0" encoding="{name}"?>\n<a/>'
-    assert find_locations(text, Place("f", offset=len(text) - 4)) == [Location(2, 1, "<a/>")]
+    assert find_locations(text, Place("f", offset=len(text) - 4)) == [
+        Location(2, 1, "<a/>", end_line=2, end_column=5)
+    ]

@@ -72,7 +72,7 @@ class Value:
         entry = self.get(key)
         yield from ((entry.entries if entry else None) or {}).items()
 
-    def read_text(self, key: str) -> str:
+    def get_text(self, key: str) -> str:
         """Return the scalar in the entry *key* as a text, empty if there is none."""
         entry = self.get(key)
         return str(entry.scalar) if entry else ""

@@ -113,7 +113,7 @@ def _list_terms(refinement: Refinement) -> Iterator[Term]:
 def _build_refinement(top: Value, file: str) -> Refinement:
     return Refinement(
         file=file,
-        package=top.read_text("package") or "Items",
+        package=top.get_text("package") or "Items",
         spot=(top.get("items") or top).spot,
         items=tuple(_build_item(key, value) for key, value in _sort_by_key(top, "items")),
         ports=tuple(_build_port(key, value) for key, value in _sort_by_key(top, "ports")),
@@ -135,11 +135,11 @@ def _build_refinement(top: Value, file: str) -> Refinement:
 
 def _build_item(key: Key, value: Value) -> ItemEntry:
     general = _list_sorted_terms(value, "specializes")
-    return ItemEntry(key, value.read_text("domain"), value.read_text("description"), general)
+    return ItemEntry(key, value.get_text("domain"), value.get_text("description"), general)
 
 
 def _build_port(key: Key, value: Value) -> PortEntry:
-    return PortEntry(key, value.read_text("direction"), _read_term(value, "type"))
+    return PortEntry(key, value.get_text("direction"), _read_term(value, "type"))
 
 
 def _build_connector(key: Key, value: Value) -> ConnectorEntry:
@@ -183,13 +183,13 @@ def _build_operation(name: Term, value: Value) -> OperationEntry:
         None if parameter_list is None else tuple(map(_build_parameter, parameter_list.items or ()))
     )
     return OperationEntry(
-        name, parameters, _read_term(value, "method"), value.read_text("description")
+        name, parameters, _read_term(value, "method"), value.get_text("description")
     )
 
 
 def _build_parameter(value: Value) -> ParameterEntry:
     name = _read_term(value, "name") or Term("", value.spot)
-    return ParameterEntry(name, _read_term(value, "type"), value.read_text("direction") or "in")
+    return ParameterEntry(name, _read_term(value, "type"), value.get_text("direction") or "in")
 
 
 def _build_allocation(value: Value) -> Allocation:
@@ -218,6 +218,6 @@ def _sort_by_name(value: Value, key: str) -> list[tuple[Term, Value]]:
 def _sort_by_key(value: Value, key: str) -> list[tuple[Key, Value]]:
     """Return the entries of the mapping below *key* whose names are ids or paths of elements."""
     return [
-        (Key(name.text, entry.read_text("path"), name.spot), entry)
+        (Key(name.text, entry.get_text("path"), name.spot), entry)
         for name, entry in _sort_by_name(value, key)
     ]

@@ -137,7 +137,7 @@ def _read_scenario(part: Value, number: int, source: Source, sink: Sink) -> Scen
     steps: list[Step] = []
     for item in part.list_items("steps"):
         inputs, expect = _read_entries(item.get("inputs")), _read_entries(item.get("expect"))
-        repeat = int(float(item.read_text("repeat") or 1))
+        repeat = int(float(item.get_text("repeat") or 1))
         steps += [Step(inputs, expect, item.spot)] * repeat
     trace = part.list_items("trace")
     if len(trace) > len(steps):
@@ -149,9 +149,9 @@ def _read_scenario(part: Value, number: int, source: Source, sink: Sink) -> Scen
     for index, item in enumerate(trace):
         step = steps[index]
         steps[index] = Step(step.inputs, (*step.expect, *_read_entries(item)), step.location)
-    name = part.read_text("name") or f"scenario {number}"
+    name = part.get_text("name") or f"scenario {number}"
     location = part.keys["component"]
-    return Scenario(name, part.read_text("component"), tuple(steps), source.name, location)
+    return Scenario(name, part.get_text("component"), tuple(steps), source.name, location)
 
 
 def _read_entries(mapping: Value | None) -> tuple[Entry, ...]:

@@ -97,7 +97,9 @@ def _parse(text: str, start_rule: str) -> Any:  # noqa: ANN401 - the type depend
     from lark.exceptions import UnexpectedInput
 
     try:
-        value = _TreeBuilder().build(_make_parser().parse(text, start=start_rule))
+        tree = _make_parser().parse(text, start=start_rule)
+        _refuse_chains(tree)
+        value = _TreeBuilder().build(tree)
     except UnexpectedInput as error:
         token = getattr(error, "token", None)
         is_at_end = token is not None and token.type == "$END"
@@ -108,6 +110,15 @@ def _parse(text: str, start_rule: str) -> Any:  # noqa: ANN401 - the type depend
     if is_nested_too_deeply(value):
         raise ExpressionError("the expression is nested too deeply", 0)
     return value
+
+
+def _refuse_chains(tree: "Tree[Token]") -> None:
+    """Refuse ``a = b = c``, which assigns to both in C and compares the last two in UML."""
+    for assignment in tree.find_data("assignment"):
+        signs = list(assignment.scan_values(lambda token: token == "="))
+        if "=" in assignment.children and len(signs) > 1:
+            message = "'=' assigns and compares; write ':=' to assign, or '==' to compare"
+            raise ExpressionError(message, 0)
 
 
 def _explain(text: str, offset: int) -> str:

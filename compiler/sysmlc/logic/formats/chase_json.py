@@ -51,7 +51,7 @@ def read(file: SpecificationFile) -> tuple[Contract, ...]:
     for owner, side in SIDES.items():
         for text in document.list_items(side):
             _read_conjunct(draft, owner, text)
-    return draft.build(document.read_text("name"))
+    return draft.build(document.get_text("name"))
 
 
 def _declare(draft: ContractDraft, name: str, type_: Value, owner: Owner) -> None:

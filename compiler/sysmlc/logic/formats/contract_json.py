@@ -99,7 +99,7 @@ def _read_contract(file: SpecificationFile, document: Value) -> Contract:
     assumptions, guarantees = (
         tuple(_read_side(file, document, side, domains)) for side in SIDES.values()
     )
-    name, origin = document.read_text("name"), document.read_text("origin")
+    name, origin = document.get_text("name"), document.get_text("origin")
     return Contract(name, origin, variables, assumptions, guarantees)
 
 
@@ -108,13 +108,13 @@ def _read_variable(name: str, declaration: Value) -> Variable:
     domain = read_domain(name, declaration.find(["type"]))
     return Variable(
         name,
-        Owner(declaration.read_text("owner")),
+        Owner(declaration.get_text("owner")),
         domain,
-        declaration.read_text("origin"),
+        declaration.get_text("origin"),
         is_auxiliary=declaration.get("auxiliary") is not None,
         is_range_assumed="assumed" in declaration.keys and isinstance(domain, IntegerDomain),
-        condition=declaration.read_text("condition"),
-        wording=declaration.read_text("wording"),
+        condition=declaration.get_text("condition"),
+        wording=declaration.get_text("wording"),
     )
 
 
@@ -180,9 +180,9 @@ def _read_conjunct(
             rules.WRONG_CLASS, start, formula=str(text.scalar), section=section, reason=reason
         )
         return None
-    origin = item.read_text("origin") if item is not text else file.origin_at(start)
-    source = Source(item.read_text("source") or Source.AUTHOR)
-    return Conjunct(step, class_, origin, item.read_text("text"), source=source)
+    origin = item.get_text("origin") if item is not text else file.origin_at(start)
+    source = Source(item.get_text("source") or Source.AUTHOR)
+    return Conjunct(step, class_, origin, item.get_text("text"), source=source)
 
 
 # -- writing ---------------------------------------------------------------------------------------
