@@ -183,6 +183,8 @@ def test_two_models_are_compared(tmp_path):
         ({"rules": ["untyped-port"]}, TypeError, "'rules' must be Mapping, not list"),
         ({"rules": {"untyped-prt": "off"}}, sysmlc.ConfigError, "did you mean 'untyped-port'?"),
         ({"rules": {"untyped-port": "of"}}, sysmlc.ConfigError, "did you mean 'off'?"),
+        ({"rules": {"untyped-port": 5}}, sysmlc.ConfigError, "unknown severity '5'"),
+        ({"rules": {5: "off"}}, sysmlc.ConfigError, "unknown rule '5'"),
         (
             {"config": sysmlc.Config(rules={"untyped-prt": None})},
             sysmlc.ConfigError,

@@ -141,7 +141,7 @@ def _make_config(
     if not isinstance(config, Config):
         config = read_config(Path(config) if config is not None else None)
     severities = {
-        key.code if isinstance(key, Rule) else key: _read_severity(value)
+        key.code if isinstance(key, Rule) else str(key): _read_severity(value)
         for key, value in rules.items()
     }
     config = replace(config, rules={**config.rules, **severities})
@@ -155,7 +155,7 @@ def _read_severity(value: str | None) -> Severity | None:
     if value is None or value == "off":
         return None
     if value not in names:
-        raise ConfigError(f"unknown severity '{value}'; {did_you_mean(value, names)}")
+        raise ConfigError(f"unknown severity '{value}'; {did_you_mean(str(value), names)}")
     return Severity(value)
 
 
