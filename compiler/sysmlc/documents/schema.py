@@ -96,9 +96,9 @@ def _describe_error(error: "ValidationError", document: Value) -> Iterator[Viola
     path = list(error.absolute_path)
     value, where = document.find(path), _describe_path(path)
     if error.validator == "additionalProperties" and isinstance(error.schema, dict):
-        known = [str(key) for key in error.schema.get("properties", {})]
-        for key in (key for key in value.keys if key not in known):
-            problem, advice = f"unknown key '{key}'", did_you_mean(key, known)
+        allowed = [str(key) for key in error.schema.get("properties", {})]
+        for key in (key for key in value.keys if key not in allowed):
+            problem, advice = f"unknown key '{key}'", did_you_mean(key, allowed)
             yield Violation(ViolationKind.UNKNOWN_KEY, where, problem, advice, value.keys[key])
         return
     spot = value.spot

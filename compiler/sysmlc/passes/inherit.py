@@ -246,8 +246,10 @@ def _check_multiplicities(
         return
     if "multiplicity" not in other.attrs and other.source in hierarchy.caex_files:
         return  # An interface of AutomationML without Cardinality may occur any number of times.
-    own, others = (str(element.attrs.get("multiplicity", "1")) for element in (feature, other))
-    facts = {"multiplicity": own, "other_multiplicity": others}
+    facts = {
+        key: str(element.attrs.get("multiplicity", "1"))
+        for key, element in (("multiplicity", feature), ("other_multiplicity", other))
+    }
     _report_relation(graph, sink, MULTIPLICITY_WIDER, edge, (feature, other), **facts)
 
 

@@ -132,9 +132,8 @@ class Errors:
         self._report_syntax(index, _describe_expected(expected, self.beginnings), advice)
 
     def _report_syntax(self, index: int, expected: str, advice: str) -> None:
-        found = self._describe_token(index)
-        start = self._tokens.starts[index]
-        self.report(rules.SYNTAX, start, found=found, expected=expected, advice=advice)
+        token, start = self._describe_token(index), self._tokens.starts[index]
+        self.report(rules.SYNTAX, start, found=token, expected=expected, advice=advice)
 
     def report_comment(self, index: int) -> None:
         """Report a comment in a place where no comment is valid."""

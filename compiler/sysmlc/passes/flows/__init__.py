@@ -339,8 +339,8 @@ def _report_connector(
     graph: Graph, sink: Sink, rule: Rule, connector: Element, **facts: str | None
 ) -> None:
     """Report a rule about a connector and its two ends."""
-    one, other = (_name_end(graph, connector, end) for end in ends(graph, connector))
-    facts |= {"connector": _title(graph, connector), "one": one, "other": other}
+    first, second = (_name_end(graph, connector, end) for end in ends(graph, connector))
+    facts |= {"connector": _title(graph, connector), "one": first, "other": second}
     sink.report(rule, graph.subject(connector), notes=(), help="", cause="", **facts)
 
 
