@@ -250,6 +250,18 @@ def test_a_shipped_back_end_that_cannot_be_loaded_is_an_error_only_if_it_is_name
     assert "* platform " in result.stdout
 
 
+def test_a_build_keeps_the_earlier_files_of_a_back_end_that_cannot_be_loaded(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("gate.sysml").write_text("package Plant { part def Gate { port inlet; } }")
+    build = ["gate.sysml", "-o", "out", "--no-cache"]
+    CliRunner().invoke(sysmlc_command, build)
+    diagrams = sorted(Path("out").rglob("*.puml"))
+    monkeypatch.setitem(registry._BACKENDS, "plantuml", "no_such_module:BACKEND")
+    result = CliRunner().invoke(sysmlc_command, build)
+    assert "SM914" in result.output
+    assert sorted(Path("out").rglob("*.puml")) == diagrams != []
+
+
 def test_a_package_that_an_analysis_needs_is_named_if_it_is_missing(monkeypatch):
     """SM917: the verdicts on contracts need the package 'dd'."""
     monkeypatch.setitem(sys.modules, "dd", None)

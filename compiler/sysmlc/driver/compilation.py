@@ -458,7 +458,7 @@ def _select_reported(
 
 def _is_about_missing_part(diagnostic: Diagnostic) -> bool:
     """Whether a diagnostic means that part of the unit was not read, or an output is missing."""
-    if diagnostic.rule in (faults.INTERNAL_FAULT, faults.PLUG_IN_FAULT):
+    if diagnostic.rule in (faults.INTERNAL_FAULT, faults.PLUG_IN_FAULT, faults.PLUG_IN_IGNORED):
         return True
     is_about_file = not diagnostic.subject.id and diagnostic.subject.place is not None
     return diagnostic.is_error and is_about_file and diagnostic.rule.code.startswith("SM1")
