@@ -159,8 +159,14 @@ def decide_game(contract: Contract, place: Place, sink: Sink, options: Options) 
             component=contract.component,
             within=basis.range_text,
         )
+    figures = _collect_figures(contract, game, solution)
+    verdict = Verdict(contract.component, solution.is_realizable, figures, basis)
+    return Decision(verdict, encoded, solution.arena)
+
+
+def _collect_figures(contract: Contract, game: Game, solution: Solution) -> Figures:
     usage = game.manager.usage()
-    figures = Figures(
+    return Figures(
         variables=len(game.symbols.variables),
         bits=len(game.inputs) + len(game.outputs),
         conjuncts=len(contract.assumptions) + len(contract.guarantees),
@@ -169,8 +175,6 @@ def decide_game(contract: Contract, place: Place, sink: Sink, options: Options) 
         nodes=usage.peak,
         seconds=usage.seconds,
     )
-    verdict = Verdict(contract.component, solution.is_realizable, figures, basis)
-    return Decision(verdict, encoded, solution.arena)
 
 
 def _solve_contract(
