@@ -29,7 +29,7 @@ LAYERS = [
 SUBLAYERS = {
     "logic": [
         # values
-        {"formula", "contract", "identifiers", "domains", "evaluate"},
+        {"formula", "contract", "identifiers", "domains", "evaluate", "inequalities"},
         # languages of formulas: texts to values and back
         {"syntax", "infix", "printing", "simplification", "classification", "violations"},
         {"expressions"},
