@@ -168,6 +168,73 @@ def test_a_merge_with_several_outgoing_flows_can_leave_a_loop():
     assert (nodes["after"].kind, nodes["decision"].kind) == ("merge", "loop")
 
 
+TWO_SERVICES = """\
+    Action g "grip" subkind="call-behavior"
+      -> calls grip
+    Action l "look" subkind="call-behavior"
+      -> calls look
+    Control e "end" subkind="final"
+"""
+INITIAL = '    Control s "start" subkind="initial"\n'
+
+
+def test_a_block_waits_for_all_flows_that_reach_it():
+    """It is a step, and steps join their flows (UML 2.5.1, 15.2.3.4); it was a merge."""
+    nodes = f"""\
+{INITIAL}{TWO_SERVICES}    Control d "both" subkind="fork"
+    Structured x "group" subkind="structured"
+      Action a "place" subkind="call-behavior"
+        -> calls place
+"""
+    steps = ("s d", "d l", "d g", "l x", "g x", "x e")
+    graph, sink = run_recipe(samples.task(nodes=nodes, steps=steps))
+    (service_graph,) = graph.derived(Model)[0].service_graphs
+    kinds = {shorten_id(node.id): node.kind for node in service_graph.nodes}
+    assert kinds["group"] == "join"
+    assert {("look", "group"), ("grip", "group")} <= list_shown_pairs(service_graph)
+    assert "SM604" not in list_codes(sink)
+
+
+def test_an_initial_node_gives_its_token_to_one_flow():
+    """Its flows compete for one token, as in contracts: only a fork starts both branches."""
+    steps = ("s g ok", "s l else", "g m", "l m", "m e")
+    drawn = INITIAL + TWO_SERVICES + '    Control m "after" subkind="merge"\n'
+    nodes, graph = derive_service_graph(*steps, nodes=drawn)
+    assert (nodes["start"].kind, nodes["decision"].kind) == ("initial", "decision")
+    assert {("start", "decision"), ("decision", "grip"), ("decision", "look")} <= list_shown_pairs(
+        graph
+    )
+    assert [(edge.text, edge.is_else) for edge in graph.edges if edge.text] == [
+        ("ok", False),
+        ("else", True),
+    ]
+
+
+def test_actions_without_incoming_flows_start_together():
+    """No initial node is drawn: each of them has a token of its own (UML 2.5.1, 15.2.3.4)."""
+    nodes = TWO_SERVICES + '    Control m "both" subkind="join"\n'
+    graph, sink = run_recipe(samples.task(nodes=nodes, steps=("l m", "g m", "m e")))
+    (service_graph,) = graph.derived(Model)[0].service_graphs
+    assert {("initial", "fork"), ("fork", "grip"), ("fork", "look")} <= list_shown_pairs(
+        service_graph
+    )
+    assert "SM604" not in list_codes(sink)
+
+
+@pytest.mark.parametrize("source", ["merge", "decision", "initial"])
+def test_a_literal_false_closes_a_flow(source):
+    """Tools write the literal 'true' for every flow, but 'false' is a guard of the modeller."""
+    nodes = f'    Control m "m" subkind="{source}"\n{TWO_SERVICES}'
+    steps = ["m g false", "m l else", "g e", "l e"]
+    if source != "initial":
+        nodes, steps = INITIAL + nodes, ["s m", *steps]
+    text = samples.task(nodes=nodes, steps=tuple(steps))
+    text = text.replace('guard="false"', 'guard="false" guard_literal=true')
+    graph = derive_model(text).service_graphs[0]
+    guards = [edge.guard for edge in graph.edges if shorten_id(edge.target) == "grip"]
+    assert guards == [Literal(False)]
+
+
 def test_an_activity_without_a_token_game_has_a_graph():
     """By its weight, a flow waits for two tokens: contracts reject it, and recipes show it."""
     text = samples.task().replace("    ControlFlow m-e-7\n", "    ControlFlow m-e-7 weight=2\n")

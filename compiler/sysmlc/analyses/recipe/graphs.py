@@ -293,8 +293,8 @@ def _read_guard(
 ) -> Expression | None:
     """Return a guard. A literal is compared with the decision input as in fUML 1.5, 8.5.2.2."""
     is_literal = bool(flow.attrs.get("guard_literal"))
-    # Tools write the literal `true` by default; a literal is a guard only after a decision.
-    if not text or (is_literal and source.subkind != "decision"):
+    # Tools write the literal `true` by default; it is a guard only after a decision.
+    if not text or (is_literal and text == "true" and source.subkind != "decision"):
         return None
     expression = data.read(text)
     tested = _find_decision_input(context, source, data)
@@ -306,6 +306,8 @@ def _read_guard(
 
 
 def _find_decision_input(context: Context, decision: Element, data: DataFlow) -> Expression | None:
+    if not query.has_decision_input(context.graph, decision):
+        return None
     chosen = context.graph.get(str(decision.attrs.get("decision_input_flow", "")))
     incoming = query.incoming(context.graph, decision, Kind.OBJECT_FLOW)
     flows = [chosen] if chosen is not None else incoming
@@ -325,20 +327,22 @@ def _split_combined_nodes(context: Context, activity: Element, draft: Draft) -> 
     """Replace control nodes that stand for two, as in token graphs; the first keeps the id.
 
     A fork with several incoming edges and a join with several outgoing ones become a join and a
-    fork. A merge with several outgoing edges becomes a merge and a decision, in SysML v2 a merge
-    and a fork, because there only ``decide`` chooses.
+    fork. An initial node or a merge with several outgoing edges is followed by a decision, in
+    SysML v2 by a fork, because there only ``decide`` chooses. A block waits for all its edges, and
+    a token that leaves it takes all its edges, as those of other steps do.
     """
     targets = Counter(edge.target for edge in draft.edges)
     sources = Counter(edge.source for edge in draft.edges)
     follows_v2 = query.follows_v2(context.graph, activity)
     for number, node in enumerate(draft.nodes[:]):
+        is_drawn = node.id == draft.first.get(node.element)
+        is_block = is_drawn and node.id != draft.last[node.element] and node.kind == "merge"
         is_join = node.kind == "join" or (node.kind == "fork" and targets[node.id] > 1)
-        if is_join:
+        if is_join or (is_block and targets[node.id] > 1):
             draft.nodes[number] = replace(node, kind="join")
-        if sources[node.id] > 1 and (is_join or node.kind == "merge"):
-            # A token that leaves a block takes all its edges.
-            is_end_of_block = node.id != draft.first.get(node.element)
-            kind = "fork" if is_join or is_end_of_block or follows_v2 else "decision"
+        if sources[node.id] > 1 and (is_join or node.kind in ("initial", "merge")):
+            # What is not drawn is the start of all first steps, or the end of a block.
+            kind = "fork" if is_join or not is_drawn or follows_v2 else "decision"
             second = replace(node, id=f"{node.id}::{kind}", kind=kind)
             draft.nodes.append(second)
             draft.edges = [
