@@ -12,6 +12,9 @@ from pathlib import Path
 
 from msgspec import Struct
 
+ORDER = ("broken", "not-decided", "holds-if-actions-end", "holds")
+"""The verdicts about a conjunct; that about a formula is the first one of its conjuncts."""
+
 
 class Property(Struct, frozen=True):
     """A property of a component, and whether it holds."""
@@ -45,10 +48,10 @@ class OracleModel(Struct, frozen=True):
         return self.path.read_text("utf-8")
 
 
-def list_models() -> list[OracleModel]:
-    """Return the models of the oracle; none without a corpus."""
-    folder = Path(os.environ.get("SYSMLC_CORPUS", "nowhere")) / "contracts"
-    return [_read_model(path) for path in sorted(folder.glob("*.expect.json"))]
+def list_models(folder: str = "contracts") -> list[OracleModel]:
+    """Return the models of the oracle in a folder of the corpus; none without a corpus."""
+    models = Path(os.environ.get("SYSMLC_CORPUS", "nowhere")) / folder
+    return [_read_model(path) for path in sorted(models.glob("*.expect.json"))]
 
 
 def _read_model(path: Path) -> OracleModel:
@@ -75,16 +78,29 @@ def satisfy(model: OracleModel) -> str:
     SysML v1 states the subject of a requirement in this way.
     """
     subject = model.component.partition("::")[2]
-    names = " ".join(f"satisfy R_{item.name};" for item in model.properties)
+    names = " ".join(f"satisfy 'R_{item.name}';" for item in model.properties)
     text, count = re.subn(rf"def {subject}\b[^{{]*{{", rf"\g<0> {names}", model.text, count=1)
     assert count == 1
     return _add_members(text, _write_requirements(model, "requirement", ""))
 
 
+def group_entries(document: dict) -> dict[str, list[dict]]:
+    """Return the entries of a document of ``contracts check`` about each property by its name."""
+    entries: dict[str, list[dict]] = {}
+    for entry in document["requirements"]:
+        entries.setdefault(entry["requirement"].rpartition("::R_")[2], []).append(entry)
+    return entries
+
+
+def combine_verdicts(entries: Iterable[dict]) -> str:
+    """Return the verdict about a formula from the entries about its conjuncts."""
+    return min((entry["verdict"] for entry in entries), key=ORDER.index)
+
+
 def _write_requirements(model: OracleModel, keyword: str, subject: str) -> Iterator[str]:
     for item in model.properties:
-        constraint = f'require constraint {item.name} {{ language "ltl" /* {item.ltl} */ }}'
-        yield f"    {keyword} R_{item.name} {{ {subject} {constraint} }}"
+        constraint = f"require constraint '{item.name}' {{ language \"ltl\" /* {item.ltl} */ }}"
+        yield f"    {keyword} 'R_{item.name}' {{ {subject} {constraint} }}"
 
 
 def _add_members(text: str, lines: Iterable[str]) -> str:

@@ -7,7 +7,7 @@ import json
 
 import pytest
 
-from contract_oracle import list_models, require, satisfy
+from contract_oracle import combine_verdicts, group_entries, list_models, require, satisfy
 from json_documents import Document, find_violations
 from long_runs import quick_first
 
@@ -21,7 +21,6 @@ NEVER = {
     "entry_exit": {"never_changed": ["last"]},
     "unreachable": {"never_taken": ["transition 'Ready to Overfull [level > 2]'"]},
 }
-ORDER = ("broken", "not-decided", "holds-if-actions-end", "holds")
 
 pytestmark = pytest.mark.corpus
 
@@ -31,21 +30,13 @@ def check(file, workspace):
     result = workspace.sysmlc("contracts", "check", "--format", "json", file)
     document = json.loads(result.stdout)
     assert find_violations(Document(file, "sysmlc-diagnostics", document)) == []
-    entries = {}
-    for entry in document["requirements"]:
-        entries.setdefault(entry["requirement"].rpartition("::R_")[2], []).append(entry)
-    return document, entries
-
-
-def combine(entries):
-    """Return the verdict about a formula from the verdicts about its conjuncts."""
-    return min((entry["verdict"] for entry in entries), key=ORDER.index)
+    return document, group_entries(document)
 
 
 def compare(model, file, workspace):
     """Compare what the command reports about a file with what is expected of the model."""
     document, entries = check(file, workspace)
-    verdicts = {item.name: combine(entries[item.name]) for item in model.properties}
+    verdicts = {item.name: combine_verdicts(entries[item.name]) for item in model.properties}
     assert verdicts == {item.name: item.verdict for item in model.properties}
     vacuous = {name for name, group in entries.items() if any(e["vacuous"] for e in group)}
     assert vacuous == {item.name for item in model.properties if item.vacuous}
