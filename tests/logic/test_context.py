@@ -152,6 +152,9 @@ Package near "Near"
   Enumeration near.mode "Mode"
     EnumerationLiteral near.off "off" value=1
     EnumerationLiteral near.slow "slow" value=2
+  Enumeration near.drive "Drive"
+    EnumerationLiteral near.off2 "off"
+    EnumerationLiteral near.slow2 "slow"
   Instance near.limit "LIMIT" value=3
 Package far "Far"
   Enumeration far.mode "Mode"
@@ -165,6 +168,8 @@ Package p "P"
       -> typed-by near.mode
     Property b "b"
       -> typed-by far.mode
+    Property d "d"
+      -> typed-by near.drive
     Property n "n"
       -> typed-by int
     StateMachine s
@@ -172,6 +177,11 @@ Package p "P"
         Transition t guard="{guard}"
       {scope}
 DataType int "Integer"
+"""
+CONSTANTS = """\
+Instance normal "NORMAL" value="slow" value_instance="near.slow"
+Instance rest "REST" value="slow" value_instance="near.slow2"
+Instance sleep "SLEEP" value="slow" value_instance="near.slow2"
 """
 IMPORT = 'Import i subkind="package"\n        -> references '
 
@@ -211,6 +221,23 @@ def test_a_literal_of_another_enumeration_is_a_type_mismatch():
         with pytest.raises(ElaborationError, match="is one of") as caught:
             print_guard(guard)
         assert caught.value.fault is Fault.TYPE
+
+
+@pytest.mark.parametrize(
+    "guard",
+    [
+        "a == d",
+        "Drive::off == a",
+        "a == Near::Drive::off",
+        "(if n == 0 ? a else d) == a",
+        "(if n == 0 ? Mode::off else Drive::off) == a",
+    ],
+)
+def test_so_is_a_value_of_another_enumeration_with_the_same_literals(guard):
+    """The values of two enumerations are never equal, whatever their names are."""
+    with pytest.raises(ElaborationError, match=r"'Near::(Drive|Mode)', not of 'Near::") as caught:
+        print_guard(guard)
+    assert caught.value.fault is Fault.TYPE
 
 
 def test_a_literal_of_several_enumerations_has_no_number():
@@ -288,6 +315,28 @@ def test_a_default_value_that_depends_on_features_is_not_checked():
     for text in ("bay2 + 1", "mode", "not mode"):
         bay = read_features(default=COMPUTED.format(text))["bay"]
         assert (bay.default, bay.invalid_default) == (None, "")
+
+
+@pytest.mark.parametrize(
+    ("value", "default", "invalid"),
+    [
+        ('"Near::Mode::slow" default_language=""', "slow", ""),
+        ('"slow" default_instance="near.slow"', "slow", ""),
+        ('"NORMAL" default_instance="normal"', "slow", ""),
+        ('"Near::Drive::slow" default_language=""', None, "Near::Drive::slow"),
+        ('"slow" default_instance="near.slow2"', None, "Near::Drive::slow"),
+        ('"REST" default_instance="rest"', None, "Near::Drive::slow"),
+        ('"SLEEP" default_language=""', None, "Near::Drive::slow"),
+    ],
+)
+def test_a_literal_of_another_enumeration_is_no_default_value(value, default, invalid):
+    """Neither is it by a constant: NORMAL has the type Mode, REST and SLEEP have the type Drive."""
+    text = PACKAGES.replace('Property a "a"', f'Property a "a" default={value}')
+    text = text.replace("{guard}", "").replace("{scope}", "") + CONSTANTS
+    graph = parse_text(text)
+    pipeline.load("expressions").run(graph, Sink())
+    feature = context_of(graph, graph["c"]).features["a"]
+    assert (feature.default, feature.invalid_default) == (default, invalid)
 
 
 def test_a_name_that_is_no_feature_is_no_default_value():

@@ -5,6 +5,7 @@ A contract has variables with owners and domains, and classified conjuncts.
 
 import re
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 from msgspec import Struct
@@ -33,15 +34,23 @@ class IntegerDomain(Struct, frozen=True):
     high: int
 
 
-class EnumerationDomain(Struct, frozen=True):
+@dataclass(frozen=True, slots=True)
+class EnumerationDomain:
     """Names of literals, in declaration order.
 
     For a String, ``texts`` are the texts behind the literals in this order; the last literal stands
-    for any other text.
+    for any other text. ``type_name`` is the qualified name of the enumeration in the model, empty
+    for values that the compiler collects. Domains with the same literals are equal.
     """
 
     literals: tuple[str, ...]
     texts: tuple[str, ...] = ()
+    type_name: str = field(default="", compare=False)
+
+    def is_comparable(self, domain: "EnumerationDomain") -> bool:
+        """Whether the literals are the same, and belong to one enumeration as far as known."""
+        is_same_type = self.type_name in ("", domain.type_name) or not domain.type_name
+        return self == domain and is_same_type
 
 
 Domain = BooleanDomain | IntegerDomain | EnumerationDomain

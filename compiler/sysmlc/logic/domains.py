@@ -51,6 +51,13 @@ def describe(domain: Domain) -> str:
             return ", ".join(literals)
 
 
+def describe_difference(actual: EnumerationDomain, expected: EnumerationDomain) -> str:
+    """Return what a value is and should be, by the literals or, if they are the same, the types."""
+    if sorted(actual.literals) == sorted(expected.literals):
+        return f"a value of '{actual.type_name}', not of '{expected.type_name}'"
+    return f"one of {describe(actual)}, not of {describe(expected)}"
+
+
 def valuations(domains: Mapping[str, Domain]) -> Iterator[dict[str, Literal]]:
     """Yield every assignment of values to the variables."""
     names: Sequence[str] = tuple(domains)

@@ -249,6 +249,7 @@ package Plant {
     private import ScalarValues::*;
     enum def Mode { enum on; enum off; }
     enum def Color { enum red; enum blue; }
+    enum def Lamp { enum on; enum off; }
     part def Cell {
         attribute n : Integer := 9 { assert constraint { 0 <= n and n <= 9 } }
         attribute mode : Mode;
@@ -299,6 +300,15 @@ def test_each_of_several_assignments_stops_at_the_bound_for_itself():
 def test_an_assignment_to_a_constant_is_reported():
     messages, becomes = compile_body("assign full := true;")
     assert messages[0] == ("SM415 warning: 'full := true' assigns to 'full', which is constant")
+    assert becomes == []
+
+
+def test_a_literal_of_another_enumeration_is_reported_although_the_literals_are_the_same():
+    messages, becomes = compile_body("assign mode := Lamp::on;")
+    assert messages[1:] == [
+        "SM413 warning: assignment 'mode := Lamp::on': 'Lamp::on' is a value of 'Plant::Lamp', not "
+        "of 'Plant::Mode'"
+    ]
     assert becomes == []
 
 

@@ -351,7 +351,7 @@ def _find_common_domain(wire: Wire) -> Domain:
     enumerations = [domain for domain in domains if isinstance(domain, EnumerationDomain)]
     if enumerations:
         literals = dict.fromkeys(name for domain in enumerations for name in domain.literals)
-        return replace(enumerations[0], literals=tuple(literals))
+        return EnumerationDomain(tuple(literals), enumerations[0].texts)
     return BooleanDomain()
 
 

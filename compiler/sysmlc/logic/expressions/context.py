@@ -153,6 +153,8 @@ def report_range(graph: Graph, feature: Feature, sink: Sink) -> None:
     if feature.invalid_default and domain is not None:
         subject, name = graph.subject(feature.element), feature.element.name
         values = describe(domain)
+        if isinstance(domain, EnumerationDomain) and domain.type_name:
+            values = f"'{domain.type_name}' ({values})"
         sink.report(
             DEFAULT_OUTSIDE, subject, default=feature.invalid_default, name=name, domain=values
         )

@@ -260,8 +260,7 @@ def _elaborate_operands(expression: Binary, scope: Scope) -> tuple[GuardedValue,
         raise _mismatch(expression.right, _describe_kind(left.domain), right.domain)
     if expression.op in _ORDER and not isinstance(left.domain, IntegerDomain):
         raise _mismatch(expression.left, "a number", left.domain)
-    if isinstance(left.domain, EnumerationDomain) and left.domain != right.domain:
-        raise _mismatch(expression.right, f"one of {domains.describe(left.domain)}", right.domain)
+    check_enumeration(expression.right, right.domain, left.domain)
     _check_range(expression, left, right)
     _check_texts(expression, left, right)
     return left, right
@@ -374,6 +373,7 @@ def _elaborate_conditional(
     otherwise = elaborate_value(expression.otherwise, scope, expected or then.domain)
     if type(then.domain) is not type(otherwise.domain):
         raise _mismatch(expression.otherwise, _describe_kind(then.domain), otherwise.domain)
+    check_enumeration(expression.otherwise, otherwise.domain, then.domain)
     cases = [Case(f.both(test, case.condition), case.value) for case in then.cases]
     negated = f.negate(test)
     cases += [Case(f.both(negated, case.condition), case.value) for case in otherwise.cases]
@@ -398,6 +398,16 @@ def _describe_kind(domain: Domain) -> str:
             return "a number"
         case EnumerationDomain():
             return f"one of {domains.describe(domain)}"
+
+
+def check_enumeration(expression: Expression, actual: Domain, expected: Domain) -> None:
+    """Raise ElaborationError if the domain of an expression is another enumeration."""
+    if not isinstance(actual, EnumerationDomain) or not isinstance(expected, EnumerationDomain):
+        return
+    if not actual.is_comparable(expected):
+        text = print_expression(expression)
+        difference = domains.describe_difference(actual, expected)
+        raise ElaborationError(Fault.TYPE, f"'{text}' is {difference}", text)
 
 
 def _mismatch(expression: Expression, expected: str, actual: Domain) -> ElaborationError:

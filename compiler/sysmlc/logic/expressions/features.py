@@ -10,6 +10,7 @@ from sysmlc.ir.expressions import (
     Expression,
     ExpressionError,
     Name,
+    element_of,
     last_name,
     name_of,
     print_expression,
@@ -24,8 +25,12 @@ from sysmlc.logic.contract import (
     Variable,
 )
 from sysmlc.logic.domains import contains, describe
-from sysmlc.logic.expressions.elaboration import ElaborationError, Fault
-from sysmlc.logic.expressions.named_elements import constant_value, literals_of
+from sysmlc.logic.expressions.elaboration import ElaborationError, Fault, check_enumeration
+from sysmlc.logic.expressions.named_elements import (
+    constant_value,
+    find_enumeration_domain,
+    literals_of,
+)
 from sysmlc.logic.expressions.parsing import tree_of
 from sysmlc.logic.expressions.ranges import (
     Access,
@@ -104,13 +109,14 @@ def make_feature(
         bounds = find_bounds(graph, element, family, constants, access)
         is_assumed = None in bounds
         domain = _make_range(bounds, value, assumed_range)
-    default = _find_default(graph, value, type_, domain)
+    default = _find_default(graph, element, value, domain)
     is_constant = element.attrs.get("readonly") is True and default is not None
     is_range = ".." in str(value)
     is_unknown = value is None or (isinstance(value, str) and _is_computed(graph, element))
     # The unlimited natural number is the greatest; an assumed range has it as little as others.
     is_unchecked = is_range or is_unknown or (is_assumed and value == "*")
-    invalid_default = "" if default is not None or is_unchecked else str(element.attrs["default"])
+    is_invalid = default is None and not is_unchecked
+    invalid_default = _describe_default(graph, element) if is_invalid else ""
     return Feature(element, variable, domain, default, is_constant, is_assumed, invalid_default)
 
 
@@ -120,8 +126,7 @@ def _find_literals(
     """Return the domain of an enumeration or a Boolean; None for other elements."""
     type_ = family[0] if family else None
     if type_ is not None and type_.kind is Kind.ENUMERATION:
-        literals = tuple(literals_of(graph, type_).values())
-        return EnumerationDomain(literals) if literals else None
+        return find_enumeration_domain(graph, type_)
     if type_names & _BOOLEAN or _has_untyped_default(element, type_, bool):
         return BooleanDomain()
     return None
@@ -157,9 +162,7 @@ def check_assignable(value_domain: Domain, target_domain: Domain, value: Express
     if type(value_domain) is not type(target_domain):
         message = f"'{text}' is {describe(value_domain)}, not {describe(target_domain)}"
         raise ElaborationError(Fault.TYPE, message, text)
-    if isinstance(value_domain, EnumerationDomain) and value_domain != target_domain:
-        message = f"'{text}' is one of {describe(value_domain)}, not of {describe(target_domain)}"
-        raise ElaborationError(Fault.TYPE, message, text)
+    check_enumeration(value, value_domain, target_domain)
     lower_bounds = getattr(value_domain, "low", 0), getattr(target_domain, "low", 0)
     upper_bounds = getattr(value_domain, "high", 0), getattr(target_domain, "high", 0)
     if lower_bounds[0] > upper_bounds[1] or upper_bounds[0] < lower_bounds[1]:
@@ -224,6 +227,12 @@ def _parse_default(element: Element) -> Expression | None:
         return None
 
 
+def _describe_default(graph: Graph, element: Element) -> str:
+    """Return the default value as text; a literal has its qualified name."""
+    literal = _find_default_literal(graph, element)
+    return str(element.attrs["default"]) if literal is None else graph.qualified_name(literal)
+
+
 def _is_computed(graph: Graph, element: Element) -> bool:
     """Whether an expression computes the default value, such as the name of another feature.
 
@@ -240,26 +249,45 @@ def _is_computed(graph: Graph, element: Element) -> bool:
 
 
 def _find_default(
-    graph: Graph, default: AttrValue, type_: Element | None, domain: Domain | None
+    graph: Graph, element: Element, default: AttrValue, domain: Domain | None
 ) -> Literal | None:
     if domain is None or default is None:
         return None
-    value = _parse_value(graph, str(default), type_, domain)
+    value = _parse_value(graph, element, str(default), domain)
     return value if value is not None and contains(domain, value) else None
 
 
-def _parse_value(graph: Graph, text: str, type_: Element | None, domain: Domain) -> Literal | None:
+def _parse_value(graph: Graph, element: Element, text: str, domain: Domain) -> Literal | None:
     match domain:
         case BooleanDomain():
             return {"true": True, "false": False}.get(text.lower())
         case IntegerDomain():
             return parse_integer(text)
         case EnumerationDomain():
-            return None if type_ is None else _find_identifier(graph, text, type_)
+            type_ = query.type_of(graph, element)
+            return None if type_ is None else _find_identifier(graph, element, text, type_)
 
 
-def _find_identifier(graph: Graph, text: str, enumeration: Element) -> Literal | None:
-    """Return the identifier of a literal that is given by id, name or qualified name."""
-    literal = graph.get(text)
+def _find_identifier(
+    graph: Graph, element: Element, text: str, enumeration: Element
+) -> Literal | None:
+    """Return the identifier of the literal that the default value of an element names, or None.
+
+    *text* is the value as an id, a name or a qualified name. A literal of another enumeration is
+    no value.
+    """
+    literal = _find_default_literal(graph, element) or graph.get(text)
+    if literal is not None and graph.owner(literal) != enumeration:
+        return None
     name = last_name(text) if literal is None else literal.name
     return literals_of(graph, enumeration).get(name)
+
+
+def _find_default_literal(graph: Graph, element: Element) -> Element | None:
+    """Return the literal that the default value names, itself or by a constant; None if unknown."""
+    expression = _parse_default(element)
+    id = "" if expression is None else element_of(expression)
+    named = graph.get(id or str(element.attrs.get("default_instance")))
+    if named is not None and named.kind is Kind.INSTANCE:
+        named = graph.get(str(named.attrs.get("value_instance")))
+    return named if named is not None and named.kind is Kind.ENUMERATION_LITERAL else None

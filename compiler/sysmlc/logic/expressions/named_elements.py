@@ -7,6 +7,8 @@ literal (``Mode::auto``).
 from collections.abc import Iterable, Iterator
 from functools import cached_property
 
+from msgspec.structs import replace
+
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, query
 from sysmlc.logic.contract import BooleanDomain, EnumerationDomain, IntegerDomain
 from sysmlc.logic.expressions.elaboration import Symbol
@@ -219,6 +221,13 @@ def literals_of(graph: Graph, enumeration: Element) -> dict[str, str]:
     return dict(zip(names, make_unique(names, "literal"), strict=True))
 
 
+def find_enumeration_domain(graph: Graph, enumeration: Element) -> EnumerationDomain | None:
+    """Return the literals of an enumeration; None if it has none."""
+    literals = tuple(literals_of(graph, enumeration).values())
+    name = graph.qualified_name(enumeration)
+    return EnumerationDomain(literals, type_name=name) if literals else None
+
+
 def constant_value(attribute: Element) -> AttrValue:
     """Return the value of an attribute of a package; None if it may change or has a unit."""
     if "value_kind" in attribute.attrs or "value_unit" in attribute.attrs:
@@ -242,7 +251,7 @@ class Enumerations:
         literals = {}
         for enumeration in self._graph.of_kind(Kind.ENUMERATION):
             identifiers = literals_of(self._graph, enumeration)
-            domain = EnumerationDomain(tuple(identifiers.values()))
+            domain = find_enumeration_domain(self._graph, enumeration)
             for literal in self._graph.owned(enumeration):
                 if literal.kind is Kind.ENUMERATION_LITERAL:
                     value = literal.attrs.get("value")
@@ -261,9 +270,12 @@ class Enumerations:
             literal = self._graph[id]
             enumeration = self._graph.owner(literal)
             assert enumeration is not None
+            assert isinstance(symbol.domain, EnumerationDomain)
+            # The name may be that of several enumerations with the same literals.
+            by_name = replace(symbol, domain=EnumerationDomain(symbol.domain.literals))
             for separator in ("::", "."):
                 name = f"{enumeration.name}{separator}{literal.name}"
-                if literals.setdefault(name, symbol) != symbol:
+                if literals.setdefault(name, by_name) != symbol:
                     literals[name] = Symbol(symbol.formula, None)
         return literals
 

@@ -164,7 +164,8 @@ def _assign_names(names: Iterable[str], words: frozenset[str]) -> dict[str, str]
 def _rename_literals(domain: Domain, literals: Mapping[str, str]) -> Domain:
     if not isinstance(domain, EnumerationDomain):
         return domain
-    return replace(domain, literals=tuple(literals[literal] for literal in domain.literals))
+    renamed = tuple(literals[literal] for literal in domain.literals)
+    return EnumerationDomain(renamed, domain.texts, domain.type_name)
 
 
 # -- comparisons -----------------------------------------------------------------------------------
