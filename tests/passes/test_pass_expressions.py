@@ -120,6 +120,12 @@ Package p "Plant"
 Package d "Defaults"
   Instance d.l "LOW" value=2
   Instance d.m "load" value=4
+  Import d.i subkind="package"
+    -> references b
+  Import d.j subkind="package" visibility="private"
+    -> references k
+  Import d.k subkind="element" alias="TOP"
+    -> references b.t
 Package q "Other"
   Instance q.m "MAX" value=9
   Enumeration s "Season"
@@ -127,6 +133,13 @@ Package q "Other"
   Class q.a "Arm"
     Property q.l "load"
     Property q.s "speed"
+Package b "Base"
+  Instance b.f "FAR" value=7
+  Instance b.t "LIMIT" value=8
+  Import b.i subkind="package"
+    -> references d
+Package k "Secrets"
+  Instance k.h "HIDDEN" value=7
 """
 
 
@@ -159,7 +172,28 @@ def find_elements(text, user):
         ("speed > 3 or winter", "t.t", ["", "s.w"]),
         ("mode == Season::winter", "t.t", ["m.m", "s.w"]),
         ("LOW < load and load < MAX", "t.t", ["d.l", "t.b", "t.b", "q.m"]),
+        ("load < FAR and load < HIDDEN", "t.t", ["t.b", "b.f", "t.b", ""]),
+        ("load < TOP and load < Base::FAR", "t.t", ["t.b", "b.t", "t.b", "b.f"]),
     ],
 )
 def test_a_name_carries_the_element_that_it_denotes(text, user, elements):
+    """Package Defaults, which is imported, passes on what it imports from Base, but no secrets."""
     assert find_elements(text, user) == elements
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        ("Tank::load > 3", ["load"]),
+        ("Plant::Tank::load > Tank::level", ["load", "level"]),
+        ("Arm::load > 3", ["Arm", "load"]),
+    ],
+)
+def test_a_qualified_name_of_an_own_feature_is_read_like_its_name(text, names):
+    """'Tank::load' in a text of Tank is the load of this tank, not that of another object."""
+    graph = parse_text(NAMES.replace("{text}", text))
+    pipeline.load("inherit").run(graph, Sink())
+    pipeline.load("expressions").run(graph, Sink())
+    guard = graph["t.t"].attrs["guard"]
+    assert list_names(guard) == names
+    assert str(guard) == text

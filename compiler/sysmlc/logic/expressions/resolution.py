@@ -1,7 +1,7 @@
 """Resolution of the names in expressions: each name gets the element that it denotes."""
 
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 from typing import TypeVar
 
@@ -35,7 +35,10 @@ class NameResolver:
         """
         match node:
             case Name(path, ""):
-                return type(node)(path, _id(self._find_name(user, path)))
+                element = self._find_name(user, path)
+                if self._is_own_feature(user, path, element):
+                    path = path[-1:]
+                return type(node)(path, _id(element))
             case Member(base, name, known):
                 base = self.resolve(user, base)
                 return type(node)(base, name, known or _id(self._find_feature(user, base, name)))
@@ -56,6 +59,16 @@ class NameResolver:
         for name in path[1:]:
             element = None if element is None else self._find_member_of_value(element, name)
         return element or self._find_in_event(user, path[-1]) or self._find_by_suffix(path)
+
+    def _is_own_feature(
+        self, user: Element, path: tuple[str, ...], element: Element | None
+    ) -> bool:
+        """Whether a qualified name denotes a feature that its last name alone denotes, too.
+
+        ``Door::open`` in a text of Door is ``open``.
+        """
+        is_feature = element is not None and element.kind in VALUE_KINDS
+        return len(path) > 1 and is_feature and self._find_visible(user, path[-1]) is element
 
     def _find_feature(self, user: Element, base: Expression, name: str) -> Element | None:
         match base:
@@ -97,8 +110,9 @@ class NameResolver:
         """Return the member of a scope, imported and inherited ones and opposite ends included."""
         members = self._members_by_scope.get(scope.id)
         if members is None:
-            elements = (*self._iter_imported(scope), *self._graph.owned(scope))
-            named = ((str(e.attrs.get("payload") or e.name), e) for e in elements)
+            owned = ((str(e.attrs.get("payload") or e.name), e) for e in self._graph.owned(scope))
+            imports = self._list_imports(scope)
+            named = (*self._iter_imported(imports, {scope.id}), *owned)
             members = {
                 name: element
                 for name, element in sorted(named, key=lambda pair: pair[1].kind in _FIRST)
@@ -110,13 +124,27 @@ class NameResolver:
             self._members_by_scope[scope.id] = members
         return members.get(name)
 
-    def _iter_imported(self, scope: Element) -> Iterator[Element]:
-        """Yield the elements that a scope imports, by themselves or with their package."""
-        for element in self._graph.owned(scope):
-            if element.kind is Kind.IMPORT:
-                for target in self._graph.targets(element, Edge.REFERENCES):
-                    is_package = element.subkind == "package"
-                    yield from self._graph.owned(target) if is_package else (target,)
+    def _list_imports(self, scope: Element) -> list[Element]:
+        return [element for element in self._graph.owned(scope) if element.kind is Kind.IMPORT]
+
+    def _iter_imported(
+        self, imports: Iterable[Element], visited: set[str]
+    ) -> Iterator[tuple[str, Element]]:
+        """Yield the elements that are imported, singly or with their package, by name.
+
+        A package passes on what its public imports import (UML 2.5.1, 7.4.3), those with an id in
+        *visited* excepted.
+        """
+        for import_ in imports:
+            for target in self._graph.targets(import_, Edge.REFERENCES):
+                if import_.subkind != "package":
+                    yield str(import_.attrs.get("alias") or target.name), target
+                elif target.id not in visited:
+                    visited.add(target.id)
+                    inner = self._list_imports(target)
+                    public = [i for i in inner if i.attrs.get("visibility") != "private"]
+                    yield from self._iter_imported(public, visited)
+                    yield from ((element.name, element) for element in self._graph.owned(target))
 
     def _iter_opposite_ends(self, classifier: Element) -> Iterator[Element]:
         """Yield the association ends that are opposite to ends of the classifier."""
