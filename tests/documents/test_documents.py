@@ -188,6 +188,21 @@ def test_the_entries_of_an_anchor_can_be_merged_into_a_mapping():
     assert document.as_json()["b"] == {"x": 1, "y": 3}
 
 
+@pytest.mark.parametrize(
+    ("merged", "entries"),
+    [
+        ("[*a, *b]", {"x": 1, "y": 2, "z": 5}),
+        ("[*b, *a]", {"x": 1, "y": 4, "z": 5}),
+        ("[{y: 6}, *a]", {"x": 1, "y": 6}),
+        ("[]", {}),
+        ("[*a, 7]", {"<<": [{"x": 1, "y": 2}, 7]}),
+    ],
+)
+def test_of_several_merged_mappings_the_first_entry_of_a_key_counts(merged, entries):
+    text = f"a: &a {{x: 1, y: 2}}\nb: &b {{y: 4, z: 5}}\nc: {{<<: {merged}, w: 0}}\n"
+    assert parse_yaml(text.encode()).as_json()["c"] == {"w": 0, **entries}
+
+
 def test_json_is_read_with_the_positions_of_keys_values_and_characters():
     document = parse_json('{"a": [1, -2.5e3,\n "x\\"\\u00e9z", null], "a": true}')
     assert document.as_json() == {"a": [1, -2500.0, 'x"éz', None]}

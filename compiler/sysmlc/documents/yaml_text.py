@@ -110,11 +110,19 @@ class _Reader:
 
 
 def _merge_entries(mapping: Value) -> None:
-    """Replace the key ``<<`` by the entries of the mapping below it (YAML 1.1, type merge)."""
-    source = mapping.get("<<")
-    if mapping.entries is not None and source is not None and source.entries is not None:
-        del mapping.entries["<<"]
-        for key, value in source.entries.items():
+    """Replace the key ``<<`` by the entries of the mapping, or the mappings in a list, below it.
+
+    The first entry of a key counts (YAML 1.1, type merge).
+    """
+    merged = mapping.get("<<")
+    if mapping.entries is None or merged is None:
+        return
+    sources = [merged] if merged.items is None else merged.items
+    if any(source.entries is None for source in sources):
+        return
+    del mapping.entries["<<"]
+    for source in sources:
+        for key, value in (source.entries or {}).items():
             if key not in mapping.entries:
                 mapping.add_entry(key, source.keys[key], value)
 
