@@ -191,6 +191,19 @@ def test_long_members_are_broken_at_clauses():
     )
 
 
+@pytest.mark.parametrize(
+    ("words", "language"),
+    [
+        *(("defined by", "sysml"), ("typed by", "kerml"), ("featured by", "kerml")),
+        *(("disjoint from", "kerml"), ("inverse of", "kerml")),
+    ],
+)
+def test_no_line_ends_within_a_keyword_of_two_words(words, language):
+    declaration = f"{'part' if language == 'sysml' else 'feature'} {'n' * 80}"
+    expected = f"{declaration}\n        {words} {'m' * 20};\n"
+    assert format_text(f"{declaration} {words} {'m' * 20};", language) == expected
+
+
 def test_long_expressions_are_broken_outside_parentheses():
     text = f"attribute total = {' + '.join(f'part{i}.weightOf({i}, mass)' for i in range(8))};"
     lines = format_text(text, "sysml").splitlines()

@@ -233,6 +233,11 @@ _CLAUSE_WORDS = (
     " then first about default allocate bind for :> :>> ::> =>"
 )
 _CLAUSES = _CLAUSE_WORDS.split()
+_WORD_PAIRS = {(word, "by") for word in ("typed", "defined", "featured")} | {
+    ("disjoint", "from"),
+    ("inverse", "of"),
+}
+"""Keywords of two words, which stay on one line."""
 _FREE, _COMMA, _OPERATION, _ARROW, _PARENTHESIS, _SPACE = range(6)
 _RANKS_PER_LEVEL = 10
 
@@ -323,7 +328,7 @@ class Spacing:
             return depth + _ARROW
         if before.text == "(" and token.text != ")":
             return depth + _PARENTHESIS
-        if not space or token.text == "{":
+        if not space or token.text == "{" or (before.text, token.text) in _WORD_PAIRS:
             return None
         return depth + (_COMMA if before.text == "," else self._rank_by_token(token))
 
