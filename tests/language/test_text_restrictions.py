@@ -22,6 +22,7 @@ OWNERS = {
     "return r;": ("'return'", "calc", "case"),
     "expose A::*;": ("'expose'", "view"),
     "expose A;": ("'expose'", "view"),
+    "filter @A;": ("a filter", "package", "view", "view def"),
     "transition first a then b;": ("a transition", "state", "action"),
 }
 """For each restricted member: what the message calls it, and keywords of usages that may own it."""
@@ -41,6 +42,12 @@ def test_a_member_belongs_in_the_bodies_of_some_kinds(member):
     assert list_messages(f"part p {{ {member} }}") == [f"SM195 {what} is not allowed in 'p'"]
     for owner in owners:
         assert list_messages(f"{owner} p {{ {member} }}") == [], owner
+
+
+def test_a_file_may_have_a_filter_and_no_subject():
+    assert list_messages("filter @A;") == []
+    assert list_messages("filter true;", "kerml") == []
+    assert list_messages("subject s;") == ["SM195 a subject is not allowed outside of any body"]
 
 
 @pytest.mark.parametrize("step", STEPS)

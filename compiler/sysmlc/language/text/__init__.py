@@ -136,11 +136,7 @@ _ALLOWED_OWNERS: dict[str, tuple[str, tuple[str, ...], str]] = {
     "RequirementVerificationMembership": ("'verify'", _REQUIREMENT, "requirements"),
     "ViewRenderingMembership": ("'render'", _VIEW, "views"),
     "StateSubactionMembership": ("an 'entry', 'do' or 'exit' action", _STATE, "states"),
-    "ElementFilterMembership": (
-        "a filter",
-        ("Package", "LibraryPackage", "Namespace", *_VIEW),
-        "packages and views",
-    ),
+    "ElementFilterMembership": ("a filter", ("Package", *_VIEW), "packages and views"),
     "ResultExpressionMembership": ("an expression", _CALCULATION, "calculations and constraints"),
     "ReturnParameterMembership": ("'return'", _CALCULATION, "calculations and cases"),
     "MembershipExpose": ("'expose'", ("ViewUsage",), "usages of views"),
@@ -220,6 +216,9 @@ def _read_last_value(member: Node, errors: Errors) -> None:
 def _check_owner(tokens: Tokens, node: Node, owner: Node, errors: Errors) -> None:
     key = node.kind if node.kind in _ALLOWED_OWNERS else node.membership
     if node.membership == "ResultExpressionMembership" and owner.kind == "EnumerationDefinition":
+        return
+    # The members of a file are those of a package (KerML 8.2.3.4.1).
+    if node.membership == "ElementFilterMembership" and owner.owner is None:
         return
     if node.kind in _STEPS and key not in _ALLOWED_OWNERS:
         key = "action"
