@@ -29,9 +29,9 @@ LAYERS = [
 SUBLAYERS = {
     "logic": [
         # values
-        {"formula", "contract", "identifiers", "domains", "evaluate", "inequalities"},
+        {"formula", "contract", "regions", "inequalities", "identifiers", "domains", "evaluate"},
         # languages of formulas: texts to values and back
-        {"syntax", "infix", "printing", "simplification", "classification", "violations"},
+        {"syntax", "infix", "printing", "simplification", "classification", "violations", "cells"},
         {"expressions"},
         {"property_patterns", "structured_sentences", "sentences", "formal_texts", "basis"},
         {"formats", "reduction"},

@@ -14,6 +14,7 @@ from msgspec.structs import replace
 from sysmlc.diagnostics import Place, Subject
 from sysmlc.ir import Graph
 from sysmlc.logic.formula import FALSE, TRUE, Const, Formula, eq, fold_iff, prime, var
+from sysmlc.logic.regions import Regions, Term
 
 
 class Owner(StrEnum):
@@ -39,12 +40,14 @@ class EnumerationDomain:
     """Names of literals, in declaration order.
 
     For a String, ``texts`` are the texts behind the literals in this order; the last literal stands
-    for any other text. ``type_name`` is the qualified name of the enumeration in the model, empty
-    for values that the compiler collects. Domains with the same literals are equal.
+    for any other text. For a number, ``regions`` are the intervals behind the literals.
+    ``type_name`` is the qualified name of the enumeration in the model, empty for values that the
+    compiler collects. Domains with the same literals and regions are equal.
     """
 
     literals: tuple[str, ...]
     texts: tuple[str, ...] = ()
+    regions: Regions | None = None
     type_name: str = field(default="", compare=False)
 
     def is_comparable(self, domain: "EnumerationDomain") -> bool:
@@ -74,6 +77,10 @@ class Variable(Struct, frozen=True):
     """The text of the condition without formula that the input stands for (SM411), if it does."""
     wording: str = ""
     """The name in formulas of the author, such as ``running(pick)``, if it is another one."""
+    term: Term = ()
+    """The sum of numbers whose region the variable is; empty for other variables."""
+    constants: tuple[str, ...] = ()
+    """The features in the term that never change."""
 
 
 def equals(variable: Variable, value: Formula, *, is_next: bool = False) -> Formula:

@@ -200,6 +200,31 @@ def convert(number: Fraction, unit: str, target: str) -> Fraction | None:
     return number * Fraction(source.factor) / Fraction(goal.factor)
 
 
+_SCALES = {
+    "°C_abs": ("K", Fraction(1), Fraction("273.15")),
+    "°F_abs": ("K", Fraction(5, 9), Fraction(229835, 900)),
+}
+"""Interval scales of the SysML v2 library: their unit, its size, and the value of their zero."""
+
+
+def measure(number: Fraction, unit: str) -> tuple[Fraction, str]:
+    """Return the quantity as a number of the first unit of its kind, and the symbol of that unit.
+
+    A unit that no exact factor converts to such a unit stays itself, as an unknown one does.
+    """
+    if unit in _SCALES:
+        symbol, factor, shift = _SCALES[unit]
+        return number * factor + shift, symbol
+    source = find_unit(unit)
+    if source is None:
+        return number, unit
+    bases = (u for u in UNITS if u.quantity == source.quantity and u.factor == "1")
+    base = next(bases, None)
+    if base is None or not source.factor:
+        return number, source.symbol
+    return number * Fraction(source.factor), base.symbol
+
+
 # -- times -------------------------------------------------------------------------------------
 
 STEP = Unit("tick", "step", "time", factor="")

@@ -317,7 +317,8 @@ class BehaviourCheck:
     def _is_valid(self, conjunct: Conjunct) -> bool:
         """Whether all runs satisfy the conjunct, those that are no runs of the behaviour too.
 
-        The ranges of Integers are facts of the model: the numbers next to them count, too.
+        The ranges of Integers are facts of the model: the numbers next to them count, too. Numbers
+        keep to arithmetic.
         """
         declared = (*self._behaviour.contract.variables, *self._requirements.variables)
         by_name = {variable.name: variable for variable in declared}
@@ -329,11 +330,12 @@ class BehaviourCheck:
             shown |= {name: Variable(name, Owner.SYSTEM, BooleanDomain(), "") for name in actions}
             if shown.keys() >= words:
                 by_name, conjunct = shown, Conjunct(conjunct.wording, Class.OTHER, conjunct.origin)
-        names = _names_of((conjunct,))
+        facts = self._behaviour.facts
+        names = _names_of((conjunct, *facts))
         read = tuple(_widen(variable) for name, variable in by_name.items() if name in names)
         free = Contract("", "", read, (), ())
         new_manager = manager_factory(self._options)
-        return RunSearch((free,), new_manager).entails((), conjunct)
+        return RunSearch((free,), new_manager).entails(facts, conjunct)
 
     # -- refutation ------------------------------------------------------------------------------
 

@@ -17,6 +17,7 @@ from sysmlc.logic.activities.derivation import derive_run_update, derive_token_u
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.basis import Reads
+from sysmlc.logic.cells import find_cells
 from sysmlc.logic.components.component import Component
 from sysmlc.logic.components.machines import MachineWrite, PlacedMachine, find_unread_features
 from sysmlc.logic.components.names import Atom, finish_name, iter_atoms
@@ -72,6 +73,8 @@ class ComponentBehaviour(Struct, frozen=True):
     """Variables with assumed ranges, and when a value is stopped at a bound; None if not known."""
     reads: tuple[Reads, ...] = ()
     """Variables that machines decide, and those with assumed ranges that they read for them."""
+    facts: tuple[Conjunct, ...] = ()
+    """The conjuncts of the contract that are true of numbers, whatever the behaviour does."""
 
     def list_reads(self) -> tuple[Reads, ...]:
         """Return ``reads``; if they are not known, each variable depends on all assumed ranges."""
@@ -120,6 +123,8 @@ class _Description:
         formulas = self._make_formulas(name)
         first = self._find_first_conditions(formulas.graph)
         self._derive_performances(formulas, first)
+        orders, facts = self._derive_cells()
+        self._conjuncts += facts
         for machine in self.machines:
             self._conjuncts += machine.iter_steps()
         self._conjuncts += self._arguments.derive(formulas, first)
@@ -140,7 +145,11 @@ class _Description:
         contract = Contract(
             name,
             self.component.subject.id,
-            (*self._list_variables(formulas, wiring.variables).values(), *late.variables),
+            (
+                *self._list_variables(formulas, wiring.variables).values(),
+                *late.variables,
+                *orders,
+            ),
             tuple(
                 replace(assumption, source=Source.DERIVED)
                 for assumption in derive_assumptions(formulas, {*gaps, *wiring.list_internal()})
@@ -175,7 +184,22 @@ class _Description:
             self.component.list_constituents(),
             clamps=clamps,
             reads=tuple(reads for machine in self.machines for reads in machine.iter_reads()),
+            facts=facts,
         )
+
+    def _derive_cells(self) -> tuple[tuple[Variable, ...], tuple[Conjunct, ...]]:
+        """Return which regions numbers can be in at once, and that constants never change.
+
+        The first result has the variables for the order of constants.
+        """
+        variables = [
+            replace(feature.variable, owner=Owner.SYSTEM)
+            if self._is_decided(slot)
+            else replace(feature.variable, owner=Owner.ENVIRONMENT)
+            for slot, feature in self.tree.used_slots.items()
+        ]
+        cells = find_cells(variables, list(self.tree.iter_facts()))
+        return cells.orders, cells.describe(self.component.subject.id)
 
     def _list_shared_writers(
         self, writers: Mapping[Slot, list[Writer]], ends: Mapping[str, Formula]

@@ -21,6 +21,7 @@ from sysmlc.ir.expressions import (
     name_of,
     walk_tree,
 )
+from sysmlc.logic.cells import Fact
 from sysmlc.logic.composition.structure import (
     Channels,
     iter_joined_names,
@@ -36,6 +37,7 @@ from sysmlc.logic.expressions.parsing import attach_tree
 from sysmlc.logic.expressions.resolution import NameResolver
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.identifiers import Names
+from sysmlc.logic.regions import Term
 from sysmlc.support.disjoint_sets import DisjointSets
 
 Slot = tuple[str, str]
@@ -212,6 +214,8 @@ class ObjectTree:
             contexts.insert(0, self.context_in(object_, behaviour))
         for context in contexts:
             for name, candidate in context.variables.items():
+                if " " in name and candidate == variable:
+                    return object_.path, name  # A sum of features of the object.
                 # A path comes first: an object around may have the feature, too.
                 is_same = "." in name and candidate == variable
                 if is_same and context.features[name].element is element:
@@ -269,6 +273,8 @@ class ObjectTree:
         return self.joined.find(self._follow_parts(path, name))
 
     def _follow_parts(self, path: str, name: str) -> Slot:
+        if " " in name:
+            return path, name
         first, dot, rest = name.partition(".")
         part = join_path(path, first)
         if not dot or self.find_object(part) is None:
@@ -351,6 +357,8 @@ class ObjectTree:
             replace(
                 first.make_variable(Owner.SYSTEM),
                 name=variable,
+                term=self._place_term(holder, first.term),
+                constants=self._place_names(holder, first.constants),
                 is_range_assumed=all(feature.is_assumed for _, feature in joined),
             ),
             next(defaults, None),
@@ -359,6 +367,23 @@ class ObjectTree:
             or (len(joined) == 1 and self._is_open(name, first)),
             any(_is_computed(feature) for _, feature in joined),
         )
+
+    def _place_names(self, holder: ComponentObject, variables: Iterable[str]) -> tuple[str, ...]:
+        """Return the slots, as paths, of variables in the context of an object."""
+        names = {variable: name for name, variable in self.context(holder).variables.items()}
+        slots = (self.slot_of(holder.path, names[variable]) for variable in variables)
+        return tuple(join_path(*slot) for slot in slots)
+
+    def _place_term(self, holder: ComponentObject, term: Term) -> Term:
+        """Return a sum of variables of an object as a sum of slots."""
+        keys = self._place_names(holder, (name for name, _ in term))
+        return tuple((key, factor) for key, (_, factor) in zip(keys, term, strict=True))
+
+    def iter_facts(self) -> Iterator[Fact]:
+        """Yield the sums of slots that constraints keep in an interval."""
+        for object_ in self.objects:
+            for term, interval in self.context(object_).facts:
+                yield self._place_term(object_, term), interval
 
     def _is_input(self, feature: Feature) -> bool:
         # A flow property without a direction is ``inout`` (SysML 1.6 clause 9.3.2.8).

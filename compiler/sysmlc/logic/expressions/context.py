@@ -4,7 +4,9 @@ Features are computed when they are looked up: a behaviour can name hundreds thr
 its parameters, and uses a few.
 """
 
+from collections import defaultdict
 from collections.abc import Iterator, Mapping
+from fractions import Fraction
 from functools import cached_property
 
 from msgspec import Struct
@@ -22,6 +24,7 @@ from sysmlc.ir.expressions import (
     walk_tree,
 )
 from sysmlc.ir.expressions import Literal as LiteralExpression
+from sysmlc.logic.cells import Fact
 from sysmlc.logic.contract import EnumerationDomain, IntegerDomain
 from sysmlc.logic.domains import describe
 from sysmlc.logic.expressions.elaboration import Symbol
@@ -33,6 +36,7 @@ from sysmlc.logic.expressions.features import (
     read_constant,
     restrict_string,
 )
+from sysmlc.logic.expressions.linear import Number, print_term, read_quantity
 from sysmlc.logic.expressions.named_elements import (
     Enumerations,
     enumerations_of,
@@ -43,8 +47,9 @@ from sysmlc.logic.expressions.named_elements import (
     find_port_values,
 )
 from sysmlc.logic.expressions.ranges import MIRROR, Access, evaluate_integer
+from sysmlc.logic.expressions.thresholds import thresholds_of
 from sysmlc.logic.formula import const, var
-from sysmlc.logic.identifiers import make_unique
+from sysmlc.logic.identifiers import Names, make_unique
 
 ASSUMED_RANGE = rule(
     "SM410",
@@ -71,6 +76,11 @@ class Context(Struct, frozen=True):
     enumerations: Enumerations
     namespace: str = ""
     """Qualified name of the classifier, inside which names of packages are looked up."""
+
+    @property
+    def facts(self) -> tuple[Fact, ...]:
+        """The sums of variables that constraints keep in an interval."""
+        return self.features.facts if isinstance(self.features, _FeatureTable) else ()
 
     @property
     def variables(self) -> Mapping[str, str]:
@@ -117,9 +127,14 @@ def find_symbol(context: Context, name: str, element: str = "") -> Symbol | None
     if feature is None:
         return find_literal(context, name, element)
     if feature.is_constant and feature.default is not None:
-        return Symbol(const(feature.default), feature.domain)
+        return Symbol(const(feature.default), feature.domain, quantity=feature.number)
     is_several = feature.has_several_values
-    return Symbol(var(feature.variable), feature.domain, has_several_values=is_several)
+    return Symbol(
+        var(feature.variable),
+        feature.domain,
+        has_several_values=is_several,
+        quantity=feature.number,
+    )
 
 
 def find_literal(context: Context, name: str, element: str = "") -> Symbol | None:
@@ -253,12 +268,43 @@ class _FeatureTable(Mapping[str, Feature]):
         self.variables = _name_variables(elements)
         self._enumerations = enumerations
         self._graph = graph
+        self._thresholds = thresholds_of(graph)
+        self._features: dict[str, Feature] = {}
+        self._add_terms(elements)
         self._classifier = classifier
         self._behaviour = behaviour or classifier
         self._elements = elements
         self._assumed_range = assumed_range
         self._declared: dict[str, Feature] = {}
-        self._features: dict[str, Feature] = {}
+
+    def _add_terms(self, elements: Mapping[str, Element]) -> None:
+        """Add a feature for each sum of features that the model compares, such as ``a - b``."""
+        self.facts: tuple[Fact, ...] = ()
+        if not self._thresholds.has_sums:
+            return
+        variables: dict[str, list[str]] = defaultdict(list)
+        names = {variable: name for name, variable in self.variables.items()}
+        for name, variable in self.variables.items():
+            number = self._thresholds.number_of(elements[name])
+            if number is not None and number.key:
+                variables[number.key].append(variable)
+        unique = Names("value", "event", "none", *names)
+        for term, domain in self._thresholds.list_terms(variables):
+            text = print_term(term)
+            spelled = text.replace(" - ", " minus ").replace(" + ", " plus ").replace("*", " ")
+            variable = self.variables[text] = unique.new(spelled)
+            members = {key: elements[names[key]] for key, _ in term}
+            numbers = {key: self._thresholds.number_of(member) for key, member in members.items()}
+            self._features[text] = Feature(
+                members[term[0][0]],
+                variable,
+                domain,
+                direction="in",
+                wording=text,
+                term=term,
+                constants=tuple(key for key, n in numbers.items() if n is not None and n.is_frozen),
+            )
+        self.facts = tuple(self._thresholds.list_facts(variables))
 
     def __getitem__(self, name: str) -> Feature:
         if name not in self._features:
@@ -294,11 +340,36 @@ class _FeatureTable(Mapping[str, Feature]):
         """Return the feature with undeclared values inferred from those that the behaviour uses."""
         if feature.is_assumed:
             return self._widen_range(name, feature)
+        number = self._thresholds.number_of(feature.element)
+        if number is not None:
+            return self._restrict_number(feature, number)
         if self._behaviour.kind not in _BEHAVIOURS:
             return feature
         if is_string(self._graph, feature) and self._mentioned_values.texts:
             return restrict_string(feature, self._text_domain)
         return feature
+
+    def _restrict_number(self, feature: Feature, number: Number) -> Feature:
+        """Return a numeric feature with the regions that the model tells apart as its values."""
+        own = replace(number, key="" if number.is_constant else feature.variable)
+        feature = replace(feature, number=own)
+        domain = self._thresholds.domain_of(number)
+        if feature.domain is not None or domain is None or domain.regions is None:
+            return feature
+        quantity = read_quantity(self._graph, feature.element, "default")
+        index = None if quantity is None else domain.regions.find(quantity.number)
+        default = None if index is None else domain.literals[index]
+        # Without an assignment, nothing but the environment can change the number.
+        is_assigned = self._thresholds.is_assigned(number)
+        return replace(
+            feature,
+            domain=domain,
+            default=default,
+            direction=feature.direction or ("" if is_assigned else "in"),
+            invalid_default="",
+            term=((feature.variable, Fraction(1)),),
+            constants=(feature.variable,) if number.is_frozen else (),
+        )
 
     def _widen_range(self, name: str, feature: Feature) -> Feature:
         """Extend an assumed range to numbers on both sides of the thresholds of the feature.

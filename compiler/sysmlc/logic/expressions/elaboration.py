@@ -1,8 +1,10 @@
 """Elaboration of expressions to formulas: resolve names, check types, split values into cases."""
 
 import operator
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from enum import StrEnum
+from fractions import Fraction
+from functools import partial
 
 from msgspec import Struct
 
@@ -21,11 +23,22 @@ from sysmlc.ir.expressions import (
     last_name,
     name_of,
     print_expression,
+    walk_tree,
 )
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, IntegerDomain
+from sysmlc.logic.expressions.linear import (
+    Comparison,
+    Linear,
+    Number,
+    UnitError,
+    iter_comparisons,
+    print_term,
+    read_linear,
+)
 from sysmlc.logic.formula import Const, Formula, Op
+from sysmlc.logic.regions import Cut, Interval, Regions, Term, is_true
 
 
 class Fault(StrEnum):
@@ -74,6 +87,8 @@ class Symbol(Struct, frozen=True):
     domain: Domain | None
     number: int | None = None
     has_several_values: bool = False
+    quantity: Number | None = None
+    """The number that the name stands for in sums and comparisons, if any."""
 
 
 Scope = Callable[[str, str], Symbol | None]
@@ -117,6 +132,8 @@ def elaborate_value(
     *expected* is the domain that the surrounding expression needs; it resolves the plain names of
     enumeration literals and decides whether a literal stands for its number.
     """
+    if isinstance(expected, EnumerationDomain) and expected.regions is not None:
+        return _elaborate_region(expression, scope, expected)
     match expression:
         case Literal(value):
             return _elaborate_literal(expression, value, expected)
@@ -141,6 +158,17 @@ def find_symbol(expression: Expression | Statement, scope: Scope) -> Symbol | No
     """Return the symbol of a name or of a chain of features; None for any other expression."""
     name = name_of(expression)
     return scope(name, element_of(expression)) if name else None
+
+
+def list_read(expression: Expression, scope: Scope) -> list[tuple[str, Symbol | None]]:
+    """Return the names in an expression, and the texts of the sums it compares, with symbols."""
+    read: list[tuple[str, Symbol | None]] = []
+    for node in walk_tree(expression):
+        name = name_of(node)
+        read += [(name, find_symbol(node, scope))] if name else []
+        if isinstance(node, Binary):
+            read += [(sum_, scope(sum_, "")) for sum_ in map(print_term, _list_sums(node, scope))]
+    return read
 
 
 # -- operands ------------------------------------------------------------------------------------
@@ -193,7 +221,7 @@ def _elaborate_name(
     if isinstance(expected, IntegerDomain) and symbol.number is not None:
         return _make_value(Const(symbol.number), IntegerDomain(symbol.number, symbol.number))
     if symbol.domain is None:
-        if isinstance(symbol.formula, Const):
+        if isinstance(symbol.formula, Const) and symbol.quantity is None:
             message = f"'{name}' is a literal of several enumerations"
         else:
             obstacle = "several values" if symbol.has_several_values else "no finite type"
@@ -237,6 +265,8 @@ def _elaborate_binary(expression: Binary, scope: Scope) -> GuardedValue:
         left = _elaborate_number(expression.left, scope)
         right = _elaborate_number(expression.right, scope)
         return _combine(_ARITHMETIC[op], left, right)
+    if (truth := compare_regions(expression, scope)) is not None:
+        return _make_value(truth, BooleanDomain())
     left, right = _elaborate_operands(expression, scope)
     comparisons = [
         f.both(a.condition, b.condition, _compare(op, a.value, b.value, left.domain))
@@ -385,6 +415,139 @@ def _join_domains(left: Domain, right: Domain) -> Domain:
     if isinstance(left, IntegerDomain) and isinstance(right, IntegerDomain):
         return IntegerDomain(min(left.low, right.low), max(left.high, right.high))
     return left
+
+
+# -- regions of numbers --------------------------------------------------------------------------
+
+
+def _find_quantity(scope: Scope, name: Name | Member) -> Number | None:
+    symbol = find_symbol(name, scope)
+    if symbol is None or symbol.quantity is not None:
+        return None if symbol is None else symbol.quantity
+    value = symbol.formula.value if isinstance(symbol.formula, Const) else None
+    if not isinstance(value, int) or isinstance(value, bool):
+        return None
+    return Number(
+        "", (Linear(number=Fraction(value), unit="" if value else None),), is_constant=True
+    )
+
+
+def _list_symbols(expression: Expression, scope: Scope) -> dict[str, Symbol]:
+    """Return the symbols of the numeric features in an expression, by their variables."""
+    names = (node for node in walk_tree(expression) if isinstance(node, Name | Member))
+    symbols = (find_symbol(name, scope) for name in names)
+    return {s.quantity.key: s for s in symbols if s is not None and s.quantity is not None}
+
+
+def _list_sums(expression: Binary, scope: Scope) -> list[Term]:
+    """Return the terms of several features in a comparison."""
+    try:
+        comparisons = list(iter_comparisons(expression, partial(_find_quantity, scope)))
+    except UnitError:
+        return []
+    return [comparison.term for _, comparison in comparisons if len(comparison.term) > 1]
+
+
+def compare_regions(expression: Binary, scope: Scope) -> Formula | None:
+    """Return a comparison of numbers by regions; None if all of them are finite, or none is.
+
+    Raises ElaborationError if no regions are known or if the units differ.
+    """
+    symbols = _list_symbols(expression, scope)
+    if all(isinstance(symbol.domain, IntegerDomain) for symbol in symbols.values()):
+        return None
+    text = print_expression(expression)
+    try:
+        comparisons = list(iter_comparisons(expression, partial(_find_quantity, scope)))
+    except UnitError as error:
+        raise ElaborationError(Fault.UNSUPPORTED, f"'{text}': {error}", text) from None
+    cases = [
+        f.both(
+            *(_equal_number(text, symbols[key], value) for key, value in values.items()),
+            _select_regions(text, comparison, symbols, scope),
+        )
+        for values, comparison in comparisons
+    ]
+    return f.either(*cases) if cases else None
+
+
+def _equal_number(text: str, symbol: Symbol, value: Linear) -> Formula:
+    """Return the formula that a feature has one of its values."""
+    if symbol.quantity is not None and len(symbol.quantity.values) == 1:
+        return f.TRUE
+    assert isinstance(symbol.domain, EnumerationDomain)
+    point = Interval(Cut(value.number), Cut(value.number, is_above=True))
+    return f.eq(symbol.formula, _find_region(text, symbol.domain, point))
+
+
+def _select_regions(
+    text: str, comparison: Comparison, symbols: Mapping[str, Symbol], scope: Scope
+) -> Formula:
+    """Return the formula that a term is in one of the regions in which a comparison is true."""
+    op, number = comparison.op, comparison.number
+    if not comparison.term:
+        return Const(is_true(Fraction(0), op, number))
+    term = print_term(comparison.term)
+    symbol = symbols.get(term) or scope(term, "")
+    domain = None if symbol is None else symbol.domain
+    if symbol is None or not isinstance(domain, EnumerationDomain) or domain.regions is None:
+        reason = f"'{text}' compares numbers that have no regions"
+        raise ElaborationError(Fault.UNSUPPORTED, reason, text)
+    _check_unit(text, comparison.unit, domain.regions)
+    selected = domain.regions.select(op, number)
+    if selected is None:
+        reason = f"'{text}' compares with a number between two thresholds"
+        raise ElaborationError(Fault.UNSUPPORTED, reason, text)
+    return f.either(*(f.eq(symbol.formula, Const(domain.literals[index])) for index in selected))
+
+
+def _check_unit(text: str, unit: str | None, regions: Regions | None) -> None:
+    if unit is not None and regions is not None and unit != regions.unit:
+        units = " and in ".join(name or "no unit" for name in (unit, regions.unit))
+        message = f"'{text}' is compared in {units}"
+        raise ElaborationError(Fault.UNSUPPORTED, message, text)
+
+
+def _elaborate_region(
+    expression: Expression, scope: Scope, expected: EnumerationDomain
+) -> GuardedValue:
+    """Return the region of a number: that of a constant, or of a multiple of one feature."""
+    if isinstance(expression, Conditional):
+        return _elaborate_conditional(expression, scope, expected)
+    text = print_expression(expression)
+    try:
+        form = read_linear(expression, partial(_find_quantity, scope))
+    except UnitError as error:
+        raise ElaborationError(Fault.UNSUPPORTED, f"'{text}': {error}", text) from None
+    if form is None or len(form.factors) > 1:
+        raise ElaborationError(Fault.UNSUPPORTED, f"'{text}' is no sum with one feature", text)
+    _check_unit(text, form.unit, expected.regions)
+    if not form.factors:
+        point = Interval(Cut(form.number), Cut(form.number, is_above=True))
+        return _make_value(_find_region(text, expected, point), expected)
+    ((name, factor),) = form.factors.items()
+    symbol = _list_symbols(expression, scope)[name]
+    source = symbol.domain
+    if not isinstance(source, EnumerationDomain) or source.regions is None:
+        raise ElaborationError(Fault.UNSUPPORTED, f"'{text}' has no regions", text)
+    cases = [
+        Case(
+            f.eq(symbol.formula, Const(literal)),
+            _find_region(text, expected, interval.move(factor, form.number)),
+        )
+        for literal, interval in zip(source.literals, source.regions.intervals, strict=True)
+    ]
+    return GuardedValue(tuple(cases), expected)
+
+
+def _find_region(text: str, domain: EnumerationDomain, values: Interval) -> Formula:
+    """Return the literal of the region with all *values*. Raises ElaborationError without one."""
+    assert domain.regions is not None
+    for literal, interval in zip(domain.literals, domain.regions.intervals, strict=True):
+        if interval.includes(values):
+            return Const(literal)
+    reason = f"'{text}' has values in several regions"
+    raise ElaborationError(Fault.UNSUPPORTED, reason, text)
 
 
 # -- errors --------------------------------------------------------------------------------------

@@ -26,6 +26,7 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.domains import contains, describe
 from sysmlc.logic.expressions.elaboration import ElaborationError, Fault, check_enumeration
+from sysmlc.logic.expressions.linear import Number
 from sysmlc.logic.expressions.named_elements import (
     constant_value,
     find_enumeration_domain,
@@ -41,6 +42,7 @@ from sysmlc.logic.expressions.ranges import (
     parse_integer,
 )
 from sysmlc.logic.formula import Literal
+from sysmlc.logic.regions import Term
 
 _BOOLEAN = frozenset(["boolean", "bool", "eboolean"])
 _INTEGER = frozenset(
@@ -63,10 +65,16 @@ class Feature(Struct, frozen=True):
     """A default value that is not in the domain."""
     direction: str = ""
     """``in``, ``out`` or ``inout`` as the owner sees it; empty if the feature has none."""
+    number: Number | None = None
+    """What the feature stands for in a comparison of numbers; None if its values are none."""
     has_several_values: bool = False
     """Whether the multiplicity allows other than one value; such a feature has no domain."""
     wording: str = ""
     """The dotted name by which expressions reach a feature of a part; empty for others."""
+    term: Term = ()
+    """The variables of the numbers in a compared sum, or of the number; empty for others."""
+    constants: tuple[str, ...] = ()
+    """The variables in the term that never change."""
 
     def make_variable(self, owner: Owner) -> Variable:
         """Return the variable of a feature with a finite domain."""
@@ -78,6 +86,8 @@ class Feature(Struct, frozen=True):
             self.element.id,
             is_range_assumed=self.is_assumed,
             wording=self.wording,
+            term=self.term,
+            constants=self.constants,
         )
 
 
@@ -168,6 +178,29 @@ def check_assignable(value_domain: Domain, target_domain: Domain, value: Express
     if lower_bounds[0] > upper_bounds[1] or upper_bounds[0] < lower_bounds[1]:
         message = f"{text} is outside {describe(target_domain)}"
         raise ElaborationError(Fault.OUTSIDE, message, text)
+
+
+# -- numbers -----------------------------------------------------------------------------------
+
+
+def find_number_type(graph: Graph, element: Element) -> str:
+    """Return ``integer`` or ``real``; empty for a feature whose value is no single number.
+
+    A feature without a type, or of a type without features of its own, may be a number.
+    """
+    multiplicity = query.bounds(element.attrs.get("multiplicity"))
+    if multiplicity is not None and multiplicity[1] != 1:
+        return ""
+    type_ = query.type_of(graph, element)
+    family = [] if type_ is None else [type_, *query.generals(graph, type_)]
+    type_names = list_type_names(family)
+    if type_names & _INTEGER or _has_untyped_default(element, type_, int):
+        return "integer"
+    default = element.attrs.get("default")
+    if type_ is None:
+        return "real" if isinstance(default, float | None) else ""
+    is_plain = type_.kind is Kind.DATA_TYPE and not query.features(graph, type_)
+    return "real" if is_plain and not type_names & (_BOOLEAN | _STRING) else ""
 
 
 # -- strings -----------------------------------------------------------------------------------

@@ -12,6 +12,7 @@ from msgspec.structs import replace
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, query
 from sysmlc.logic.contract import BooleanDomain, EnumerationDomain, IntegerDomain
 from sysmlc.logic.expressions.elaboration import Symbol
+from sysmlc.logic.expressions.linear import Number, read_quantity
 from sysmlc.logic.formula import const
 from sysmlc.logic.identifiers import make_unique
 
@@ -306,6 +307,10 @@ class Enumerations:
             return Symbol(const(value), BooleanDomain())
         if isinstance(value, int):
             return Symbol(const(value), IntegerDomain(value, value))
+        quantity = read_quantity(self._graph, attribute, "value")
+        if quantity is not None and attribute.attrs.get("value_kind", "bound") == "bound":
+            number = Number("", (quantity,), is_constant=True)
+            return Symbol(const(attribute.name), None, quantity=number)
         literal = self.literals_by_id.get(str(attribute.attrs.get("value_instance")))
         return literal if value is not None else None
 

@@ -4,6 +4,7 @@ Each function returns a contract with the same meaning that uses fewer construct
 goes further and replaces enumerations by integers, and integers by bits.
 """
 
+import dataclasses
 import math
 from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache
@@ -165,7 +166,7 @@ def _rename_literals(domain: Domain, literals: Mapping[str, str]) -> Domain:
     if not isinstance(domain, EnumerationDomain):
         return domain
     renamed = tuple(literals[literal] for literal in domain.literals)
-    return EnumerationDomain(renamed, domain.texts, domain.type_name)
+    return dataclasses.replace(domain, literals=renamed)
 
 
 # -- comparisons -----------------------------------------------------------------------------------

@@ -34,6 +34,7 @@ from sysmlc.logic.expressions.elaboration import (
     Symbol,
     elaborate_condition,
     elaborate_value,
+    list_read,
 )
 from sysmlc.logic.expressions.features import Feature, check_assignable
 from sysmlc.logic.expressions.named_elements import describe_feature_elsewhere
@@ -170,9 +171,8 @@ class ReadingContext:
 
     def record_reads(self, expression: Expression, target: str = "") -> None:
         """Record the features that a condition reads, or the value of a variable *target*."""
-        for part in walk_tree(expression):
-            name = name_of(part)
-            feature = self.context.features.get(name) if name else None
+        for name, _ in list_read(expression, self.find_symbol):
+            feature = self.context.features.get(name)
             if feature is not None:
                 self.read_variables[feature.variable] = None
                 self.reads.setdefault(target, {})[feature.variable] = None

@@ -13,12 +13,12 @@ from itertools import combinations
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Graph
-from sysmlc.ir.expressions import Expression, walk_tree
+from sysmlc.ir.expressions import Expression
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.contract import Domain
 from sysmlc.logic.evaluate import compile_evaluation
-from sysmlc.logic.expressions.elaboration import Scope, elaborate_condition, find_symbol
+from sysmlc.logic.expressions.elaboration import Scope, elaborate_condition, list_read
 from sysmlc.logic.expressions.parsing import GuardTerms
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines.machine import (
@@ -167,8 +167,7 @@ def can_be_simultaneous(left: Transition, right: Transition) -> bool:
 
 def _find_domains(source: Expression, scope: Scope) -> Iterator[tuple[str, Domain]]:
     """Yield the variables in the expression with their domains."""
-    for part in walk_tree(source):
-        symbol = find_symbol(part, scope)
+    for _, symbol in list_read(source, scope):
         if symbol is not None and symbol.domain is not None:
             yield from ((v.name, symbol.domain) for v in f.variables(symbol.formula))
 

@@ -7,14 +7,16 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.ir import Element, Graph, query
+from sysmlc.ir.expressions import Binary
 from sysmlc.logic.components.names import ComponentNames, Meaning
 from sysmlc.logic.components.objects import ComponentError
 from sysmlc.logic.composition.free_outputs import find_owner
 from sysmlc.logic.contract import BooleanDomain, Contract, Domain, Owner, Variable
 from sysmlc.logic.domains import contains
 from sysmlc.logic.expressions.context import Context, context_of, find_literal
-from sysmlc.logic.expressions.elaboration import Symbol
+from sysmlc.logic.expressions.elaboration import ElaborationError, Symbol, compare_regions
 from sysmlc.logic.expressions.features import Feature
+from sysmlc.logic.expressions.thresholds import COMPARISON, parse_comparison
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Var, prime, var, variable_names
 from sysmlc.logic.requirements.statements import (
     find_redefining_operation,
@@ -69,15 +71,15 @@ class Scope(Struct, frozen=True):
         """
         if element in self.context.enumerations.constants_by_id:
             return find_literal(self.context, name, element)
-        meaning = self._find_meaning(name)
+        meaning, feature = self._find_meaning(name), self.find_feature(name)
+        quantity = None if feature is None else feature.number
         if meaning is not None:
-            return Symbol(meaning.formula, meaning.domain)
-        feature = self.find_feature(name)
+            return Symbol(meaning.formula, meaning.domain, quantity=quantity)
         if feature is not None:
             constant = self.constants.get(feature.variable)
             formula = var(feature.variable) if constant is None else Const(constant)
             several = feature.has_several_values
-            return Symbol(formula, feature.domain, has_several_values=several)
+            return Symbol(formula, feature.domain, has_several_values=several, quantity=quantity)
         variable = self.variables.get(name)
         if variable is None:
             return find_literal(self.context, name, element)
@@ -155,11 +157,27 @@ class Scope(Struct, frozen=True):
         variable is longer than the name. Raises FormulaError for a name with several meanings.
         """
         meanings: dict[str, Meaning] = {}
+        text = COMPARISON.sub(lambda match: self._replace_comparison(match, meanings), text)
         return _NAME.sub(lambda match: self._replace_name(match, meanings), text), meanings
+
+    def _replace_comparison(self, match: re.Match[str], meanings: dict[str, Meaning]) -> str:
+        """Replace a comparison of numbers without a finite domain by a variable."""
+        expression = parse_comparison(match[0])
+        if not isinstance(expression, Binary):
+            return match[0]
+        try:
+            formula = compare_regions(expression, self.find_symbol)
+        except ElaborationError as error:
+            raise FormulaError(str(error), match.start()) from None
+        if formula is None:
+            return match[0]
+        variable = f"__{len(meanings)}"
+        meanings[variable] = Meaning(formula, BooleanDomain(), match[0].strip())
+        return variable.ljust(len(match[0]))
 
     def _replace_name(self, match: re.Match[str], meanings: dict[str, Meaning]) -> str:
         name = match[0]
-        if _COMPONENT.match(match.string, match.end()):
+        if name in meanings or _COMPONENT.match(match.string, match.end()):
             return name
         try:
             meaning = self._find_meaning(name)
