@@ -145,13 +145,15 @@ def test_a_range_in_a_part_has_the_name_of_the_author(check):
 
 ROOM = """
 attribute temp : Real;
+calc def cold { in x : Real; return : Boolean; }
+calc def warm { in x : Real; return : Boolean; }
 exhibit state M {
     entry; then A;
     state A;
     state B;
     state C;
-    transition first A if temp < 18.0 then B;
-    transition first A if temp >= 18.0 then C;
+    transition first A if cold(temp) then B;
+    transition first A if warm(temp) then C;
     transition first C accept Go then A;
 }"""
 
@@ -160,11 +162,27 @@ def test_a_run_that_depends_on_an_unread_condition_decides_nothing(check):
     assert check(
         ROOM, "F !(state=A)", "G !(state=B)", "G !(state=C)", "G (state=B -> X state=B)"
     ) == [
-        "R0: not decided: it depends on 'temp < 18.0': F !state=A",
-        "R1: not decided: it depends on 'temp < 18.0': G (!state=B)",
-        "R2: not decided: it depends on 'temp >= 18.0': G (!state=C)",
+        "R0: not decided: it depends on 'cold(temp)': F !state=A",
+        "R1: not decided: it depends on 'cold(temp)': G (!state=B)",
+        "R2: not decided: it depends on 'warm(temp)': G (!state=C)",
         "R3: holds: G (state=B -> state'=B)",
     ]
+
+
+def test_conditions_that_are_opposites_are_one_input(check):
+    block = ROOM.replace("warm(temp)", "not cold(temp)")
+    assert check(block, "F !(state=A)", "G !(state=B)") == [
+        "R0: holds: F !state=A",
+        "R1: not decided: it depends on 'cold(temp)': G (!state=B)",
+    ]
+
+
+@pytest.mark.parametrize("condition", ["cold(temp)", "not cold(temp)"])
+def test_the_past_of_a_condition_that_does_not_matter_is_no_doubt(check, condition):
+    block = ROOM.replace("if cold(temp) then B", "accept Stop then B").replace("warm", "cold")
+    change = f"transition first B accept when {condition} then A;"
+    block = block.replace("state C;", f"state C; {change}").replace("if cold", "accept Go if cold")
+    assert check(block, "G !(state=B)") == ["R0: broken: G (!state=B)"]
 
 
 def test_a_run_that_depends_on_an_unread_condition_is_no_error(check, workspace):
@@ -178,15 +196,15 @@ def test_the_json_document_lists_unread_conditions(report):
     document = report(ROOM, "F !(state=A)")
     (entry,) = document["requirements"]
     assert entry["verdict"] == "not-decided"
-    assert entry["unread_conditions"] == ["temp < 18.0"]
-    assert entry["reason"] == "it depends on 'temp < 18.0'"
+    assert entry["unread_conditions"] == ["cold(temp)"]
+    assert entry["reason"] == "it depends on 'cold(temp)'"
     messages = [d["message"] for d in document["diagnostics"] if d["code"] == "SM562"]
-    assert [message.rpartition(": ")[2] for message in messages] == ["it depends on 'temp < 18.0'"]
+    assert [message.rpartition(": ")[2] for message in messages] == ["it depends on 'cold(temp)'"]
 
 
 def test_a_run_whatever_a_condition_does_breaks_a_requirement(report):
-    block = ROOM.replace("first A if temp < 18.0 then B", "first A accept Stop then B")
-    block = block.replace("first A if temp >= 18.0", "first A accept Go if temp >= 18.0")
+    block = ROOM.replace("first A if cold(temp) then B", "first A accept Stop then B")
+    block = block.replace("first A if warm(temp)", "first A accept Go if warm(temp)")
     document = report(block, "G !(state=B)", "G !(state=C)")
     assert [entry["verdict"] for entry in document["requirements"]] == ["broken", "not-decided"]
     steps = document["requirements"][0]["witness"]["steps"]
@@ -196,16 +214,17 @@ def test_a_run_whatever_a_condition_does_breaks_a_requirement(report):
 def test_a_change_of_an_unread_condition_decides_nothing(check):
     block = """
     attribute temp : Real;
+    calc def cold { in x : Real; return : Boolean; }
     exhibit state M {
         entry; then A;
         state A;
         state B;
         state C;
-        transition first A accept when temp < 18.0 then B;
+        transition first A accept when cold(temp) then B;
         transition first A accept Go then C;
     }"""
     lines = check(block, "G !(state=B)", "G !(state=C)", "G (state=C -> G state=C)")
-    assert lines[0] == "R0: not decided: it depends on 'temp < 18.0': G (!state=B)"
+    assert lines[0] == "R0: not decided: it depends on 'cold(temp)': G (!state=B)"
     assert lines[1:] == ["R1: broken: G (!state=C)", "R2: holds: G (state=C -> G state=C)"]
 
 
@@ -213,27 +232,30 @@ def test_a_decision_with_unread_guards_decides_nothing(check):
     block = """
     attribute temp : Real;
     attribute hot : Boolean := false;
+    calc def rise { in x : Real; return : Real; }
     perform action run {
         first start;
         then action look;
         then decide choose;
-            if temp > 20.5 then heat;
-            if temp <= 20.5 then done;
+            if rise(temp) > 20.5 then heat;
+            if rise(temp) <= 20.5 then done;
         action heat assign hot := true;
         first heat then done;
     }"""
     lines = check(block, "G !hot", "G !running(look)")
     assert lines == [
-        "R0: not decided: it depends on 'temp > 20.5': G (!hot)",
+        "R0: not decided: it depends on 'rise(temp) > 20.5': G (!hot)",
         "R1: broken: G !running(look)",
     ]
 
 
 def test_a_violation_in_a_part_does_not_depend_on_conditions_of_another(check):
     block = """
+    calc def cold { in x : Real; return : Boolean; }
+    calc def warm { in x : Real; return : Boolean; }
     part room { attribute temp : Real; exhibit state M {
-        entry; then A; state A; state B; transition first A if temp < 18.0 then B;
-        transition first A if temp >= 18.0 then B;
+        entry; then A; state A; state B; transition first A if cold(temp) then B;
+        transition first A if warm(temp) then B;
     } }
     part door { exhibit state M {
         entry; then Shut; state Shut; state Open; transition first Shut accept Go then Open;
@@ -293,10 +315,15 @@ def test_contract_files_and_pages_mark_ranges_and_conditions(workspace, all_pass
     assert workspace.sysmlc("model.sysml", "-o", "out").exit_code == 0
     contract = json.loads(workspace.read("out/contracts/P.B.contract.json"))
     assert contract["variables"]["level"]["assumed"] is True
-    assert contract["variables"]["temp_18_0"]["condition"] == "temp < 18.0"
+    assert contract["variables"]["cold_temp"]["condition"] == "cold(temp)"
+    reason = "calls such as 'cold(temp)' are not evaluated"
+    assert contract["variables"]["cold_temp"]["reason"] == reason
     page = workspace.read("out/contracts/P.B.md")
     assert "| `level` | 0..15 (assumed) |" in page
-    assert "| `temp_18_0` | Boolean, stands for `temp < 18.0` |" in page
+    assert (
+        f"| `cold_temp` | Boolean, stands for `cold(temp)`, which has no formula: {reason} |"
+        in page
+    )
 
 
 SCENARIO = """
@@ -345,6 +372,8 @@ def test_a_recorded_run_outside_an_assumed_range_is_not_the_fault_of_the_compone
 COMPOSITION = """package P {
     private import ScalarValues::*;
     item def Go;
+    calc def cold { in x : Real; return : Boolean; }
+    calc def warm { in x : Real; return : Boolean; }
     part def Sensor {
         attribute temp : Real;
         attribute count : Integer := 0;
@@ -373,8 +402,8 @@ def check_composition(workspace, *guards):
 
 
 def test_parts_that_an_unread_condition_separates_are_not_decided(workspace, all_passes):
-    line, result = check_composition(workspace, "if temp < 18.0", "if temp >= 18.0")
-    reason = "it depends on 'temp < 18.0' and 'temp >= 18.0'"
+    line, result = check_composition(workspace, "if cold(temp)", "if warm(temp)")
+    reason = "it depends on 'cold(temp)' and 'warm(temp)'"
     assert line == f"P::Plant: the composition of its parts is not decided: {reason}"
     assert reason in result.stderr
     assert result.exit_code == 2

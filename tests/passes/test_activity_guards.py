@@ -1,7 +1,10 @@
 """The pass ``activities``: guards of decisions, and literals on branches."""
 
+import pytest
 from pass_runs import list_codes
 from token_graphs import derive_token_graphs, name_inputs
+
+from sysmlc.logic import formula as f
 
 DECISION = """
 Class c "C"
@@ -92,3 +95,21 @@ def test_an_undefined_name_becomes_the_same_input_wherever_it_is_used():
     graph, codes = derive_decision('guard="tested and level > 2"', 'guard="not tested"')
     assert codes == ["SM458", "SM456"]
     assert name_inputs(graph) == ["done_x", "done_y", "tested", "level"]
+
+
+@pytest.mark.parametrize(
+    ("left", "right"),
+    [
+        ("heat(x) > 3", "heat(x)<=3"),
+        ("heat(x) > 3", "!(3 < heat(x))"),
+        ("!(heat(x) > 3)", "(heat(x) > 3)"),
+        ("heat(x) == level", "level <> heat(x)"),
+    ],
+)
+def test_guards_without_formula_that_are_opposites_are_one_input(left, right):
+    graph, codes = derive_decision(f'guard="{left}"', f'guard="{right}"')
+    assert codes == ["SM458", "SM458"]
+    (variable,) = [variable for variable in graph.inputs if variable.condition]
+    assert variable.reason.startswith("calls such as 'heat(x)' are not ")
+    conditions = {edge.guard.condition for edge in graph.edges if edge.guard is not None}
+    assert conditions == {f.var(variable.name), f.negate(f.var(variable.name))}

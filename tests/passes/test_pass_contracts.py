@@ -161,20 +161,34 @@ def test_competing_transitions_of_one_name_are_told_apart():
 
 
 @pytest.mark.parametrize(
-    ("left", "right", "codes"),
+    ("left", "right", "codes", "inputs"),
     [
-        ("heat < 2.5", "heat >= 2.5", []),
-        ("hot(level) && level > 2", "!hot(level)", []),
-        ("heat < 2.5", "heat >= 3.5", ["SM422"]),
-        ("heat < 2.5", "heat < 2.5", ["SM422"]),
-        ("heat < 2.5", "", ["SM422"]),
+        ("heat(level) < 2.5", "!(heat(level) < 2.5)", [], ["heat_level_2_5"]),
+        ("heat(level)<2.5", "(heat(level)) >= 2.5", [], ["heat_level_2_5"]),
+        ("2.5 > heat(level)", "heat(level) >= 2.5", [], ["_2_5_heat_level"]),
+        ("hot(level) = true", "hot(level) <> true", [], ["hot_level"]),
+        ("hot(level) && level > 2", "!hot(level)", [], ["hot_level_and_level_2", "hot_level"]),
+        (
+            "heat(level) < 2.5",
+            "heat(level) >= 3.5",
+            ["SM422"],
+            ["heat_level_2_5", "heat_level_3_5"],
+        ),
+        ("heat(level) < 2.5", "2.5 > heat(level)", ["SM422"], ["heat_level_2_5"]),
+        ("heat(level) < 2.5", "", ["SM422"], ["heat_level_2_5"]),
+        ("bay is  free", "bay is free ", ["SM422"], ["bay_is_free"]),
     ],
 )
-def test_guards_that_a_contract_cannot_express_may_exclude_each_other(left, right, codes):
+def test_guards_without_formula_share_an_input_and_may_exclude_each_other(
+    left, right, codes, inputs
+):
     text = machine(arrow("a", "b", "start", left), arrow("a", "a", "start", right))
     _, (contract,), sink = derive_contracts(text)
     assert [code for code in list_codes(sink) if code == "SM422"] == codes
-    assert "taken_A" in [variable.name for variable in contract.variables]
+    names = [variable.name for variable in contract.variables if variable.condition]
+    assert names == inputs
+    is_exclusive = not codes and len(inputs) == 1
+    assert is_exclusive != ("taken_A" in [variable.name for variable in contract.variables])
 
 
 def test_a_guard_that_does_not_parse_is_an_input():

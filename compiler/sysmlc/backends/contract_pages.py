@@ -164,6 +164,8 @@ class _PageBuilder:
             domain += " (assumed)"
         if variable.condition:
             domain += f", stands for `{escape_code(variable.condition, in_table=True)}`"
+        if variable.reason:
+            domain += f", which has no formula: {escape_markdown(variable.reason)}"
         if variable.wording:
             domain += f"; `{escape_code(variable.name, in_table=True)}` in the other files"
         return Row(name, domain, *self._label_element(variable.origin))

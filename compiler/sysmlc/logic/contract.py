@@ -75,6 +75,8 @@ class Variable(Struct, frozen=True):
     """Whether the compiler assumes the range, because the model states none (SM410)."""
     condition: str = ""
     """The text of the condition without formula that the input stands for (SM411), if it does."""
+    reason: str = ""
+    """Why this condition has no formula."""
     wording: str = ""
     """The name in formulas of the author, such as ``running(pick)``, if it is another one."""
     term: Term = ()

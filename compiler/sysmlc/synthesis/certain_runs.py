@@ -151,10 +151,11 @@ def _iter_clamps(behaviour: ComponentBehaviour) -> Iterator[tuple[str, Formula]]
 
 
 def _iter_memories(contract: Contract, condition: str) -> Iterator[str]:
-    """Yield the Booleans that are defined as the value of a condition one step ago."""
+    """Yield the Booleans defined as the value of a condition, or its negation, one step ago."""
+    values = f.var(condition), f.negate(f.var(condition))
     for conjunct in contract.guarantees:
         match conjunct.formula:
-            case Apply(Op.IFF, (Var(memory, True), Var(name, False))) if name == condition:
+            case Apply(Op.IFF, (Var(memory, True), value)) if value in values:
                 yield memory
 
 

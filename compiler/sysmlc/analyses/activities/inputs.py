@@ -41,7 +41,7 @@ from sysmlc.logic.expressions.elaboration import (
 )
 from sysmlc.logic.expressions.features import Feature, check_assignable
 from sysmlc.logic.expressions.named_elements import describe_feature_elsewhere
-from sysmlc.logic.expressions.parsing import tree_of
+from sysmlc.logic.expressions.parsing import CanonicalCondition, tree_of
 from sysmlc.logic.formula import Formula, var, variables
 from sysmlc.logic.identifiers import Names, identifier, make_unique
 from sysmlc.logic.machines.actions import OUT_OF_DOMAIN
@@ -236,7 +236,7 @@ class Inputs:
         """The accept actions that wait for an event, by the name of the event."""
         self._scope = scope
         self._sink = sink
-        self._by_text: dict[str, str] = {}
+        self._by_condition: dict[str, str] = {}
 
     def declare_pulse(self, prefix: str, origin: Element) -> Formula:
         """Declare an event and return its formula: an input that holds in single steps."""
@@ -282,22 +282,28 @@ class Inputs:
     def _declare_unreadable(
         self, text: str, origin: Element, what: str, error: "UnreadableError"
     ) -> Formula:
-        key = text or origin.id
-        name = self._by_text.get(key)
-        if name is None:
-            name = self._declare(identifier(text, "condition"), BooleanDomain(), origin)
-            self.variables[name] = replace(self.variables[name], condition=text or what)
-            self._by_text[key] = name
-        subject = self.graph.subject(origin)
+        """Report a condition without formula and return the input for it, or its negation.
+
+        The spellings of a condition and of its opposite share an input.
+        """
+        condition = CanonicalCondition.read(text, origin.id)
+        name, is_negated = condition.find_input(self._by_condition)
+        if not name:
+            is_negated = condition.is_negated
+            name = self._declare(identifier(condition.text, "condition"), BooleanDomain(), origin)
+            self.variables[name] = replace(
+                self.variables[name], condition=condition.text or what, reason=str(error)
+            )
+            self._by_condition[condition.key] = name
         self._sink.report(
             rules.UNREADABLE,
-            subject,
+            self.graph.subject(origin),
             help=error.advice,
             condition=f"{what} '{text}'" if text else what,
             reason=str(error),
-            variable=name,
+            treatment=f"the {'negation of the ' * is_negated}input '{name}'",
         )
-        return f.var(name)
+        return f.negate(f.var(name)) if is_negated else f.var(name)
 
     def declare_decision_input(
         self, prefix: str, literals: Iterable[str], origin: Element

@@ -79,7 +79,7 @@ UNREADABLE = rule(
     "SM458",
     "guard-in-plain-words",
     Severity.WARNING,
-    "{condition} has no formula: {reason}; it becomes the input '{variable}'",
+    "{condition} has no formula: {reason}; it becomes {treatment}",
     help="write it as an expression over properties of the block, for example 'angle > 90'",
 )
 WEIGHT = rule(

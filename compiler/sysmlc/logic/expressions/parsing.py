@@ -1,7 +1,7 @@
 """Parser of expressions and effects: Lark runs ``grammars/expression.lark``."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -26,6 +26,7 @@ from sysmlc.ir.expressions import (
     Unary,
     is_nested_too_deeply,
     name_of,
+    print_expression,
 )
 from sysmlc.support import resources
 
@@ -257,6 +258,8 @@ def unquote(text: str) -> str:
 # -- guards that exclude each other -------------------------------------------------------------
 
 _COMPLEMENTS = {"<": ">=", ">=": "<", ">": "<=", "<=": ">", "==": "!=", "!=": "=="}
+_MIRRORED = {"<": ">", ">=": "<=", ">": "<", "<=": ">=", "==": "==", "!=": "!="}
+"""The operator after both operands of a comparison have changed places."""
 
 
 class GuardTerms(Struct, frozen=True):
@@ -300,3 +303,68 @@ def _negate(term: Expression) -> Expression:
     if isinstance(term, Unary) and term.op == "not":
         return term.operand
     return Unary("not", term)
+
+
+# -- conditions without formula ------------------------------------------------------------------
+
+
+class CanonicalCondition(Struct, frozen=True):
+    """A condition in its canonical form, by which its spellings share one input.
+
+    ``text`` is the printed expression without ``not`` around it, or the words of a text that is no
+    expression; ``is_negated`` if the condition is the negation of it. ``key`` is equal for a
+    comparison and its mirror image; ``complement`` is the key of the opposite comparison.
+    """
+
+    text: str
+    key: str
+    complement: str = ""
+    is_negated: bool = False
+
+    @staticmethod
+    def read(text: str, origin: str) -> "CanonicalCondition":
+        """Return the canonical form of any text; the key of an empty one is *origin*."""
+        try:
+            expression = tree_of(text)
+        except ExpressionError:
+            words = " ".join(text.split())
+            return CanonicalCondition(words, words or origin)
+        is_negated = False
+        while (operand := _find_operand(expression)) is not None:
+            expression, is_same = operand
+            is_negated ^= not is_same
+        key, complement = _orient(expression), _orient(_negate(expression))
+        return CanonicalCondition(print_expression(expression), key, complement, is_negated)
+
+    def find_input(self, inputs: Mapping[str, str]) -> tuple[str, bool]:
+        """Return the input of the condition, and whether the condition is the negation of it.
+
+        *inputs* are names by the keys of conditions; the name is empty if there is none.
+        """
+        if self.key in inputs:
+            return inputs[self.key], self.is_negated
+        return inputs.get(self.complement, ""), not self.is_negated
+
+
+def _find_operand(expression: Expression) -> tuple[Expression, bool] | None:
+    """Return the operand that a negation or a comparison with a truth value is about, or None.
+
+    The second value is whether operand and expression are equal; else they are opposites.
+    """
+    match expression:
+        case Unary("not", operand):
+            return operand, False
+        case Binary("==" | "!=" as op, operand, Literal(bool() as value)) | Binary(
+            "==" | "!=" as op, Literal(bool() as value), operand
+        ):
+            return operand, value is (op == "==")
+    return None
+
+
+def _orient(expression: Expression) -> str:
+    """Return the text of an expression; of a comparison and its mirror image, the lesser text."""
+    text = print_expression(expression)
+    if not isinstance(expression, Binary) or expression.op not in _MIRRORED:
+        return text
+    mirrored = Binary(_MIRRORED[expression.op], expression.right, expression.left)
+    return min(text, print_expression(mirrored))

@@ -114,6 +114,7 @@ def _read_variable(name: str, declaration: Value) -> Variable:
         is_auxiliary=declaration.get("auxiliary") is not None,
         is_range_assumed="assumed" in declaration.keys and isinstance(domain, IntegerDomain),
         condition=declaration.get_text("condition"),
+        reason=declaration.get_text("reason"),
         wording=declaration.get_text("wording"),
     )
 
@@ -224,6 +225,8 @@ def _encode_variable(variable: Variable) -> dict[str, object]:
         entry["assumed"] = True
     if variable.condition:
         entry["condition"] = variable.condition
+    if variable.reason:
+        entry["reason"] = variable.reason
     if variable.wording:
         entry["wording"] = variable.wording
     return entry

@@ -15,6 +15,7 @@ from sysmlc.ir.expressions import (
     Name,
     Send,
     Statement,
+    Unary,
     dotted_name,
     element_of,
     name_of,
@@ -38,7 +39,7 @@ from sysmlc.logic.expressions.elaboration import (
 )
 from sysmlc.logic.expressions.features import Feature, check_assignable
 from sysmlc.logic.expressions.named_elements import describe_feature_elsewhere
-from sysmlc.logic.expressions.parsing import statements_of, tree_of
+from sysmlc.logic.expressions.parsing import CanonicalCondition, statements_of, tree_of
 from sysmlc.logic.feature_writes import SHARED, Sharing, find_label, read_assignments
 from sysmlc.logic.identifiers import Names
 from sysmlc.logic.machines.instant_activities import find_instant_steps, find_target
@@ -50,7 +51,7 @@ NOT_UNDERSTOOD = rule(
     "SM411",
     "opaque-condition",
     Severity.WARNING,
-    "{condition} has no formula: {reason}; the contract treats it as the input '{variable}'",
+    "{condition} has no formula: {reason}; the contract treats it as {treatment}",
     help=FINITE_ADVICE,
 )
 _SYNTAX_ADVICE = "write an expression over features of the owner"
@@ -122,6 +123,8 @@ class ReadingContext:
     sharing: Sharing
     auxiliary: dict[str, Variable] = field(default_factory=dict)
     """Variables that are not properties, such as inputs and timers, by a unique key."""
+    conditions: dict[str, str] = field(default_factory=dict)
+    """The inputs for conditions without formula, by the keys of their canonical forms."""
     read_variables: dict[str, None] = field(default_factory=dict)
     reads: dict[str, dict[str, None]] = field(default_factory=dict)
     """The features that the values of each feature read; those that conditions read, by ""."""
@@ -153,15 +156,21 @@ class ReadingContext:
         """Return the name of the Boolean input with this key; create the input on first use."""
         return self.variable_for(key, name, Owner.ENVIRONMENT, BooleanDomain(), origin)
 
-    def condition_for(self, text: str, name: str, origin: str) -> str:
-        """Return the name of the input for a condition without formula; create it on first use.
+    def replace_condition(self, text: str, what: str, origin: str, reason: str) -> Expression:
+        """Return the input for a condition without formula, or its negation; create a new input.
 
-        Conditions of equal text share an input; one without text has its own.
+        The spellings of a condition and of its opposite share an input; a condition without text
+        has its own. *reason* is why it has no formula.
         """
-        key = f"condition {text or origin}"
-        variable = self.input_for(key, name, origin)
-        self.auxiliary[key] = replace(self.auxiliary[key], condition=text or name)
-        return variable
+        condition = CanonicalCondition.read(text, origin)
+        name, is_negated = condition.find_input(self.conditions)
+        if not name:
+            key, is_negated = f"condition {condition.key}", condition.is_negated
+            shown_text = condition.text or what
+            name = self.conditions[condition.key] = self.input_for(key, shown_text, origin)
+            variable = self.auxiliary[key]
+            self.auxiliary[key] = replace(variable, condition=shown_text, reason=reason)
+        return Unary("not", Name((name,))) if is_negated else Name((name,))
 
     def output_for(self, key: str, name: str, origin: str) -> str:
         """Return the name of the Boolean output with this key; create the output on first use."""
@@ -199,17 +208,26 @@ def read_condition(reading: ReadingContext, text: str, what: str, element: Eleme
 
 
 def _replace_empty(reading: ReadingContext, what: str, element: Element) -> Expression:
-    """Report a condition without text and return the name of the Boolean input for it."""
-    variable = reading.condition_for("", what, element.id)
+    """Report a condition without text and return the Boolean input for it."""
+    reason = "it has no text that can be read"
+    replacement = reading.replace_condition("", what, element.id, reason)
     reading.sink.report(
         NOT_UNDERSTOOD,
         reading.graph.subject(element),
         help=EMPTY_ADVICE,
         condition=what,
-        reason="it has no text that can be read",
-        variable=variable,
+        reason=reason,
+        treatment=describe_input(replacement),
     )
-    return Name((variable,))
+    return replacement
+
+
+def describe_input(replacement: Expression) -> str:
+    """Return in words what replaces a condition: an input, or the negation of one."""
+    match replacement:
+        case Unary("not", operand):
+            return f"the negation of {describe_input(operand)}"
+    return f"the input '{print_expression(replacement)}'"
 
 
 def _classify_fault(
@@ -263,14 +281,14 @@ def _replace_by_input(
     error: ExpressionError | ElaborationError,
     *read: Expression,
 ) -> Expression:
-    """Report an invalid condition and return the name of the Boolean input that replaces it."""
-    variable = reading.condition_for(text, text or what, element.id)
+    """Report an invalid condition and return what replaces it: an input or its negation."""
     rule, reason, name, advice = NOT_UNDERSTOOD, str(error), "", _SYNTAX_ADVICE
     if isinstance(error, ElaborationError):
         rule, reason = _classify_fault(reading, error, element, text, *read)
         name = error.name
         is_elsewhere = rule is NOT_UNDERSTOOD and error.fault is Fault.UNKNOWN
         advice = ELSEWHERE_ADVICE if is_elsewhere else ""
+    replacement = reading.replace_condition(text, what, element.id, reason)
     reading.sink.report(
         rule,
         reading.graph.subject(element),
@@ -279,11 +297,11 @@ def _replace_by_input(
         text=text,
         condition=f"{what} '{text}'",
         reason=reason,
-        variable=variable,
+        treatment=describe_input(replacement),
         name=name,
         context=reading.context.name or "the context",
     )
-    return Name((variable,))
+    return replacement
 
 
 # -- effects -----------------------------------------------------------------------------------
