@@ -6,6 +6,7 @@ from sysmlc.diagnostics import Sink
 from sysmlc.ir.expressions import (
     EffectText,
     ExpressionText,
+    Literal,
     Member,
     Name,
     ParsedText,
@@ -197,3 +198,17 @@ def test_a_qualified_name_of_an_own_feature_is_read_like_its_name(text, names):
     guard = graph["t.t"].attrs["guard"]
     assert list_names(guard) == names
     assert str(guard) == text
+
+
+@pytest.mark.parametrize(
+    ("elements", "tree"),
+    [
+        ("", Literal(True)),
+        ('Property c.y "True"', Name(("True",), "c.y")),
+        ('Enumeration e "E"\n    EnumerationLiteral e.t "True"', Name(("True",), "e.t")),
+    ],
+)
+def test_the_truth_values_of_python_give_way_to_elements_of_their_name(elements, tree):
+    graph = parse_text(f'Class c "C"\n  {elements}\n  Constraint c.k body="True"\n')
+    pipeline.load("expressions").run(graph, Sink())
+    assert graph["c.k"].attrs["body"].tree == tree

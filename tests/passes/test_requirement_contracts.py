@@ -123,6 +123,14 @@ def test_a_constraint_in_another_language_is_reported():
     ]
 
 
+@pytest.mark.parametrize("language", ["C", "Java", "Python", "Modelica", "English"])
+def test_a_plain_condition_is_read_in_any_language(language):
+    body = f'language="{language}" body="!(level == size && filling)"'
+    (contract,), sink = derive(build_tank(body))
+    assert list_messages(sink, "SM523") == []
+    assert "!(level=9 & filling)" in print_conjuncts(contract.guarantees)[-1]
+
+
 def test_a_condition_about_a_feature_with_several_values_is_reported():
     model = build_tank('body="level < 9"').replace(
         'Property level "level"', 'Property level "level" multiplicity="3"'

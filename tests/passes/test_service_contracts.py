@@ -200,6 +200,22 @@ def test_conditions_in_another_language_are_one_finding_for_each_language():
     ]
 
 
+@pytest.mark.parametrize("language", ["", "C++", "Java", "Python", "OCL 2.0", "English"])
+@pytest.mark.parametrize(
+    ("body", "formula"),
+    [
+        ("amount > 0 && !open", "amount'>0 & !open"),
+        ("not (open and amount <> 0)", "!(open & amount'!=0)"),
+    ],
+)
+def test_a_plain_condition_is_read_in_any_language(language, body, formula):
+    text = build_tank(("precondition", "", body))
+    text = text.replace(f'body="{body}"', f'body="{body}" language="{language}"')
+    assert list_informal(text) == []
+    assumptions = print_conjuncts(derive(text)["Plant::Tank.fill"].assumptions)
+    assert f"safety: call' -> {formula}" in assumptions
+
+
 def test_a_condition_that_several_services_inherit_is_one_finding():
     text = SPECIALIZED_ACTION.format(kind="Activity").replace('body="x"', 'body="y"')
     assert list_informal(text) == [

@@ -3,6 +3,8 @@
 import pytest
 from pass_runs import derive_contracts
 
+from sysmlc.logic.printing import print_formula
+
 TEXTS_OF_A_TRANSITION = """\
 Package p "Plant"
   Class c "Gate"
@@ -87,6 +89,72 @@ def test_a_word_without_a_language_is_a_condition_in_words():
         "SM411: guard 'ready' has no formula: the word 'ready' is no feature of 'Gate'; "
         "the contract treats it as the input 'ready'"
     )
+
+
+LANGUAGES = ["", "C", "C++", "Java", "JavaScript", "Python", "OCL", "Modelica", "English"]
+
+
+def read_guard(guard, language=""):
+    """Return the formula of a guard as the contract has it."""
+    model = TEXTS_OF_A_TRANSITION.replace("  DataType bool", MODES + "  DataType bool")
+    model = model.replace('    Property word "word"', FEATURES + '    Property word "word"')
+    assert list_text_findings(guard=guard, language=language, model=model) == []
+    attributes = f'guard="{guard}" guard_language="{language}"'
+    text = model.replace("{guard}", attributes).replace("{effect}", "count := 1")
+    _, (contract,), _ = derive_contracts(text)
+    step = next(c for c in contract.guarantees if c.origin == "t1")
+    condition, _, _ = print_formula(step.formula).partition(" -> ")
+    return condition.removeprefix("state=A & ").removeprefix("event=fill & ")
+
+
+FEATURES = """\
+    Property ready "ready"
+      -> typed-by bool
+    Property mode "mode"
+      -> typed-by modes
+"""
+MODES = """\
+  Enumeration modes "Modes"
+    EnumerationLiteral auto "auto"
+    EnumerationLiteral off "off"
+"""
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+@pytest.mark.parametrize(
+    ("guard", "formula"),
+    [
+        ("count < 8 && !ready", "count<8 & !ready"),
+        ("count <> 3 and not ready", "count!=3 & !ready"),
+        ("not ready or count = 3", "(!ready | count=3)"),
+        ("!(count >= 3) || mode == Modes::auto", "(count<3 | mode=auto)"),
+        ("ready == True", "ready"),
+        ("ready && !False", "ready"),
+        ("not (mode = auto) AND ready", "mode!=auto & ready"),
+    ],
+)
+def test_a_plain_condition_is_read_in_any_language(guard, formula, language):
+    assert read_guard(guard, language) == formula
+
+
+@pytest.mark.parametrize("guard", ["not count < 3", "not count + 0 < 3", "!count < 3"])
+def test_in_python_not_is_about_a_whole_comparison(guard):
+    assert read_guard(guard, "Python").startswith("count")
+
+
+@pytest.mark.parametrize("language", ["", "C", "OCL"])
+@pytest.mark.parametrize(
+    ("guard", "advice"),
+    [
+        ("not count < 3", "'count' is a number, not a condition; write 'not (count < 3)'"),
+        ("!count == 3 && f(1)", "'count' is a number, not a condition; write 'not (count == 3) "),
+        ("not f(1) > 3", "calls such as 'f(1)' are not evaluated; write 'not (f(1) > 3)'"),
+    ],
+)
+def test_not_before_a_comparison_needs_parentheses(guard, advice, language):
+    (finding,) = list_text_findings(guard=guard, language=language)
+    assert advice in finding
+    assert "if 'not' is about the comparison" in finding
 
 
 @pytest.mark.parametrize(("guard", "language"), [("cuont", ""), ("redy > 3", ""), ("ready", "OCL")])

@@ -14,8 +14,12 @@ from msgspec import Struct
 
 from sysmlc.diagnostics import Sink
 from sysmlc.ir import Element, Graph, Kind
-from sysmlc.ir.expressions import ParsedText
-from sysmlc.logic.expressions.parsing import attach_statements, attach_tree
+from sysmlc.ir.expressions import ExpressionText, ParsedText
+from sysmlc.logic.expressions.parsing import (
+    attach_statements,
+    attach_tree,
+    regroup_negations,
+)
 from sysmlc.logic.expressions.resolution import NameResolver
 
 _CONDITIONS = ("guard", "condition")
@@ -42,6 +46,8 @@ class Expressions(Struct, frozen=True):
             for key, text in element.attrs.items():
                 if isinstance(text, ParsedText):
                     tree = resolver.resolve(element, text.tree)
+                    if isinstance(text, ExpressionText) and _is_python(element, key):
+                        tree = regroup_negations(tree)
                     graph.set(element, **{key: type(text)(text, tree)})
 
 
@@ -53,6 +59,12 @@ def _list_expressions(element: Element) -> Iterator[str]:
         yield "value"
     elif element.kind is Kind.CONSTRAINT:
         yield "body"
+
+
+def _is_python(element: Element, key: str) -> bool:
+    """Whether the text of an attribute is written in Python."""
+    language = element.attrs.get("language" if key == "body" else f"{key}_language", "")
+    return "python" in str(language).lower()
 
 
 def _attach(graph: Graph, element: Element, key: str, attach: Callable[[str], str]) -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from msgspec import Struct
 
 from sysmlc.ir.expressions import (
+    PRECEDENCE,
     Assignment,
     Binary,
     Call,
@@ -303,6 +304,45 @@ def _negate(term: Expression) -> Expression:
     if isinstance(term, Unary) and term.op == "not":
         return term.operand
     return Unary("not", term)
+
+
+# -- negations before comparisons ----------------------------------------------------------------
+
+
+def regroup_negations(expression: Expression) -> Expression:
+    """Return the expression with each ``not`` before a comparison applied to all of it.
+
+    In Python ``not a < b`` is ``not (a < b)``; in C, OCL and KerML it is ``(not a) < b``.
+    """
+    match expression:
+        case Unary(op, operand):
+            return Unary(op, regroup_negations(operand))
+        case Binary(op, left, right) if op in _COMPLEMENTS:
+            stripped = _strip_negation(left)
+            if stripped is not None:
+                return Unary("not", regroup_negations(Binary(op, stripped, right)))
+        case Binary(op, left, right):
+            return Binary(op, regroup_negations(left), regroup_negations(right))
+    return expression
+
+
+def _strip_negation(operand: Expression) -> Expression | None:
+    """Return the left operand of a comparison without the ``not`` at its start; None without it."""
+    match operand:
+        case Unary("not", negated):
+            return negated
+        case Binary(op, left, right) if PRECEDENCE[op] > PRECEDENCE["and"]:
+            stripped = _strip_negation(left)
+            return None if stripped is None else Binary(op, stripped, right)
+    return None
+
+
+def suggest_parentheses(expression: Expression) -> str:
+    """Return advice if a ``not`` stands before a comparison, else nothing."""
+    regrouped = regroup_negations(expression)
+    if regrouped == expression:
+        return ""
+    return f"; write '{print_expression(regrouped)}' if 'not' is about the comparison"
 
 
 # -- conditions without formula ------------------------------------------------------------------

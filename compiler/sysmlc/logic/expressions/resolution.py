@@ -3,10 +3,10 @@
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from functools import cached_property
-from typing import TypeVar
+from typing import TypeVar, cast
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.ir.expressions import Expression, Member, Name, Statement
+from sysmlc.ir.expressions import Expression, Literal, Member, Name, Statement
 from sysmlc.logic.expressions.named_elements import VALUE_KINDS, find_named_values
 
 _Node = TypeVar("_Node")
@@ -19,6 +19,9 @@ _MEMBERS = (*_LATER, Kind.PIN, Kind.ENUMERATION_LITERAL, *_FIRST)
 """Kinds of the members of a scope, of which later ones hide earlier ones."""
 _QUALIFIED = (Kind.ENUMERATION_LITERAL, Kind.PROPERTY, Kind.PORT, Kind.OPERATION, Kind.INSTANCE)
 """Kinds of the elements that an incomplete qualified name may denote."""
+
+_TRUTH_VALUES = {("True",): True, ("False",): False}
+"""Names that are truth values, as in Python, unless an element has the name."""
 
 
 class NameResolver:
@@ -36,6 +39,8 @@ class NameResolver:
         match node:
             case Name(path, ""):
                 element = self._find_name(user, path)
+                if element is None and path in _TRUTH_VALUES and path[0] not in self._by_name:
+                    return cast("_Node", Literal(_TRUTH_VALUES[path]))
                 if self._is_own_feature(user, path, element):
                     path = path[-1:]
                 return type(node)(path, _id(element))

@@ -39,7 +39,12 @@ from sysmlc.logic.expressions.elaboration import (
 )
 from sysmlc.logic.expressions.features import Feature, check_assignable
 from sysmlc.logic.expressions.named_elements import describe_feature_elsewhere
-from sysmlc.logic.expressions.parsing import CanonicalCondition, statements_of, tree_of
+from sysmlc.logic.expressions.parsing import (
+    CanonicalCondition,
+    statements_of,
+    suggest_parentheses,
+    tree_of,
+)
 from sysmlc.logic.feature_writes import SHARED, Sharing, find_label, read_assignments
 from sysmlc.logic.identifiers import Names
 from sysmlc.logic.machines.instant_activities import find_instant_steps, find_target
@@ -246,6 +251,8 @@ def _classify_fault(
         features = reading.context.features
         if any(features[name].is_assumed for name in names if name and name in features):
             return NOT_UNDERSTOOD, f"{reason}, a range that is assumed"
+    if error.fault in (Fault.TYPE, Fault.UNSUPPORTED):
+        reason += "".join(map(suggest_parentheses, read))
     return RULE_OF_FAULT[error.fault], reason
 
 

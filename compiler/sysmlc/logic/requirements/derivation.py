@@ -240,11 +240,14 @@ def _read_statement(
             informal.add(statement, obstacle)
     elif (sentence := _read_sentence(scope, statement)) is not None:
         reading = sentence
-    elif language in _EXPRESSION_LANGUAGES:
-        formula = _read_condition(scope, statement, informal)
-        reading = None if formula is None else Reading(formula)
     else:
-        informal.add(statement, _describe_language(scope, statement))
+        formula, reason = _read_condition(scope, statement)
+        if formula is not None:
+            reading = Reading(formula)
+        elif language in _EXPRESSION_LANGUAGES:
+            informal.add(statement, reason)
+        else:
+            informal.add(statement, _describe_language(scope, statement))
     if reading is not None:
         _report_ranges(graph, scope, reading.formula, sink)
     return reading
@@ -325,15 +328,13 @@ def _read_names(
         raise FormulaError(f"{error}; {advice}", error.offset) from None
 
 
-def _read_condition(
-    scope: Scope, statement: Statement, informal: _InformalStatements
-) -> Formula | None:
+def _read_condition(scope: Scope, statement: Statement) -> tuple[Formula | None, str]:
+    """Return the formula of a condition in any language; without one, the reason for that."""
     try:
         expression = tree_of(str(statement.constraint.attrs["body"]))
-        return elaborate_condition(expression, scope.find_symbol)
+        return elaborate_condition(expression, scope.find_symbol), ""
     except (ExpressionError, ElaborationError, ComponentError) as error:
-        informal.add(statement, _explain(scope, error))
-        return None
+        return None, _explain(scope, error)
 
 
 def _explain(scope: Scope, error: Exception) -> str:

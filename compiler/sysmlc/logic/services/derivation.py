@@ -176,13 +176,13 @@ def _read_condition(
     service: Element, context: Context, constraint: Element, informal: "_InformalConditions"
 ) -> Condition | None:
     kind = constraint.subkind or "constraint"
-    if not _has_known_language(constraint):
-        informal.add_language(service, constraint)
-        return None
     try:
         formula = _read_formula(context, constraint)
     except (ExpressionError, ElaborationError) as error:
-        informal.add(service, constraint, _explain(context, error))
+        if _has_known_language(constraint):
+            informal.add(service, constraint, _explain(context, error))
+        else:
+            informal.add_language(service, constraint)
         return None
     if formula == f.TRUE:
         return None
@@ -243,7 +243,7 @@ def is_input(feature: Feature) -> bool:
 
 
 def _has_known_language(constraint: Element) -> bool:
-    """Whether the language of the constraint may be that of expressions."""
+    """Whether the language of the constraint is one of expressions, or not stated."""
     language = str(constraint.attrs.get("language", "")).lower()
     return language.rstrip("0123456789. ") in _LANGUAGES
 
