@@ -191,6 +191,20 @@ def test_guards_without_formula_share_an_input_and_may_exclude_each_other(
     assert is_exclusive != ("taken_A" in [variable.name for variable in contract.variables])
 
 
+def test_a_condition_without_formula_may_have_another_value_after_a_choice():
+    text = machine(
+        choice(),
+        arrow("a", "x", "start", "hot(level)", "level := 3"),
+        arrow("x", "b", guard="!hot(level)"),
+        arrow("x", "a", guard="hot(level)"),
+    )
+    _, (contract,), _ = derive_contracts(text)
+    assert print_formulas(contract, Class.SAFETY)[:2] == [
+        "state=A & event=start & hot_level & !hot_level_2 -> state'=B & level'=3",
+        "state=A & event=start & hot_level & hot_level_2 -> state'=A & level'=3",
+    ]
+
+
 def test_a_guard_that_does_not_parse_is_an_input():
     _, (contract,), sink = derive_contracts(machine(arrow("a", "b", "start", "bay is free")))
     assert list_codes(sink) == ["SM411"]

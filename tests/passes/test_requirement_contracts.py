@@ -131,6 +131,11 @@ def test_a_plain_condition_is_read_in_any_language(language):
     assert "!(level=9 & filling)" in print_conjuncts(contract.guarantees)[-1]
 
 
+def test_not_before_a_comparison_needs_parentheses():
+    (message,) = list_messages(derive(build_tank('body="!level == 3"'))[1], "SM523")
+    assert message.endswith("; write 'not (level == 3)' if 'not' is about the comparison")
+
+
 def test_a_condition_about_a_feature_with_several_values_is_reported():
     model = build_tank('body="level < 9"').replace(
         'Property level "level"', 'Property level "level" multiplicity="3"'

@@ -216,6 +216,13 @@ def test_a_plain_condition_is_read_in_any_language(language, body, formula):
     assert f"safety: call' -> {formula}" in assumptions
 
 
+def test_not_before_a_comparison_needs_parentheses():
+    assert list_informal(build_tank(("precondition", "", "not amount < 3"))) == [
+        "the precondition 'not amount < 3' of 'fill' is in no contract: 'amount' is a number, not a "
+        "condition; write 'not (amount < 3)' if 'not' is about the comparison"
+    ]
+
+
 def test_a_condition_that_several_services_inherit_is_one_finding():
     text = SPECIALIZED_ACTION.format(kind="Activity").replace('body="x"', 'body="y"')
     assert list_informal(text) == [

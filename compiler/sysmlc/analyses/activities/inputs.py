@@ -43,7 +43,7 @@ from sysmlc.logic.expressions.features import Feature, check_assignable
 from sysmlc.logic.expressions.named_elements import describe_feature_elsewhere
 from sysmlc.logic.expressions.parsing import (
     CanonicalCondition,
-    suggest_parentheses,
+    explain_fault,
     tree_of,
 )
 from sysmlc.logic.formula import Formula, var, variables
@@ -173,9 +173,7 @@ class Scope:
                 raise UnreadableError(message, error.name, advice) from None
             advice = FINITE_ADVICE if error.fault is Fault.UNSUPPORTED else ""
             is_outside = error.fault is Fault.OUTSIDE and not self._reads_assumed(expression)
-            reason = str(error)
-            if error.fault in (Fault.TYPE, Fault.UNSUPPORTED):
-                reason += suggest_parentheses(expression)
+            reason = explain_fault(error, expression)
             raise UnreadableError(reason, advice=advice, is_outside=is_outside) from None
         return formula, [
             v for v in map(self._make_input, _variable_names(formula)) if v is not None

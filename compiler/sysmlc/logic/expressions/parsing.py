@@ -29,6 +29,7 @@ from sysmlc.ir.expressions import (
     name_of,
     print_expression,
 )
+from sysmlc.logic.expressions.elaboration import ElaborationError, Fault
 from sysmlc.support import resources
 
 if TYPE_CHECKING:
@@ -337,12 +338,15 @@ def _strip_negation(operand: Expression) -> Expression | None:
     return None
 
 
-def suggest_parentheses(expression: Expression) -> str:
-    """Return advice if a ``not`` stands before a comparison, else nothing."""
-    regrouped = regroup_negations(expression)
-    if regrouped == expression:
-        return ""
-    return f"; write '{print_expression(regrouped)}' if 'not' is about the comparison"
+def explain_fault(error: ElaborationError, *expressions: Expression) -> str:
+    """Return why expressions have no formula, with advice on a ``not`` before a comparison."""
+    if error.fault in (Fault.TYPE, Fault.UNSUPPORTED):
+        for expression in expressions:
+            regrouped = regroup_negations(expression)
+            if regrouped != expression:
+                text = print_expression(regrouped)
+                return f"{error}; write '{text}' if 'not' is about the comparison"
+    return str(error)
 
 
 # -- conditions without formula ------------------------------------------------------------------

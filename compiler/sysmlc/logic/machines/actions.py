@@ -41,8 +41,8 @@ from sysmlc.logic.expressions.features import Feature, check_assignable
 from sysmlc.logic.expressions.named_elements import describe_feature_elsewhere
 from sysmlc.logic.expressions.parsing import (
     CanonicalCondition,
+    explain_fault,
     statements_of,
-    suggest_parentheses,
     tree_of,
 )
 from sysmlc.logic.feature_writes import SHARED, Sharing, find_label, read_assignments
@@ -128,8 +128,8 @@ class ReadingContext:
     sharing: Sharing
     auxiliary: dict[str, Variable] = field(default_factory=dict)
     """Variables that are not properties, such as inputs and timers, by a unique key."""
-    conditions: dict[str, str] = field(default_factory=dict)
-    """The inputs for conditions without formula, by the keys of their canonical forms."""
+    conditions: dict[str, dict[str, str]] = field(default_factory=dict)
+    """The inputs for conditions without formula, by keys of canonical forms, for each choice."""
     read_variables: dict[str, None] = field(default_factory=dict)
     reads: dict[str, dict[str, None]] = field(default_factory=dict)
     """The features that the values of each feature read; those that conditions read, by ""."""
@@ -161,18 +161,22 @@ class ReadingContext:
         """Return the name of the Boolean input with this key; create the input on first use."""
         return self.variable_for(key, name, Owner.ENVIRONMENT, BooleanDomain(), origin)
 
-    def replace_condition(self, text: str, what: str, origin: str, reason: str) -> Expression:
+    def replace_condition(self, text: str, what: str, element: Element, reason: str) -> Expression:
         """Return the input for a condition without formula, or its negation; create a new input.
 
         The spellings of a condition and of its opposite share an input; a condition without text
         has its own. *reason* is why it has no formula.
         """
-        condition = CanonicalCondition.read(text, origin)
-        name, is_negated = condition.find_input(self.conditions)
+        source = self.graph.target(element, Edge.FLOW_SOURCE)
+        # The effects before a choice may change what a condition reads.
+        choice = source.id if source is not None and source.subkind == "choice" else ""
+        inputs = self.conditions.setdefault(choice, {})
+        condition = CanonicalCondition.read(text, element.id)
+        name, is_negated = condition.find_input(inputs)
         if not name:
-            key, is_negated = f"condition {condition.key}", condition.is_negated
+            key, is_negated = f"condition {choice} {condition.key}", condition.is_negated
             shown_text = condition.text or what
-            name = self.conditions[condition.key] = self.input_for(key, shown_text, origin)
+            name = inputs[condition.key] = self.input_for(key, shown_text, element.id)
             variable = self.auxiliary[key]
             self.auxiliary[key] = replace(variable, condition=shown_text, reason=reason)
         return Unary("not", Name((name,))) if is_negated else Name((name,))
@@ -215,7 +219,7 @@ def read_condition(reading: ReadingContext, text: str, what: str, element: Eleme
 def _replace_empty(reading: ReadingContext, what: str, element: Element) -> Expression:
     """Report a condition without text and return the Boolean input for it."""
     reason = "it has no text that can be read"
-    replacement = reading.replace_condition("", what, element.id, reason)
+    replacement = reading.replace_condition("", what, element, reason)
     reading.sink.report(
         NOT_UNDERSTOOD,
         reading.graph.subject(element),
@@ -242,7 +246,7 @@ def _classify_fault(
 
     A text that only a contract cannot express is no error. *read* are the expressions at fault.
     """
-    reason = str(error)
+    reason = explain_fault(error, *read)
     if error.fault is Fault.UNKNOWN:
         reason = _explain_name(reading, element, text, error.name, error.element)
         return (NOT_UNDERSTOOD, reason) if reason else (UNKNOWN_NAME, str(error))
@@ -251,8 +255,6 @@ def _classify_fault(
         features = reading.context.features
         if any(features[name].is_assumed for name in names if name and name in features):
             return NOT_UNDERSTOOD, f"{reason}, a range that is assumed"
-    if error.fault in (Fault.TYPE, Fault.UNSUPPORTED):
-        reason += "".join(map(suggest_parentheses, read))
     return RULE_OF_FAULT[error.fault], reason
 
 
@@ -295,7 +297,7 @@ def _replace_by_input(
         name = error.name
         is_elsewhere = rule is NOT_UNDERSTOOD and error.fault is Fault.UNKNOWN
         advice = ELSEWHERE_ADVICE if is_elsewhere else ""
-    replacement = reading.replace_condition(text, what, element.id, reason)
+    replacement = reading.replace_condition(text, what, element, reason)
     reading.sink.report(
         rule,
         reading.graph.subject(element),

@@ -22,7 +22,7 @@ from sysmlc.logic.components.objects import ComponentError
 from sysmlc.logic.contract import Class, Conjunct, Contract, Domain, Source, name_variables
 from sysmlc.logic.expressions.context import report_range
 from sysmlc.logic.expressions.elaboration import ElaborationError, Fault, elaborate_condition
-from sysmlc.logic.expressions.parsing import tree_of
+from sysmlc.logic.expressions.parsing import explain_fault, tree_of
 from sysmlc.logic.feature_writes import WriterIndex
 from sysmlc.logic.formal_texts import describe_error, has_pattern_word, read_formal
 from sysmlc.logic.formula import Formula
@@ -332,16 +332,18 @@ def _read_condition(scope: Scope, statement: Statement) -> tuple[Formula | None,
     """Return the formula of a condition in any language; without one, the reason for that."""
     try:
         expression = tree_of(str(statement.constraint.attrs["body"]))
+    except ExpressionError as error:
+        return None, str(error)
+    try:
         return elaborate_condition(expression, scope.find_symbol), ""
-    except (ExpressionError, ElaborationError, ComponentError) as error:
-        return None, _explain(scope, error)
-
-
-def _explain(scope: Scope, error: Exception) -> str:
-    if isinstance(error, ElaborationError) and error.fault is Fault.UNKNOWN:
+    except ComponentError as error:
+        return None, str(error)
+    except ElaborationError as error:
+        if error.fault is not Fault.UNKNOWN:
+            return None, explain_fault(error, expression)
         context = scope.context.name
-        return f"'{error.name}' is not a feature of '{context}' itself, or has no finite type"
-    return str(error)
+        reason = f"'{error.name}' is not a feature of '{context}' itself, or has no finite type"
+        return None, reason
 
 
 def _report_ranges(graph: Graph, scope: Scope, formula: Formula, sink: Sink) -> None:

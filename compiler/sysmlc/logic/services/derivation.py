@@ -35,7 +35,7 @@ from sysmlc.logic.expressions.elaboration import (
     elaborate_condition,
 )
 from sysmlc.logic.expressions.features import Feature
-from sysmlc.logic.expressions.parsing import tree_of
+from sysmlc.logic.expressions.parsing import explain_fault, tree_of
 from sysmlc.logic.formal_texts import is_formal_constraint
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.identifiers import Names
@@ -180,7 +180,7 @@ def _read_condition(
         formula = _read_formula(context, constraint)
     except (ExpressionError, ElaborationError) as error:
         if _has_known_language(constraint):
-            informal.add(service, constraint, _explain(context, error))
+            informal.add(service, constraint, _explain(context, error, constraint))
         else:
             informal.add_language(service, constraint)
         return None
@@ -289,12 +289,16 @@ class _InformalConditions:
             )
 
 
-def _explain(context: Context, error: Exception) -> str:
-    if isinstance(error, ElaborationError) and error.fault is Fault.UNKNOWN:
+def _explain(
+    context: Context, error: ExpressionError | ElaborationError, constraint: Element
+) -> str:
+    if isinstance(error, ExpressionError):
+        return str(error)
+    if error.fault is Fault.UNKNOWN:
         if error.name == "null":
             return "'null' (no value) is no value of a Boolean, an enumeration or an Integer"
         return f"'{error.name}' is not a parameter or feature with finitely many values"
-    return str(error)
+    return explain_fault(error, tree_of(str(constraint.attrs["body"])))
 
 
 # -- derivation ------------------------------------------------------------------------------------
