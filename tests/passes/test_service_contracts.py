@@ -218,8 +218,8 @@ def test_a_plain_condition_is_read_in_any_language(language, body, formula):
 
 def test_not_before_a_comparison_needs_parentheses():
     assert list_informal(build_tank(("precondition", "", "not amount < 3"))) == [
-        "the precondition 'not amount < 3' of 'fill' is in no contract: 'amount' is a number, not a "
-        "condition; write 'not (amount < 3)' if 'not' is about the comparison"
+        "the precondition 'not amount < 3' of 'fill' is in no contract: 'amount' is a number, not "
+        "a condition; write 'not (amount < 3)' if 'not' is about the comparison"
     ]
 
 
