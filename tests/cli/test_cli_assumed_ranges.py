@@ -421,15 +421,16 @@ def test_the_verdict_about_parts_names_assumed_ranges(workspace, all_passes):
 def test_a_run_that_breaks_a_formula_at_once_needs_no_condition(check):
     block = """
 in attribute load : Real; attribute on : Boolean := false;
+calc def light { in x : Real; return : Boolean; }
 exhibit state M {
     entry; then A; state A; state B;
-    transition first A accept Go if load < 1.5 do assign on := true then B;
+    transition first A accept Go if light(load) do assign on := true then B;
 }"""
     formulas = "G (event!=Go)", "G (event=Go -> on)", "G (event=Go -> X on)"
     assert check(block, *formulas) == [
         "R0: broken: G (event!=Go)",
         "R1: broken: G (event=Go -> on)",
-        "R2: not decided: it depends on 'load < 1.5': G (event=Go -> on')",
+        "R2: not decided: it depends on 'light(load)': G (event=Go -> on')",
     ]
 
 

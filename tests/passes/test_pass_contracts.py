@@ -205,6 +205,25 @@ def test_a_condition_without_formula_may_have_another_value_after_a_choice():
     ]
 
 
+def change(source, target, condition):
+    """Return a transition that a change triggers."""
+    trigger = f'  Trigger {source}-c subkind="change" condition="{condition}"\n'
+    return f"{arrow(source, target)}  -> trigger {source}-c\n{trigger}"
+
+
+def test_changes_to_opposite_conditions_without_formula_read_one_input():
+    text = machine(change("a", "b", "heat(level)>3"), change("b", "a", "!(heat(level) > (3))"))
+    _, (contract,), sink = derive_contracts(text)
+    assert [diagnostic.message.rpartition(" as ")[2] for diagnostic in sink] == [
+        "the input 'heat_level_3'",
+        "the negation of the input 'heat_level_3'",
+    ]
+    assert print_formulas(contract, Class.SAFETY)[-2:] == [
+        "was_heat_level_3' <-> heat_level_3",
+        "was_not_heat_level_3' <-> !heat_level_3",
+    ]
+
+
 def test_a_guard_that_does_not_parse_is_an_input():
     _, (contract,), sink = derive_contracts(machine(arrow("a", "b", "start", "bay is free")))
     assert list_codes(sink) == ["SM411"]

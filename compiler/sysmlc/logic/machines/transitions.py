@@ -11,7 +11,7 @@ from msgspec.structs import replace
 
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Edge, Element, Graph, Kind, query
-from sysmlc.ir.expressions import Binary, Expression, Unary, print_expression
+from sysmlc.ir.expressions import Binary, Expression, Name, Unary, print_expression
 from sysmlc.ir.expressions import Literal as Written
 from sysmlc.ir.query import port_names
 from sysmlc.logic.contract import (
@@ -111,8 +111,11 @@ def _read_event(draft: MachineDraft, key: str, name: str) -> str:
 def _read_change(draft: MachineDraft, trigger: Element) -> Occurrence:
     text = str(trigger.attrs.get("condition", "")).strip() or trigger.name
     condition = read_condition(draft.reading, text, "change condition", trigger)
-    key = f"memory {print_expression(condition)}"
-    memory = draft.reading.memory_for(key, f"was_{text}", BooleanDomain(), trigger.id)
+    printed = print_expression(condition)
+    # An input that replaces the condition, or its negation, has another name than the text.
+    name = printed if isinstance(condition, Name | Unary) else text
+    key = f"memory {printed}"
+    memory = draft.reading.memory_for(key, f"was_{name}", BooleanDomain(), trigger.id)
     draft.memories[memory] = condition
     return OnRise(memory, condition)
 
