@@ -12,6 +12,8 @@ from math import ceil, floor
 
 from msgspec import Struct
 
+from sysmlc.support.units import express, show_symbol
+
 
 class Cut(Struct, frozen=True, order=True):
     """A place on the line of numbers: directly below a number, or directly above it."""
@@ -136,6 +138,11 @@ def print_number(number: Fraction) -> str:
     return f"{sign}{text[:-digits]}.{text[-digits:]}" if digits else f"{sign}{text}"
 
 
+def print_quantity(number: Fraction, symbol: str) -> str:
+    """Return a number of the base unit as a quantity in the unit with a symbol."""
+    return f"{print_number(express(number, symbol))} {show_symbol(symbol)}".rstrip()
+
+
 class Regions(Struct, frozen=True):
     """The regions into which comparisons cut the values of a number, the lowest one first."""
 
@@ -146,6 +153,8 @@ class Regions(Struct, frozen=True):
     """Whether the numbers are Integers."""
     labels: tuple[tuple[Fraction, str], ...] = ()
     """The words of the author for numbers at cuts, such as the name of a constant."""
+    symbol: str = ""
+    """Symbol of the unit in which the author writes the numbers."""
 
     def find(self, number: Fraction) -> int | None:
         """Return the index of the region that contains a number; None if no region does."""
@@ -176,26 +185,36 @@ class Regions(Struct, frozen=True):
             intervals = [item.round_up() for item in intervals]
         labels = tuple((factor * number, label) for number, label in self.labels)
         ordered = tuple(intervals[::-1] if factor < 0 else intervals)
-        return Regions(ordered, self.unit, is_integral, labels)
+        return Regions(ordered, self.unit, is_integral, labels, self.symbol)
 
     def list_names(self) -> list[str]:
         """Return a part of an identifier for each region: ``below_low``, ``from_18``, ``at_2_5``.
 
         The names differ, because the regions do not overlap.
         """
-        return [self._name(interval) for interval in self.intervals]
+        return [_SIGNS.sub("_", words.replace("-", "minus_")).strip("_") for words in self.words]
 
-    def _name(self, interval: Interval) -> str:
+    @property
+    def words(self) -> list[str]:
+        """Each region in words: ``below low``, ``from 18 °C``, ``18 to 22``, ``at 2.5``."""
+        return [self._word(interval) for interval in self.intervals]
+
+    def _word(self, interval: Interval) -> str:
         low, high = interval.low, interval.high
         if low is None or high is None:
             if high is not None:
-                return f"{'up_to' if high.is_above else 'below'}_{self._spell(high)}"
+                return f"{'up to' if high.is_above else 'below'} {self._label(high)}"
             if low is not None:
-                return f"{'above' if low.is_above else 'from'}_{self._spell(low)}"
+                return f"{'above' if low.is_above else 'from'} {self._label(low)}"
             return "any"
         if self._is_point(low, high):
-            return f"at_{self._spell(low)}"
-        return f"{self._spell(low)}_to_{self._spell(high)}"
+            return f"at {self._label(low)}"
+        return f"{self._label(low)} to {self._label(high)}"
+
+    def is_point(self, index: int) -> bool:
+        """Whether the region has a single number."""
+        low, high = self.intervals[index].low, self.intervals[index].high
+        return low is not None and high is not None and self._is_point(low, high)
 
     def describe(self, index: int, term: str) -> str:
         """Return a region as a condition: ``temp < low``, ``18 <= temp < 22``, ``temp == 5``."""
@@ -215,7 +234,4 @@ class Regions(Struct, frozen=True):
         return high.number - low.number == 1 if self.is_integral else low.number == high.number
 
     def _label(self, cut: Cut) -> str:
-        return dict(self.labels).get(cut.number) or print_number(cut.number)
-
-    def _spell(self, cut: Cut) -> str:
-        return _SIGNS.sub("_", self._label(cut).replace("-", "minus_")).strip("_")
+        return dict(self.labels).get(cut.number) or print_quantity(cut.number, self.symbol)

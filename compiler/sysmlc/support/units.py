@@ -225,6 +225,33 @@ def measure(number: Fraction, unit: str) -> tuple[Fraction, str]:
     return number * Fraction(source.factor), base.symbol
 
 
+def express(number: Fraction, unit: str) -> Fraction:
+    """Return a number as ``measure`` returns it as a number of *unit*."""
+    zero, one = (measure(Fraction(value), unit)[0] for value in (0, 1))
+    return (number - zero) / (one - zero)
+
+
+def show_symbol(unit: str) -> str:
+    """Return the symbol of a unit for people: ``°C`` for the scale ``°C_abs``."""
+    known = find_unit(unit)
+    return unit.removesuffix("_abs") if known is None else known.symbol
+
+
+def read_number(text: str, unit: str) -> Fraction | None:
+    """Return the number in a text, in the unit that ``measure`` returns for *unit*.
+
+    A number without a unit is in *unit*; ``17 °C`` is a temperature, not a difference, where *unit*
+    is one of temperatures. The result is None for any other text, and for units that differ.
+    """
+    text = text.strip()
+    quantity = (Fraction(text), unit) if _NUMBER.fullmatch(text) else split_quantity(text)
+    if quantity is None:
+        return None
+    base = measure(Fraction(0), unit)[1]
+    readings = (measure(quantity[0], symbol) for symbol in (quantity[1], f"{quantity[1]}_abs"))
+    return next((number for number, symbol in readings if symbol == base), None)
+
+
 # -- times -------------------------------------------------------------------------------------
 
 STEP = Unit("tick", "step", "time", factor="")

@@ -34,12 +34,14 @@ class UnitError(ValueError):
 class Linear(Struct, frozen=True):
     """``sum(factor * feature) + number``, in the unit ``unit``.
 
-    The unit is empty for plain numbers, and None if no number states one.
+    The unit is empty for plain numbers, and None if no number states one. ``symbol`` is the unit in
+    which the author writes such a number.
     """
 
     factors: Mapping[str, Fraction] = {}
     number: Fraction = Fraction(0)
     unit: str | None = None
+    symbol: str = ""
 
     def add(self, form: "Linear", sign: int = 1) -> "Linear":
         """Return the sum, or with *sign* -1 the difference. Raises UnitError."""
@@ -51,12 +53,13 @@ class Linear(Struct, frozen=True):
         for name, factor in form.factors.items():
             factors[name] = factors.get(name, Fraction(0)) + sign * factor
         factors = {name: factor for name, factor in factors.items() if factor}
-        return Linear(factors, self.number + sign * form.number, unit)
+        number = self.number + sign * form.number
+        return Linear(factors, number, unit, self.symbol or form.symbol)
 
-    def scale(self, factor: Fraction, unit: str | None = None) -> "Linear":
+    def scale(self, factor: Fraction, unit: str | None = None, symbol: str = "") -> "Linear":
         """Return the multiple of the form."""
         factors = {name: factor * value for name, value in self.factors.items() if factor}
-        return Linear(factors, factor * self.number, self.unit or unit)
+        return Linear(factors, factor * self.number, self.unit or unit, self.symbol or symbol)
 
 
 class Number(Struct, frozen=True):
@@ -79,6 +82,8 @@ class Comparison(Struct, frozen=True):
     op: str
     number: Fraction
     unit: str | None
+    symbol: str = ""
+    """The unit in which the author writes the number."""
 
 
 Lookup = Callable[[Name | Member], Number | None]
@@ -128,7 +133,7 @@ def _read_number(value: bool | float | str) -> Linear | None:
 def _measure(number: Fraction, unit: Expression) -> Linear:
     symbol = print_expression(unit).rpartition("::")[2].strip("'")
     number, base = measure(number, symbol)
-    return Linear(number=number, unit=base)
+    return Linear(number=number, unit=base, symbol=symbol)
 
 
 def _combine(op: str, left: Linear, right: Linear) -> Linear | None:
@@ -137,7 +142,7 @@ def _combine(op: str, left: Linear, right: Linear) -> Linear | None:
     if op == "*" and left.factors:
         left, right = right, left
     if op == "*":
-        return None if left.factors else right.scale(left.number, left.unit)
+        return None if left.factors else right.scale(left.number, left.unit, left.symbol)
     if right.factors or not right.number or right.unit:
         return None
     return left.scale(1 / right.number)
@@ -174,7 +179,8 @@ def _normalise(op: str, form: Linear) -> Comparison:
     names = sorted(form.factors)
     scale = form.factors[names[0]] if names else Fraction(1)
     term = tuple((name, form.factors[name] / scale) for name in names)
-    return Comparison(term, MIRROR[op] if scale < 0 else op, -form.number / scale, form.unit)
+    op = MIRROR[op] if scale < 0 else op
+    return Comparison(term, op, -form.number / scale, form.unit, form.symbol)
 
 
 def print_term(term: Term) -> str:
@@ -199,4 +205,4 @@ def read_quantity(graph: Graph, element: Element, key: str) -> Linear | None:
         return None
     unit = name_value_unit(graph, element, key)
     number, base = measure(Fraction(str(value)), unit) if unit else (Fraction(str(value)), "")
-    return Linear(number=number, unit=base if value or unit else None)
+    return Linear(number=number, unit=base if value or unit else None, symbol=unit)

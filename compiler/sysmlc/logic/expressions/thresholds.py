@@ -125,7 +125,7 @@ class Thresholds:
         self.revision = graph.revision
         self._cuts: dict[Term, dict[Cut, None]] = defaultdict(dict)
         self._labels: dict[Term, dict[Fraction, str]] = defaultdict(dict)
-        self._units: dict[Term, str] = {}
+        self._units: dict[Term, tuple[str, str]] = {}
         self._limits: dict[Term, Interval] = {}
         self._written: set[str] = set()
         for expression in self._iter_conditions():
@@ -139,7 +139,7 @@ class Thresholds:
             term = ((key, Fraction(1)),)
             if len(values) > 1 or term in self._cuts:
                 self._cuts[term].update({})
-                self._units.setdefault(term, values[0].unit or "")
+                self._units.setdefault(term, (values[0].unit or "", values[0].symbol))
 
     # -- numbers -----------------------------------------------------------------------------------
 
@@ -206,11 +206,10 @@ class Thresholds:
             else:
                 open_keys.add(key)
         return {
-            key: _Updates(tuple(distinct), tuple(steps[key]))
+            key: _Updates(tuple(distinct.values()), tuple(steps[key]))
             for key, numbers in values.items()
             if key in decided - open_keys
-            and len(distinct := [n for i, n in enumerate(numbers) if n not in numbers[:i]]) > 0
-            and len(distinct) <= _MAX_VALUES
+            and 0 < len(distinct := {(n.number, n.unit): n for n in numbers}) <= _MAX_VALUES
         }
 
     @cached_property
@@ -286,10 +285,7 @@ class Thresholds:
     def _iter_formal_texts(self) -> Iterator[str]:
         for element in self._graph:
             body = element.attrs.get("body")
-            # A formula such as ``G (x < 3)`` may be read as a call, whose names have no elements.
-            if isinstance(body, str) and (
-                element.kind is Kind.CONSTRAINT or not isinstance(body, ParsedText)
-            ):
+            if isinstance(body, str) and not (isinstance(body, ParsedText) and _is_resolved(body)):
                 yield body
 
     def _add_formal_text(self, text: str) -> None:
@@ -330,7 +326,7 @@ class Thresholds:
             for cut in list_cuts(comparison.op, number, is_integral=self.is_integral(term)):
                 self._cuts[term][cut] = None
             if comparison.unit is not None:
-                self._units.setdefault(term, comparison.unit)
+                self._units.setdefault(term, (comparison.unit, comparison.symbol))
             self._add_label(expression, find, comparison)
 
     def _add_label(self, expression: Binary, find: Lookup, comparison: Comparison) -> None:
@@ -395,7 +391,8 @@ class Thresholds:
                 or (item.low is None and any(step < 0 for step in updates.steps))
             )
         labels = tuple(self._labels[term].items())
-        return _make_enumeration(Regions(intervals, self._units.get(term, ""), is_integral, labels))
+        unit, symbol = self._units.get(term, ("", ""))
+        return _make_enumeration(Regions(intervals, unit, is_integral, labels, symbol))
 
     def is_assigned(self, number: Number) -> bool:
         """Whether a behaviour assigns the feature."""
@@ -471,6 +468,12 @@ def split_conjunction(expression: Expression) -> Iterator[Expression]:
             yield expression
 
 
+def _is_resolved(text: ParsedText[Expression | tuple[Statement, ...]]) -> bool:
+    """Whether all names have elements: not in ``G (x < 3)``, which may be read as a call of G."""
+    nodes = (node for node in walk_tree(text.tree) if isinstance(node, Name | Member))
+    return all(node.element for node in nodes)
+
+
 def _list_comparisons(expression: Binary, find: Lookup) -> list[Comparison]:
     try:
         return [comparison for _, comparison in iter_comparisons(expression, find)]
@@ -490,7 +493,7 @@ def _write_side(side: Expression) -> str:
     if isinstance(side, Name | Member):
         return _last_name(side)
     if isinstance(side, Index):
-        return print_expression(side).translate(str.maketrans("", "", "[]'"))
+        return print_expression(side).translate(str.maketrans("", "", "[]'")).removesuffix("_abs")
     return ""
 
 
