@@ -230,24 +230,36 @@ def test_an_exception_in_a_pass_is_a_diagnostic_and_stops_the_outputs(plant, mod
 
 
 @pytest.mark.parametrize(
-    ("module", "exit_code", "message"),
+    ("module", "problem", "exit_code", "message"),
     [
         (
             "sysmlc.backends.broken",
+            RecursionError(),
             2,
             "internal error of sysmlc in back end broken: RecursionError: ",
         ),
-        ("acme", 1, "back end broken failed: RecursionError:  (acme)"),
+        ("acme", RecursionError(), 1, "back end broken failed: RecursionError:  (acme)"),
+        (
+            "sysmlc.backends.broken",
+            ModuleNotFoundError("No module named 'jinja2'", name="jinja2.sandbox"),
+            1,
+            "back end broken cannot load the package 'jinja2', so that its files are missing: "
+            "ModuleNotFoundError: No module named 'jinja2'",
+        ),
     ],
 )
-def test_an_exception_in_a_back_end_omits_only_its_outputs(plant, module, exit_code, message):
+def test_an_exception_in_a_back_end_omits_only_its_outputs(
+    plant, module, problem, exit_code, message
+):
+    """Neither does a missing package stop the other back ends (SM918)."""
+
     @dataclass(frozen=True)
     class RaisesError(OutlineBackend):
         name: str = "broken"
 
         def emit(self, graph, output, sink, options):
             output.add("half.txt", "half")
-            raise RecursionError
+            raise problem
 
     RaisesError.__module__ = module
     compilation = compile_files(plant, passes=(), backends=(RaisesError(), OutlineBackend()))

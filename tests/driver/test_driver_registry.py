@@ -467,6 +467,60 @@ def test_faults_of_plug_ins_are_findings_and_the_other_outputs_are_written(folde
     assert (folder / "out/diagrams/model.bdd.puml").exists()
 
 
+FRONTEND_METHODS = """
+class Failing(TableFrontend):
+    is_folder_unit = False
+
+    def list_attachments(self, source):
+        return ()
+
+    def read_names(self, source):
+        return FileNames()
+
+    def METHOD(self, source):
+        ACTION
+
+
+class SilentError(Exception):
+    def __str__(self):
+        raise ValueError("no text")
+
+
+from sysmlc.frontends.base import FileNames
+FRONTEND = Failing()
+"""
+
+
+@pytest.mark.parametrize(
+    ("method", "action", "problem"),
+    [
+        ("detect", "raise ValueError('boom')", "ValueError: boom"),
+        ("detect", "raise SilentError", "SilentError without a readable text"),
+        ("detect", "return 'certainly'", "ValueError: could not convert string to float"),
+        ("links", "raise ValueError('boom')", "ValueError: boom"),
+        ("links", "return None", "TypeError: 'NoneType' object is not iterable"),
+        ("list_attachments", "raise SilentError", "SilentError without a readable text"),
+        ("read_names", "raise ValueError('boom')", "ValueError: boom"),
+    ],
+)
+def test_a_front_end_of_a_plug_in_that_fails_before_reading_is_named(
+    folder, method, action, problem
+):
+    sys.modules.pop("acme_table", None)
+    methods = FRONTEND_METHODS.replace("METHOD", method).replace("ACTION", action)
+    (folder / "acme_table.py").write_text(TABLE_MODULE + methods)
+    install_distribution(folder, "acme", "sysmlc.frontends", "table = acme_table:FRONTEND")
+    (folder / "models").mkdir()
+    for name in ("plant.table", "other.table"):
+        (folder / "models" / name).write_text("Gate Lamp\n")
+    arguments = [str(folder / "models"), "-o", str(folder / "out"), "--format", "concise"]
+    result = CliRunner().invoke(sysmlc_command, arguments)
+    message = f"front end table failed, so that nothing is written: {problem}"
+    assert f"plant.table: error[SM916 plug-in-stop]: {message}" in result.stderr
+    assert "(acme_table of acme" in result.stderr
+    assert (result.exit_code, list(folder.rglob("*.puml"))) == (2, [])
+
+
 def test_passes_of_plug_ins_that_wait_for_one_another_are_ignored(folder):
     sys.modules.pop("counting_elements", None)
     module = PASS_MODULE.replace('("views",)', '("census",)')

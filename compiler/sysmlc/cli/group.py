@@ -14,6 +14,7 @@ from sysmlc.cli import terminal
 from sysmlc.cli.limits import LIMITS, add_limit_options
 from sysmlc.cli.options import add_color_option
 from sysmlc.cli.supervisor import OUT_OF_MEMORY, report_memory_limit
+from sysmlc.support.interpreter import describe_error
 
 COMMANDS = (
     "build",
@@ -135,7 +136,7 @@ def run_guarded(run: Callable[_P, _T], *args: _P.args, **kwargs: _P.kwargs) -> _
             terminal.echo(f"sysmlc: cannot use{name}: {problem.strerror or problem}", err=True)
         sys.exit(2)
     except Exception as problem:
-        fault = f"fault of sysmlc: {type(problem).__name__}: {problem}"
+        fault = f"fault of sysmlc: {describe_error(problem)}"
     terminal.echo(f"sysmlc: {fault}", err=True)
     click.echo("Please report it with the command and the model.", err=True)
     sys.exit(2)

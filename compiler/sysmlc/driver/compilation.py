@@ -28,6 +28,7 @@ from sysmlc.overlay import SUFFIX
 from sysmlc.passes.pipeline import Pass
 from sysmlc.sources import Roots, Source, SourceError
 from sysmlc.support.counts import count as count_nouns
+from sysmlc.support.interpreter import describe_error
 from sysmlc.support.output import Artefact, Output
 from sysmlc.support.suggestions import did_you_mean
 
@@ -232,7 +233,9 @@ class _CompilationRun:
     def compile(self) -> Compilation:
         """Run all steps. After an internal fault no back end runs."""
         reading, inputs = self._reading, self._inputs
-        is_broken = not self._read(reading)
+        # The front end of a plug-in may have failed when the files were read.
+        is_broken = any(d.rule is faults.PLUG_IN_STOP for d in self._sink)
+        is_broken = not self._read(reading) or is_broken
         schemas = self._request.schemas
         if schemas is not None:
             self._run_guarded("schemas", lambda: validate(reading.recognised, schemas, self._sink))
@@ -284,6 +287,7 @@ class _CompilationRun:
         return not isinstance(frontend, DiagramReader) or self._run_guarded(
             f"diagrams of {frontend.name}",
             lambda: frontend.read_drawings(sources, self._drawings, self._graph, self._sink),
+            frontend,
         )
 
     def _refine(self, step: Pass) -> bool:
@@ -341,6 +345,7 @@ class _CompilationRun:
                 ),
                 backend,
                 faults.PLUG_IN_FAULT,
+                faults.OUTPUT_WITHOUT_PACKAGE,
             ):
                 before = {artefact.path for artefact in written}
                 failed |= {a.path for a in self._output.artefacts()} - before
@@ -352,11 +357,13 @@ class _CompilationRun:
         run: Callable[[], object],
         step: object = None,
         plug_in_rule: Rule = faults.PLUG_IN_STOP,
+        package_rule: Rule = faults.MISSING_PACKAGE,
     ) -> bool:
         """Run a step; return whether it had no internal fault.
 
         An exception in it becomes a diagnostic, because no model may cause a traceback. It is
-        reported by *plug_in_rule* if *step* belongs to a plug-in.
+        reported by *plug_in_rule* if *step* belongs to a plug-in, and by *package_rule* if a
+        package that sysmlc needs is missing.
         """
         try:
             run()
@@ -369,10 +376,10 @@ class _CompilationRun:
             raise
         except Exception as problem:
             self._observer.fault(where, format_exc())
-            text = f"{type(problem).__name__}: {problem}"
+            text = describe_error(problem)
             source = registry.describe_source(step, problem)
             package = faults.find_missing_package(problem)
-            rule = faults.MISSING_PACKAGE if package else faults.INTERNAL_FAULT
+            rule = package_rule if package else faults.INTERNAL_FAULT
             if source:
                 rule = plug_in_rule
             self._sink.report(
@@ -458,7 +465,8 @@ def _select_reported(
 
 def _is_about_missing_part(diagnostic: Diagnostic) -> bool:
     """Whether a diagnostic means that part of the unit was not read, or an output is missing."""
-    if diagnostic.rule in (faults.INTERNAL_FAULT, faults.PLUG_IN_FAULT, faults.PLUG_IN_IGNORED):
+    is_internal = diagnostic.rule is faults.INTERNAL_FAULT
+    if is_internal or diagnostic.rule.code in faults.INSTALLATION_FAULTS:
         return True
     is_about_file = not diagnostic.subject.id and diagnostic.subject.place is not None
     return diagnostic.is_error and is_about_file and diagnostic.rule.code.startswith("SM1")

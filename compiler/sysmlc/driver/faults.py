@@ -161,6 +161,13 @@ MISSING_PACKAGE = rule(
     "{where} cannot load the package '{package}': {problem}",
     help="install it; docs/dependencies.md lists the packages that sysmlc needs",
 )
+OUTPUT_WITHOUT_PACKAGE = rule(
+    "SM918",
+    "output-without-package",
+    Severity.ERROR,
+    "{where} cannot load the package '{package}', so that its files are missing: {problem}",
+    help="install it; docs/dependencies.md lists the packages that sysmlc needs",
+)
 INVALID_GRAPH = rule(
     "SM901",
     "invalid-graph",
@@ -205,8 +212,10 @@ STOPPING = frozenset(
     )
 )
 """Rules whose diagnostics lead to exit code 2."""
-PLUG_IN_FAULTS = frozenset({PLUG_IN_IGNORED.code, PLUG_IN_FAULT.code})
-"""Rules whose diagnostics may disappear although no file of the plug-in changes."""
+INSTALLATION_FAULTS = frozenset(
+    {PLUG_IN_IGNORED.code, PLUG_IN_FAULT.code, OUTPUT_WITHOUT_PACKAGE.code}
+)
+"""Rules about missing outputs, whose diagnostics may disappear although no file changes."""
 
 
 FAILED = 2

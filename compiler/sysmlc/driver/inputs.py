@@ -3,22 +3,25 @@
 import os
 import re
 import unicodedata
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
+from typing import TypeVar
 
 from msgspec import Struct
 
 from sysmlc.config import FILE_NAME, find_project_root
 from sysmlc.diagnostics import Rule, Sink
-from sysmlc.driver import faults
+from sysmlc.driver import faults, registry
 from sysmlc.driver.ownership import is_output_folder
-from sysmlc.frontends.base import Frontend
-from sysmlc.sources import Roots, Source, is_model_entry
+from sysmlc.frontends.base import FileNames, Frontend, UnitFrontend
+from sysmlc.sources import Roots, Source, SourceError, is_model_entry
 from sysmlc.sources.files import is_special, list_archive_entries
 from sysmlc.support.counts import list_first
 from sysmlc.support.escapes import escape_undecodable
+from sysmlc.support.interpreter import describe_error
 from sysmlc.support.suggestions import find_similar
 
+_T = TypeVar("_T")
 _SUFFIXES = """
     .uml .xmi .xml .mdxml .mdzip .aml .amlx .caex .mtp .ir .sysml .kerml .sysmlx .kermlx .kpar
 """
@@ -107,12 +110,48 @@ def name_of(path: Path, root: Path) -> str:
     return unicodedata.normalize("NFC", escape_undecodable(relative.as_posix()))
 
 
+def ask_frontend(
+    frontend: Frontend, source: Source, call: Callable[[], _T], default: _T, sink: Sink
+) -> _T:
+    """Return what *call* asks a front end about a source.
+
+    If a front end of a plug-in fails, this is reported, and the answer is *default*.
+    """
+    try:
+        return call()
+    except (SourceError, MemoryError):
+        raise
+    except Exception as problem:
+        plug_in = registry.describe_source(frontend, problem)
+        if not plug_in:
+            raise
+        sink.report(
+            faults.PLUG_IN_STOP,
+            faults.about_file(source.name),
+            where=f"front end {frontend.name}",
+            problem=describe_error(problem),
+            source=plug_in,
+        )
+        return default
+
+
+def rate_source(frontend: Frontend, source: Source, sink: Sink) -> float:
+    """Return how certainly the front end can read the source, 0 if it fails."""
+    return ask_frontend(frontend, source, lambda: float(frontend.detect(source)), 0.0, sink)
+
+
+def ask_names(frontend: Frontend, source: Source, sink: Sink) -> FileNames:
+    """Return the names of a source of a ``UnitFrontend``, none if it fails."""
+    assert isinstance(frontend, UnitFrontend)
+    return ask_frontend(frontend, source, lambda: frontend.read_names(source), FileNames(), sink)
+
+
 def recognise(
     sources: Sequence[Source], frontends: Sequence[Frontend], otherwise: Rule | None, sink: Sink
 ) -> Iterator[Recognised]:
     """Yield the sources that a front end recognises; report *otherwise* about the others."""
     for source in sources:
-        scores = [(frontend.detect(source), frontend) for frontend in frontends]
+        scores = [(rate_source(frontend, source, sink), frontend) for frontend in frontends]
         score, best = max(scores, key=lambda pair: pair[0])
         if score > 0:
             if _is_blank(source.data):

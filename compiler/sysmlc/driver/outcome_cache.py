@@ -22,7 +22,7 @@ from sysmlc.diagnostics.renderers import Finding
 from sysmlc.diagnostics.rule import PAGES
 from sysmlc.driver import registry
 from sysmlc.driver.compilation import OpenedUnit, Request
-from sysmlc.driver.faults import FAILED, PLUG_IN_FAULTS
+from sysmlc.driver.faults import FAILED, INSTALLATION_FAULTS
 from sysmlc.driver.outcome import Outcome, OutputFile, Withheld
 from sysmlc.language.library import find_library_path
 from sysmlc.sources import DEFAULT_LIMITS, SourceError
@@ -168,8 +168,8 @@ class _Entry(msgspec.Struct):
 
 def store_outcome(cache: Cache, key: str, outcome: Outcome) -> None:
     """Store an outcome, unless it has a fault of sysmlc, of a plug-in or of the machine."""
-    is_of_plug_in = any(d.rule.code in PLUG_IN_FAULTS for d in outcome.diagnostics)
-    if outcome.exit_code() == FAILED or is_of_plug_in:
+    is_of_machine = any(d.rule.code in INSTALLATION_FAULTS for d in outcome.diagnostics)
+    if outcome.exit_code() == FAILED or is_of_machine:
         return
     # A file name that is not UTF-8 has lone surrogates, which JSON cannot hold.
     with suppress(UnicodeEncodeError):

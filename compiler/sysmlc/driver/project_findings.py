@@ -11,10 +11,10 @@ from pathlib import Path
 from msgspec.structs import replace
 
 from sysmlc.config import Config, ConfigError, expand_files
-from sysmlc.diagnostics import Diagnostic
+from sysmlc.diagnostics import Diagnostic, Sink
 from sysmlc.driver import faults
 from sysmlc.driver.compilation import OpenedUnit
-from sysmlc.driver.inputs import find_model_files, find_projects, list_suffixes
+from sysmlc.driver.inputs import find_model_files, find_projects, list_suffixes, rate_source
 from sysmlc.driver.outcome import Outcome
 from sysmlc.frontends.base import Frontend
 from sysmlc.sources import SourceError, load
@@ -85,7 +85,8 @@ def _is_model(path: Path, frontends: Sequence[Frontend]) -> bool:
         sources = load(path, path.name)
     except SourceError:
         return False
-    return any(frontend.detect(source) > 0 for source in sources for frontend in frontends)
+    scores = (rate_source(frontend, s, Sink()) for s in sources for frontend in frontends)
+    return any(score > 0 for score in scores)
 
 
 def _list_files(config: Config, suffixes: frozenset[str]) -> Iterator[Path]:

@@ -17,6 +17,7 @@ from sysmlc.diagnostics import Place, Rule, Sink, Subject
 from sysmlc.driver import faults
 from sysmlc.driver.inputs import (
     Recognised,
+    ask_frontend,
     collect_files,
     find_allowed_roots,
     list_suffixes,
@@ -229,7 +230,7 @@ class _Reader:
         """Read the files that references lead to, transitively; skip those outside the roots."""
         while self._worklist:
             path, item = self._worklist.pop()
-            for href in item.frontend.links(item.source):
+            for href in self._list_links(item):
                 target = self._roots.resolve(path, href)
                 if target is not None:
                     self._add_reference(path, target)
@@ -241,11 +242,15 @@ class _Reader:
         """Read the files of the project that declare names which the named texts use."""
         sources = [name for path in sorted(self._named) for name in self._sources.get(path, ())]
         texts = [self.recognised[name] for name in sources if name in self.recognised]
-        for path in find_siblings(texts, self._visited, self._roots, self._frontends):
+        for path in find_siblings(texts, self._visited, self._roots, self._frontends, self._sink):
             self.read(path, None)
             self._siblings.add(Path(os.path.realpath(path)))
             for named in self._named:
                 self._add_reference(named, path)
+
+    def _list_links(self, item: Recognised) -> list[str]:
+        source, frontend = item.source, item.frontend
+        return ask_frontend(frontend, source, lambda: list(frontend.links(source)), [], self._sink)
 
     def _add_reference(self, path: Path, target: Path) -> None:
         references = self._references.setdefault(Path(os.path.realpath(path)), set())
@@ -262,7 +267,10 @@ class _Reader:
         _, is_part, entry = source.name.partition("!")
         parts = frozenset(list_archive_entries(path)) if is_part else frozenset()
         missing: dict[str, Place] = {}
-        for href, place in frontend.list_attachments(source):
+        documents: list[tuple[str, Place]] = ask_frontend(
+            frontend, source, lambda: list(frontend.list_attachments(source)), [], self._sink
+        )
+        for href, place in documents:
             is_missing = self._roots.resolve(path, href) is None
             if is_part:
                 is_missing = parts.isdisjoint(_list_places(entry, href))
@@ -311,15 +319,21 @@ def load_companions(reading: Reading, root: Path, sink: Sink) -> tuple[Source, .
     Files that cannot be read are reported.
     """
     names = dict.fromkeys(
-        name
-        for item in reading.recognised
-        if isinstance(item.frontend, DiagramReader)
-        for name in item.frontend.list_companions(item.source.name)
+        name for item in reading.recognised for name in _list_companions(item, sink)
     )
     sources = {
         source.name: source for name in names for source in _load(name, root, reading.roots, sink)
     }
     return tuple(sources[name] for name in sorted(sources))
+
+
+def _list_companions(item: Recognised, sink: Sink) -> list[str]:
+    source, frontend = item.source, item.frontend
+    if not isinstance(frontend, DiagramReader):
+        return []
+    return ask_frontend(
+        item.frontend, source, lambda: list(frontend.list_companions(source.name)), [], sink
+    )
 
 
 def _load(name: str, root: Path, roots: Roots, sink: Sink) -> Iterator[Source]:

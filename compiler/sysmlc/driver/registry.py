@@ -28,6 +28,7 @@ from sysmlc.diagnostics import Rule, catalogue
 from sysmlc.frontends.base import Frontend, LibraryFrontend
 from sysmlc.passes import pipeline
 from sysmlc.passes.pipeline import Pass
+from sysmlc.support.interpreter import describe_error
 from sysmlc.support.suggestions import did_you_mean, find_similar
 
 FRONTEND_GROUP = "sysmlc.frontends"
@@ -212,7 +213,7 @@ def _load_plug_in(entry: EntryPoint, kind: str) -> object:
     # A module may call sys.exit() when it is imported, and members may be computed.
     except (Exception, SystemExit) as problem:
         place = _find_fault(problem, entry.module)
-        text = f"{kind} '{entry.name}' cannot be loaded: {type(problem).__name__}: {problem}"
+        text = f"{kind} '{entry.name}' cannot be loaded: {describe_error(problem)}"
         raise PlugInError(f"{text} ({source}{place})") from problem
     if fault:
         raise PlugInError(f"{kind} '{entry.name}' {fault} ({source})")
@@ -375,7 +376,7 @@ def load_full_catalogue(note: Callable[[str], None] = lambda _: None) -> dict[st
             try:
                 import_module(module)
             except Exception as problem:
-                note(f"the rules of {module} are missing: {problem!r}")
+                note(f"the rules of {module} are missing: {describe_error(problem)}")
     for group, kind in _KINDS.items():
         taken = _BACKENDS if group == BACKEND_GROUP else (*pipeline.NAMES, *analysis.NAMES)
         list(_load_usable(_find_foreign(group, taken, warn), kind, warn))
@@ -420,8 +421,8 @@ def _load(name: str, foreign: Mapping[str, EntryPoint]) -> Backend:
     except PlugInError as problem:
         raise BackendError(str(problem)) from problem
     except Exception as problem:
-        reason = f"{type(problem).__name__}: {problem}"
-        raise BackendError(f"back end '{name}' cannot be loaded: {reason}") from problem
+        reason = f"back end '{name}' cannot be loaded: {describe_error(problem)}"
+        raise BackendError(reason) from problem
     list_needs([backend])
     return backend
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from sysmlc.config import is_project_root
 from sysmlc.diagnostics import Sink
-from sysmlc.driver.inputs import Recognised, find_model_files, recognise
+from sysmlc.driver.inputs import Recognised, ask_names, find_model_files, recognise
 from sysmlc.frontends.base import FileNames, Frontend, LibraryFrontend, UnitFrontend
 from sysmlc.sources import Roots, Source, SourceError
 from sysmlc.sources.files import is_special, read_whole
@@ -27,13 +27,14 @@ def find_siblings(
     known: AbstractSet[Path],
     roots: Roots,
     frontends: Sequence[Frontend],
+    sink: Sink,
 ) -> list[Path]:
     """Return the files below *roots* that declare names which *texts* use, directly or not.
 
     *known* are the real paths of the files that belong to the unit anyway. Only files of front ends
     whose folders are units have siblings.
     """
-    worklist = [names for text in texts if (names := _read_names(text)) is not None]
+    worklist = [names for text in texts if (names := _read_names(text, sink)) is not None]
     if not worklist:
         return []
     declared = set[str]().union(*(names.declared for names in worklist))
@@ -49,7 +50,7 @@ def find_siblings(
         wanted = names.used - names.local - declared
         for path in [p for p in candidates if not seemingly_declared[p].isdisjoint(wanted)]:
             items = recognise([candidates[path]], frontends, None, Sink())
-            sibling_names = next(filter(None, map(_read_names, items)), None)
+            sibling_names = next(filter(None, (_read_names(item, sink) for item in items)), None)
             if sibling_names is not None and not sibling_names.declared.isdisjoint(wanted):
                 del candidates[path]
                 siblings.append(path)
@@ -58,12 +59,12 @@ def find_siblings(
     return siblings
 
 
-def _read_names(item: Recognised) -> FileNames | None:
+def _read_names(item: Recognised, sink: Sink) -> FileNames | None:
     """Return the names of a text, or None if the folder of the file is no unit."""
     frontend = item.frontend
     if not isinstance(frontend, UnitFrontend) or not frontend.is_folder_unit:
         return None
-    return frontend.read_names(item.source)
+    return ask_names(frontend, item.source, sink)
 
 
 def _load_candidates(known: AbstractSet[Path], roots: Roots) -> Iterator[tuple[Path, Source]]:

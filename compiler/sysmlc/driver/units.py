@@ -14,8 +14,9 @@ from pathlib import Path
 
 from msgspec.structs import replace
 
+from sysmlc.diagnostics import Sink
 from sysmlc.driver.compilation import OpenedUnit, Request, file_of, load_drawings, open_unit
-from sysmlc.driver.inputs import Recognised, find_unit_root
+from sysmlc.driver.inputs import Recognised, ask_names, find_unit_root
 from sysmlc.driver.reading import ReadFile, Reading
 from sysmlc.frontends.base import FileNames, UnitFrontend
 from sysmlc.ir.algorithms import find_reachable
@@ -55,7 +56,7 @@ def open_units(request: Request) -> list[OpenedUnit]:
     if len(bundles) < 2 or not all(overlay.references for overlay in overlays):
         groups = [bundles]
     else:
-        groups = _group(bundles, recognised)
+        groups = _group(bundles, recognised, opened.sink)
     names = _name_units(
         [_own_files(group) for group in groups], find_unit_root(request.inputs, None)
     )
@@ -105,10 +106,12 @@ def _is_folder_unit(file: ReadFile, recognised: Mapping[str, Recognised]) -> boo
     )
 
 
-def _group(bundles: list[Bundle], recognised: Mapping[str, Recognised]) -> list[list[Bundle]]:
+def _group(
+    bundles: list[Bundle], recognised: Mapping[str, Recognised], sink: Sink
+) -> list[list[Bundle]]:
     """Connect the bundles and return the bundles of each unit."""
     for bundle in bundles:
-        _read_names(bundle, recognised)
+        _read_names(bundle, recognised, sink)
     _refer_by_path(bundles)
     _refer_by_name(bundles)
     units = _connect([bundle for bundle in bundles if not bundle.is_library])
@@ -118,17 +121,18 @@ def _group(bundles: list[Bundle], recognised: Mapping[str, Recognised]) -> list[
     return sorted(units, key=lambda unit: _own_files(unit)[0].path)
 
 
-def _read_names(bundle: Bundle, recognised: Mapping[str, Recognised]) -> None:
-    names = [_names_of(recognised[name]) for name in bundle.sources() if name in recognised]
+def _read_names(bundle: Bundle, recognised: Mapping[str, Recognised], sink: Sink) -> None:
+    names = [_names_of(recognised[name], sink) for name in bundle.sources() if name in recognised]
     bundle.is_library = bool(names) and all(name.is_library for name in names)
     bundle.declared = frozenset().union(*(name.declared for name in names))
     local = bundle.declared.union(*(name.local for name in names))
     bundle.used = frozenset().union(*(name.used for name in names)) - local
 
 
-def _names_of(item: Recognised) -> FileNames:
+def _names_of(item: Recognised, sink: Sink) -> FileNames:
     frontend = item.frontend
-    return frontend.read_names(item.source) if isinstance(frontend, UnitFrontend) else FileNames()
+    is_asked = isinstance(frontend, UnitFrontend)
+    return ask_names(frontend, item.source, sink) if is_asked else FileNames()
 
 
 def _refer_by_path(bundles: Sequence[Bundle]) -> None:

@@ -1,4 +1,4 @@
-"""Settings of the Python interpreter while a large or deeply nested model is processed."""
+"""Settings of the Python interpreter for large or deeply nested models, and texts of exceptions."""
 
 import gc
 import sys
@@ -7,6 +7,14 @@ from contextlib import contextmanager
 
 _CALLS_PER_LEVEL = 20
 """Upper bound of the nested calls of a function for one level of the model."""
+
+
+def describe_error(problem: BaseException) -> str:
+    """Return the class and the text of an exception; the text of a plug-in's may itself fail."""
+    try:
+        return f"{type(problem).__name__}: {problem}"
+    except Exception:
+        return f"{type(problem).__name__} without a readable text"
 
 
 @contextmanager
