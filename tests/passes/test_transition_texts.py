@@ -137,9 +137,18 @@ def test_a_plain_condition_is_read_in_any_language(guard, formula, language):
     assert read_guard(guard, language) == formula
 
 
-@pytest.mark.parametrize("guard", ["not count < 3", "not count + 0 < 3", "!count < 3"])
-def test_in_python_not_is_about_a_whole_comparison(guard):
-    assert read_guard(guard, "Python").startswith("count")
+@pytest.mark.parametrize(
+    ("guard", "formula"),
+    [
+        ("not count < 3", "count>=3"),
+        ("not count + 1 < 3", "count + 1>=3"),
+        ("ready and not mode == auto", "ready & mode!=auto"),
+        ("1 < count <= 3", "1<count & count<=3"),
+        ("not 1 < count <= 3", "!(1<count & count<=3)"),
+    ],
+)
+def test_comparisons_in_python_are_read_as_in_python(guard, formula):
+    assert read_guard(guard, "Python") == formula
 
 
 @pytest.mark.parametrize("language", ["", "C", "OCL"])

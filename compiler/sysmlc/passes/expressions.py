@@ -19,6 +19,7 @@ from sysmlc.logic.expressions.parsing import (
     attach_statements,
     attach_tree,
     regroup_negations,
+    split_chains,
 )
 from sysmlc.logic.expressions.resolution import NameResolver
 
@@ -47,7 +48,7 @@ class Expressions(Struct, frozen=True):
                 if isinstance(text, ParsedText):
                     tree = resolver.resolve(element, text.tree)
                     if isinstance(text, ExpressionText) and _is_python(element, key):
-                        tree = regroup_negations(tree)
+                        tree = split_chains(regroup_negations(tree))
                     graph.set(element, **{key: type(text)(text, tree)})
 
 

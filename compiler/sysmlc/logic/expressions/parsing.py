@@ -260,6 +260,7 @@ def unquote(text: str) -> str:
 # -- guards that exclude each other -------------------------------------------------------------
 
 _COMPLEMENTS = {"<": ">=", ">=": "<", ">": "<=", "<=": ">", "==": "!=", "!=": "=="}
+ORDERS = frozenset(["<", "<=", ">", ">="])
 _MIRRORED = {"<": ">", ">=": "<=", ">": "<", "<=": ">=", "==": "==", "!=": "!="}
 """The operator after both operands of a comparison have changed places."""
 
@@ -307,7 +308,7 @@ def _negate(term: Expression) -> Expression:
     return Unary("not", term)
 
 
-# -- negations before comparisons ----------------------------------------------------------------
+# -- comparisons as in Python ----------------------------------------------------------------------
 
 
 def regroup_negations(expression: Expression) -> Expression:
@@ -336,6 +337,18 @@ def _strip_negation(operand: Expression) -> Expression | None:
             stripped = _strip_negation(left)
             return None if stripped is None else Binary(op, stripped, right)
     return None
+
+
+def split_chains(expression: Expression) -> Expression:
+    """Rewrite each chain of two comparisons: ``0 <= x <= 4`` to ``0 <= x and x <= 4``."""
+    match expression:
+        case Binary(op, Binary(first, _, middle) as left, right) if {op, first} <= ORDERS:
+            return Binary("and", left, Binary(op, middle, right))
+        case Binary(op, left, right) if op not in _COMPLEMENTS:
+            return Binary(op, split_chains(left), split_chains(right))
+        case Unary(op, operand):
+            return Unary(op, split_chains(operand))
+    return expression
 
 
 def explain_fault(error: ElaborationError, *expressions: Expression) -> str:

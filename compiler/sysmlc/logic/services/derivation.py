@@ -35,7 +35,7 @@ from sysmlc.logic.expressions.elaboration import (
     elaborate_condition,
 )
 from sysmlc.logic.expressions.features import Feature
-from sysmlc.logic.expressions.parsing import explain_fault, tree_of
+from sysmlc.logic.expressions.parsing import ORDERS, explain_fault, split_chains, tree_of
 from sysmlc.logic.formal_texts import is_formal_constraint
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.identifiers import Names
@@ -49,7 +49,6 @@ NOT_FORMAL = rule(
     "the {condition} of '{service}' is in no contract: {reason}{further}",
     help="compare Booleans, enumerations and Integers for a contract about it",
 )
-_ORDERS = frozenset(["<", "<=", ">", ">="])
 _KINDS = ("", "precondition", "postcondition", "body")
 _KIND_WORDS = {"": "constraint", "body": "body condition"}
 _LANGUAGE_ADVICE = "choose OCL or no language for conditions that are expressions over features"
@@ -193,7 +192,7 @@ def _read_condition(
 
 
 def _read_formula(context: Context, constraint: Element) -> Formula:
-    expression = _split_chain(tree_of(str(constraint.attrs["body"])))
+    expression = split_chains(tree_of(str(constraint.attrs["body"])))
     formula = elaborate_condition(expression, partial(find_symbol, context))
     domains: dict[str, Domain] = {
         feature.variable: feature.domain
@@ -212,20 +211,9 @@ def _is_single_bound(expression: Expression, formula: Formula) -> bool:
     """Whether the expression is a single bound such as ``h > 0``, which is no range."""
     return (
         isinstance(expression, Binary)
-        and expression.op in _ORDERS
+        and expression.op in ORDERS
         and bool(list(f.variables(formula)))
     )
-
-
-def _split_chain(expression: Expression) -> Expression:
-    """Rewrite ``0 <= x <= 4`` to ``0 <= x and x <= 4``."""
-    match expression:
-        case Binary("and" as op, left, right):
-            return Binary(op, _split_chain(left), _split_chain(right))
-        case Binary(op, Binary(first, _, middle) as left, right) if {op, first} <= _ORDERS:
-            return Binary("and", left, Binary(op, middle, right))
-        case _:
-            return expression
 
 
 def _is_precondition(context: Context, formula: Formula) -> bool:
