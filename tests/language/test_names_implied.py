@@ -62,6 +62,19 @@ def test_the_base_of_a_usage_depends_on_its_owner():
     assert list_implied_relations(model, "Plant::other") == ["Subsetting Parts::parts"]
 
 
+def test_snapshots_and_time_slices_are_those_of_their_occurrence():
+    model = resolve_texts("""
+        occurrence def Drive { snapshot arrival; timeslice overtaking; }
+        snapshot now;
+        timeslice today;
+    """)
+    bases = {"Drive::arrival": "snapshots", "now": "snapshots"}
+    bases |= {"Drive::overtaking": "timeSlices", "today": "timeSlices"}
+    for name, base in bases.items():
+        relation = f"Subsetting Occurrences::Occurrence::{base}"
+        assert relation in list_implied_relations(model, name), name
+
+
 def test_connections_of_two_ends_are_binary_and_their_ends_redefine_by_position():
     model = resolve_texts("""
         part a;

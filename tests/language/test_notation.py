@@ -6,6 +6,7 @@ from tree_outlines import list_node_values
 from sysmlc.diagnostics import Sink
 from sysmlc.language.notation import write_expression
 from sysmlc.language.text import parse
+from sysmlc.language.text.lexer import quote_name, unquote
 
 SAME = [
     "1 + 2 * 3",
@@ -72,3 +73,22 @@ def test_a_conditional_operand_is_written_in_parentheses():
         "(if a ? b else c, d)",
     ):
         assert write_expression(parse_value(text)) == text
+
+
+@pytest.mark.parametrize(
+    ("name", "written"),
+    [
+        ("a'b", r"'a\'b'"),
+        ("a\\b", r"'a\\b'"),
+        ("a\nb", r"'a\nb'"),
+        ("a\tb", r"'a\tb'"),
+        ("a\rb", r"'a\rb'"),
+        ("a\fb", r"'a\fb'"),
+        ("a\bb", r"'a\bb'"),
+        ("a b", "'a b'"),
+        ("a_1", "a_1"),
+    ],
+)
+def test_a_name_is_written_with_the_escapes_of_the_language(name, written):
+    assert quote_name(name) == written
+    assert name in (written, unquote(written))

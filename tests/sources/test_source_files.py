@@ -2,10 +2,15 @@
 
 import os
 import zipfile
+from pathlib import Path
 
 import pytest
 
-from sysmlc.sources import Fault, Limits, Roots, SourceError, files, load
+from sysmlc.sources import DEFAULT_LIMITS, Fault, Limits, Roots, SourceError, files, load
+from sysmlc.sources.files import read_whole
+from sysmlc.sources.source import DOCUMENT_LIMITS
+
+DOCS = Path(__file__).parents[2] / "docs"
 
 
 def test_a_plain_file_is_one_source(tmp_path):
@@ -40,6 +45,30 @@ def test_a_missing_file_and_a_file_over_the_limit_are_exit_code_2(tmp_path):
     with pytest.raises(SourceError) as large:
         load(tmp_path / "big.uml", "big.uml", limits=Limits(file_size=10))
     assert (large.value.fault, large.value.exit_code) == (Fault.LIMIT, 2)
+
+
+@pytest.mark.parametrize(
+    ("limits", "size"), [(DEFAULT_LIMITS, 2 << 30), (DOCUMENT_LIMITS, 16 << 20)]
+)
+def test_models_and_documents_have_a_greatest_size(tmp_path, limits, size):
+    """The file has a hole of this size, so that it takes no space on the disk."""
+    path = tmp_path / "big.uml"
+    with path.open("wb") as file:
+        file.truncate(size + 1)
+    with pytest.raises(SourceError, match=f"^larger than {size} bytes$"):
+        read_whole(path, "big.uml", limits)
+
+
+def test_the_limits_are_those_of_the_documentation():
+    text = " ".join((DOCS / "untrusted-repositories.md").read_text().split())
+    limits = Limits()
+    assert (
+        f"A model may have at most {limits.file_size >> 30} GiB, an XML file at most "
+        f"{limits.depth} levels, and an archive at most {limits.entries:,} entries. An archive "
+        f"that unpacks to more than {limits.free_size >> 20} MiB may have a compression ratio of "
+        f"at most {limits.total_ratio}."
+    ) in text
+    assert limits.total_size == limits.file_size
 
 
 def test_references_are_resolved_inside_the_roots_only(tmp_path):

@@ -119,7 +119,7 @@ def _check_name(name: str, participle: str, known: Sequence[str]) -> None:
 def lower(contract: Contract, format_name: str) -> Contract:
     """Return the contract as it is read back after it was written in the format.
 
-    Raises NotExpressibleError.
+    ``spin`` has no such function: its printer separates steps itself. Raises NotExpressibleError.
     """
     return _load_module(format_name).lower(contract, format_name)
 

@@ -31,7 +31,6 @@ from sysmlc.logic.formats.lowering import (
     has_partial_division,
     index_domains,
     rename_ambiguous_literals,
-    rewrite_contract_atoms,
     separate_steps,
 )
 from sysmlc.logic.formats.spot import (
@@ -40,7 +39,7 @@ from sysmlc.logic.formats.spot import (
     read_implication,
     read_partition,
 )
-from sysmlc.logic.formats.writing import Notation, NotExpressibleError, apply_lowering
+from sysmlc.logic.formats.writing import Notation, NotExpressibleError
 from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
 from sysmlc.logic.infix import FormulaReader, Term
 from sysmlc.logic.printing import print_literal
@@ -173,19 +172,6 @@ _CACHED_PRINTERS = 64
 
 class TooLargeError(Exception):
     """A comparison over so many values that its formula would be useless."""
-
-
-def lower(contract: Contract, format_name: str) -> Contract:
-    """Return the contract without comparisons across a step. Raises NotExpressibleError."""
-    renamed = rename_ambiguous_literals(contract)
-    variable_domains = index_domains(renamed)
-    return apply_lowering(
-        renamed,
-        format_name,
-        lambda lowered: rewrite_contract_atoms(
-            lowered, lambda atom: separate_steps(atom, variable_domains)
-        ),
-    )
 
 
 def write(contract: Contract, format_name: str) -> str:
