@@ -36,6 +36,8 @@ TRIGGERS = [
     ("time", "after 1 s"),
     ("change", "q"),
     ("change", "x > 1"),
+    ("immediate change", "q"),
+    ("immediate change", "x > 1"),
     ("any", ""),
     ("none", ""),
 ]
@@ -294,6 +296,8 @@ def _add_triggers(draw, build, transition, signals):
         if kind == "none":
             continue
         attrs = {"time": {"when": text}, "change": {"condition": text}}.get(kind, {})
+        if kind == "immediate change":
+            kind, attrs = "change", {"condition": text, "immediate": True}
         trigger = build.add(Kind.TRIGGER, transition, subkind=kind, **attrs)
         build.graph.connect(Edge.TRIGGER, transition, trigger)
         if kind == "signal":

@@ -19,6 +19,8 @@ from sysmlc.logic.contract import Class
 from sysmlc.logic.evaluate import find_violation
 from sysmlc.logic.machines import interpreter
 from sysmlc.logic.machines.derivation import derive_contract
+from sysmlc.logic.machines.machine import OnChange
+from sysmlc.logic.machines.reaction import evaluate_expression, is_active
 from sysmlc.logic.machines.reader import read_machine
 
 STEPS = 7
@@ -65,6 +67,20 @@ def list_violated(contract, trace, *classes):
     ]
 
 
+def check_conditions_without_memory(machine, now):
+    """A change trigger has no memory only if its condition always ends the state."""
+    for transition in machine.list_transitions():
+        for occurrence in transition.occurrences:
+            if (
+                isinstance(occurrence, OnChange)
+                and not occurrence.memory
+                and is_active(machine, now, transition.source)
+                and evaluate_expression(machine, occurrence.condition, now)
+            ):
+                reactions = interpreter.list_reactions(machine, now, {})
+                assert all(transition.source in reaction.left_states for reaction in reactions)
+
+
 def iter_mutations(machine, valuation):
     """Yield the valuations that differ in one variable."""
     for variable in machine.variables:
@@ -98,6 +114,7 @@ def test_the_guarantees_allow_exactly_the_steps_of_the_interpreter(model, data):
     trace = draw_trace(data, machine)
     assert list_violated(contract, trace, Class.INIT, Class.SAFETY) == []
     for before, after in pairwise(trace):
+        check_conditions_without_memory(machine, before)
         for mutation in iter_mutations(machine, after):
             is_possible = mutation in interpreter.next_steps(
                 machine, before, select_inputs(machine, mutation)

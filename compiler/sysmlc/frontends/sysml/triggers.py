@@ -39,7 +39,7 @@ def _describe_invocation(lowering: Lowering, trigger: Element, invocation: Node)
         when = "" if argument is None else _write_time(lowering, argument)
         lowering.set_attributes(trigger, subkind="time", when=when, relative=kind == "after")
         return
-    lowering.set_attributes(trigger, subkind="change")
+    lowering.set_attributes(trigger, subkind="change", immediate=True)
     values.defer_expression(lowering, trigger, "condition", argument)
 
 

@@ -41,6 +41,7 @@ NOT_CONTENT = frozenset(
         "caex_id",
         "change_mode",
         "external",
+        "immediate",
         "interface_ids",
         "lineage",
         "namespace",

@@ -36,6 +36,7 @@ from sysmlc.ir.query.classifiers import (
     tag,
     time_of,
     type_of,
+    waits_for_change,
 )
 from sysmlc.ir.query.names import (
     bounds,
@@ -126,4 +127,5 @@ __all__ = [
     "tag",
     "time_of",
     "type_of",
+    "waits_for_change",
 ]

@@ -183,6 +183,14 @@ def strip_qualifiers(unit: str) -> str:
     return _QUALIFIER.sub("", unit).replace("'", "")
 
 
+def waits_for_change(trigger: Element) -> bool:
+    """Whether a change trigger waits until its condition becomes true, as in UML.
+
+    In SysML v2 it also fires if the condition is true when the wait begins.
+    """
+    return trigger.subkind == "change" and trigger.attrs.get("immediate") is not True
+
+
 def time_of(trigger: Element) -> Time:
     """Return the time of a time trigger."""
     text = str(trigger.attrs.get("when") or trigger.name)

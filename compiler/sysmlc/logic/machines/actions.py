@@ -157,6 +157,10 @@ class ReadingContext:
             self.auxiliary[key] = Variable(*facts, is_auxiliary=True)
         return self.auxiliary[key].name
 
+    def remove_auxiliary(self, name: str) -> None:
+        """Remove the auxiliary variable of this name, which nothing reads."""
+        self.auxiliary = {k: v for k, v in self.auxiliary.items() if v.name != name}
+
     def input_for(self, key: str, name: str, origin: str) -> str:
         """Return the name of the Boolean input with this key; create the input on first use."""
         return self.variable_for(key, name, Owner.ENVIRONMENT, BooleanDomain(), origin)

@@ -26,6 +26,7 @@ from sysmlc.logic.machines.machine import (
     AfterTicks,
     Assign,
     Machine,
+    OnChange,
     OnEvent,
     Transition,
     Vertex,
@@ -52,10 +53,10 @@ class GuardComparison:
         self._scope = scope
         self._remaining = MAX_VALUATIONS
         self._guards: dict[str, tuple[Formula, dict[str, Domain]]] = {}
-        """The guard of each transition, by its id, and the domains of the variables in it."""
+        """The guard and change conditions of each transition, by its id, and their variables."""
 
     def are_compatible(self, left: Transition, right: Transition) -> bool:
-        """Whether some values of the variables satisfy both guards.
+        """Whether some values of the variables satisfy both guards, and the changes waited for.
 
         The answer is yes if the comparison has more than ``_MAX_VALUATIONS_OF_PAIR`` valuations.
         Raises TooManyValuationsError beyond the bound for the machine.
@@ -76,12 +77,20 @@ class GuardComparison:
         return any(is_true(values, None) for values in domains.valuations(variables))
 
     def _read_guard(self, transition: Transition) -> tuple[Formula, dict[str, Domain]]:
-        guard = transition.guard
-        if guard is None:
-            return f.TRUE, {}
         if transition.id not in self._guards:
-            variables = dict(_find_domains(guard, self._scope))
-            self._guards[transition.id] = elaborate_condition(guard, self._scope), variables
+            guards = [] if transition.guard is None else [transition.guard]
+            changes = [o.condition for o in transition.occurrences if isinstance(o, OnChange)]
+            # Any other trigger enables the transition while the conditions are false.
+            if len(changes) < len(transition.occurrences):
+                changes = []
+            formula = f.both(*(elaborate_condition(guard, self._scope) for guard in guards))
+            if changes:
+                holds = (elaborate_condition(change, self._scope) for change in changes)
+                formula = f.both(f.either(*holds), formula)
+            variables: dict[str, Domain] = {}
+            for condition in (*guards, *changes):
+                variables |= _find_domains(condition, self._scope)
+            self._guards[transition.id] = formula, variables
         return self._guards[transition.id]
 
 

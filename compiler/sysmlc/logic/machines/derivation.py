@@ -136,8 +136,11 @@ def _initial_facts(exploration: Exploration, path: Path) -> dict[str, Formula]:
             facts[state.pick] = f.eq(f.var(state.pick), Const(literal))
         if state.timer:
             facts[state.timer] = f.eq(f.var(state.timer), Const(0))
-    for name, expression in machine.memories.items():
-        facts[name] = f.fold_iff(f.var(name), elaborate_condition(expression, machine.scope))
+    for name, memory in machine.memories.items():
+        was_true: Formula = f.FALSE
+        if not memory.state:
+            was_true = elaborate_condition(memory.condition, machine.scope)
+        facts[name] = f.fold_iff(f.var(name), was_true)
     return facts
 
 
@@ -338,12 +341,16 @@ def _stay_condition(exploration: Exploration, state: Vertex) -> Formula:
 def _derive_memories(exploration: Exploration) -> Iterator[Conjunct]:
     """Yield the values of memories, history variables and do behaviours."""
     machine = exploration.machine
-    for name, expression in machine.memories.items():
-        truth = elaborate_condition(expression, machine.scope)
+    for name, memory in machine.memories.items():
+        truth = elaborate_condition(memory.condition, machine.scope)
+        state = machine.vertices.get(memory.state)
+        text = texts.describe_memory(name, truth, state)
+        if state is not None:
+            has_entered = f.negate(f.var(state.opening)) if state.opening else f.TRUE
+            truth = f.both(truth, has_entered, _stay_condition(exploration, state))
+            truth = remove_redundant(truth, exploration.domains)
         formula = f.fold_iff(f.prime(f.var(name)), truth)
-        yield Conjunct(
-            formula, Class.SAFETY, _origin_of(exploration, name), texts.describe_memory(name, truth)
-        )
+        yield Conjunct(formula, Class.SAFETY, _origin_of(exploration, name), text)
     for region in machine.regions.values():
         if region.memory:
             yield from _derive_history(exploration, region)

@@ -11,9 +11,9 @@ from sysmlc.logic.machines.machine import (
     AfterTicks,
     Machine,
     Occurrence,
+    OnChange,
     OnEvent,
     OnInput,
-    OnRise,
     Transition,
     Vertex,
 )
@@ -92,7 +92,7 @@ def name_occurrence(occurrence: Occurrence) -> str:
             return f"event '{literal}'"
         case AfterTicks(count):
             return f"time event 'after {count_nouns(count, 'step')}'"
-        case OnRise(_, condition):
+        case OnChange(_, condition):
             return f"change event '{_print_expression(condition)}'"
         case OnInput(variable):
             return f"event '{variable}'"
@@ -107,8 +107,10 @@ def _describe_occurrence(occurrence: Occurrence) -> str:
         case AfterTicks(count):
             passed = "has passed" if count == 1 else "have passed"
             return f"{count_nouns(count, 'step')} {passed} since it was entered"
-        case OnRise(_, condition):
-            return f"'{_print_expression(condition)}' becomes true"
+        case OnChange(memory, condition, is_immediate):
+            from_start = " or is true from the start" if is_immediate and memory else ""
+            verb = "is" if is_immediate and not memory else "becomes"
+            return f"'{_print_expression(condition)}' {verb} true{from_start}"
         case OnInput(variable):
             return f"'{variable}' is reported"
 
@@ -181,9 +183,13 @@ def describe_frame(machine: Machine, name: str) -> str:
     return f"'{machine.wordings.get(name, name)}' does not change unless a transition changes it."
 
 
-def describe_memory(name: str, truth: Formula) -> str:
-    """Describe a memory: it stores whether a condition was true in the previous step."""
-    return f"'{name}' is true if {print_formula(truth)} held in the previous step."
+def describe_memory(name: str, truth: Formula, state: Vertex | None) -> str:
+    """Describe a memory: it stores whether a condition was true in the previous step.
+
+    With a *state*, it stores this only for the steps of the present stay in the state.
+    """
+    text = f"'{name}' is true if {print_formula(truth)} held in the previous step"
+    return f"{text}, and '{state.literal}' has remained active since." if state else f"{text}."
 
 
 def describe_do_behaviour(state: Vertex) -> str:

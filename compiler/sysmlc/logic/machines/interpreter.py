@@ -26,6 +26,9 @@ visible in the next step:
 - A history pseudostate leads to the state in which its region was last active; deep history
   restores all states inside it too. If the region was never active, or ended in a final state,
   the pseudostate's own transition is taken, else the region starts.
+- A change trigger of UML occurs in a step in which its condition is true and was false in the step
+  before. That of SysML v2 also occurs if its condition is true in the first step of each stay in
+  its source (``Observation::ObserveChange``), or in the first after an entry that takes time.
 - An event that enables nothing is lost. So is an event that coincides with a completion.
 
 UML 2.5.1 clauses 14.2.3.8 and 14.2.3.9; a step is a run-to-completion step.
@@ -43,9 +46,9 @@ from sysmlc.logic.machines.machine import (
     AfterTicks,
     Machine,
     Occurrence,
+    OnChange,
     OnEvent,
     OnInput,
-    OnRise,
     Transition,
     Vertex,
 )
@@ -138,14 +141,29 @@ def complete_valuation(
             after[state.timer] = (
                 0 if is_first else _count_ticks(machine, now, after, reaction, state)
             )
-    for name, condition in machine.memories.items():
+    for name, memory in machine.memories.items():
+        if memory.state:
+            has_waited = not is_first and _has_waited(machine, now, reaction, memory.state)
+            after[name] = has_waited and bool(evaluate_expression(machine, memory.condition, now))
+            continue
         # The first step has no previous step, and a condition that is true from the start does
         # not rise.
-        after[name] = bool(evaluate_expression(machine, condition, after if is_first else now))
+        values = after if is_first else now
+        after[name] = bool(evaluate_expression(machine, memory.condition, values))
     for region in machine.regions.values():
         if region.memory:
             after[region.memory] = INACTIVE if is_first else last_literal(now, region)
     return after
+
+
+def _has_waited(
+    machine: Machine, now: Mapping[str, Literal], reaction: Reaction, state_id: str
+) -> bool:
+    """Whether a state was active before the reaction, has ended its entry, and is not left."""
+    state = machine.vertices[state_id]
+    is_entering = bool(state.opening and now[state.opening])
+    has_stayed = is_active(machine, now, state_id) and state_id not in reaction.left_states
+    return has_stayed and not is_entering
 
 
 def _count_ticks(
@@ -315,8 +333,9 @@ def _has_occurrence(
             case AfterTicks(count):
                 # The step that takes the transition is the last tick.
                 happens = now[state.timer] == count - 1
-            case OnRise(memory, condition):
-                happens = bool(evaluate_expression(machine, condition, now)) and not now[memory]
+            case OnChange(memory, condition):
+                is_new = not memory or not now[memory]
+                happens = is_new and bool(evaluate_expression(machine, condition, now))
             case OnInput(variable):
                 happens = bool(now[variable])
         if happens:

@@ -68,14 +68,27 @@ class AfterTicks(Struct, frozen=True):
     count: int
 
 
-class OnRise(Struct, frozen=True):
-    """A condition is true and was false in the previous step.
+class Memory(Struct, frozen=True):
+    """What a variable remembers: whether *condition* was true in the previous step.
 
-    The variable ``memory`` stores the previous truth of the condition.
+    With a *state* it remembers this only while the state remains active: the variable is false in
+    the first step of each stay in the state.
+    """
+
+    condition: Expression
+    state: str = ""
+
+
+class OnChange(Struct, frozen=True):
+    """A condition is true, and the variable ``memory`` does not remember it from the step before.
+
+    An *immediate* change trigger of SysML v2 fires in the first step of its source, too. It has
+    no memory ("") if every step in which the condition is true leaves the source.
     """
 
     memory: str
     condition: Expression
+    is_immediate: bool = False
 
 
 class OnInput(Struct, frozen=True):
@@ -84,7 +97,7 @@ class OnInput(Struct, frozen=True):
     variable: str
 
 
-Occurrence = OnEvent | AfterTicks | OnRise | OnInput
+Occurrence = OnEvent | AfterTicks | OnChange | OnInput
 
 
 class Transition(Struct, frozen=True):
@@ -193,7 +206,7 @@ class Machine(Struct, frozen=True):
     assigned: tuple[str, ...] = ()
     assumed: tuple[str, ...] = ()
     """Assigned properties without a range, so that the compiler chose one."""
-    memories: dict[str, Expression] = field(default_factory=dict)
+    memories: dict[str, Memory] = field(default_factory=dict)
     late: dict[str, str] = field(default_factory=dict)
     """The variables for the values of properties after do behaviours have assigned them in the
     present step, by property; the machine of a component alone has them."""

@@ -25,9 +25,9 @@ from sysmlc.logic.machines.machine import (
     AfterTicks,
     Machine,
     Occurrence,
+    OnChange,
     OnEvent,
     OnInput,
-    OnRise,
     Transition,
     Vertex,
     element_id,
@@ -258,9 +258,9 @@ def trigger_condition(machine: Machine, state: Vertex, occurrence: Occurrence) -
         case AfterTicks(count):
             # The step that takes the transition is the last tick.
             return f.eq(f.var(state.timer), Const(count - 1))
-        case OnRise(memory, expression):
+        case OnChange(memory, expression):
             truth = elaborate_condition(expression, machine.scope)
-            return f.both(truth, f.negate(f.var(memory)))
+            return f.both(truth, f.negate(f.var(memory))) if memory else truth
         case OnInput(variable):
             return f.var(variable)
 

@@ -26,10 +26,11 @@ from sysmlc.logic.machines.machine import (
     NO_EVENT,
     AfterTicks,
     Machine,
+    Memory,
     Occurrence,
+    OnChange,
     OnEvent,
     OnInput,
-    OnRise,
     Transition,
     Vertex,
     element_id,
@@ -50,7 +51,7 @@ def _read_occurrences(
     if kind == "time" or (not kind and "when" in trigger.attrs):
         return (_read_time(draft, trigger, vertex),)
     if kind == "change" or (not kind and "condition" in trigger.attrs):
-        return (_read_change(draft, trigger),)
+        return (_read_change(draft, trigger, vertex),)
     if kind == "any":
         literals = make_unique([*draft.events.values(), "other"], "", NO_EVENT)
         draft.events.setdefault("any", literals[-1])
@@ -108,16 +109,23 @@ def _read_event(draft: MachineDraft, key: str, name: str) -> str:
     return draft.events[key]
 
 
-def _read_change(draft: MachineDraft, trigger: Element) -> Occurrence:
+def _read_change(draft: MachineDraft, trigger: Element, vertex: Vertex) -> Occurrence:
+    """Return the occurrence of a change trigger; create the memory that it needs.
+
+    The triggers of UML with equal conditions share a memory. In SysML v2 each state waits anew.
+    """
     text = str(trigger.attrs.get("condition", "")).strip() or trigger.name
     condition = read_condition(draft.reading, text, "change condition", trigger)
     printed = print_expression(condition)
     # An input that replaces the condition, or its negation, has another name than the text.
-    name = printed if isinstance(condition, Name | Unary) else text
-    key = f"memory {printed}"
-    memory = draft.reading.memory_for(key, f"was_{name}", BooleanDomain(), trigger.id)
-    draft.memories[memory] = condition
-    return OnRise(memory, condition)
+    name = f"was_{printed if isinstance(condition, Name | Unary) else text}"
+    state, key = "", f"memory {printed}"
+    is_immediate = trigger.attrs.get("immediate") is True
+    if is_immediate:
+        state, key, name = vertex.id, f"{key} {vertex.id}", f"{name}_in_{vertex.literal}"
+    memory = draft.reading.memory_for(key, name, BooleanDomain(), trigger.id)
+    draft.memories[memory] = Memory(condition, state)
+    return OnChange(memory, condition, is_immediate)
 
 
 # -- time ----------------------------------------------------------------------------------------
@@ -196,6 +204,8 @@ def read_transitions(draft: MachineDraft) -> None:
         ]
         if transitions:
             draft.outgoing[vertex.id] = _expand_else(graph, transitions)
+    for vertex in draft.vertices.values():
+        _drop_idle_memories(draft, vertex)
 
 
 def _base_literal(graph: Graph, transition: Element) -> str:
@@ -285,6 +295,57 @@ def _negate_siblings(transition: Transition, transitions: list[Transition]) -> E
 def _share_occurrence(left: Transition, right: Transition) -> bool:
     same = set(left.occurrences) & set(right.occurrences)
     return bool(same) or (not left.occurrences and not right.occurrences)
+
+
+def _drop_idle_memories(draft: MachineDraft, state: Vertex) -> None:
+    """Remove the memories of a state that is left in every step in which their condition is true.
+
+    They would never be true. Something else than a transition without a guard may preempt it if the
+    state has regions or internal transitions.
+    """
+    outgoing = draft.outgoing.get(state.id, ())
+    if state.regions or any(transition.kind == "internal" for transition in outgoing):
+        return
+    idle = {
+        occurrence.memory
+        for transition in outgoing
+        if transition.guard is None and _can_always_enter(draft, transition.target)
+        for occurrence in transition.occurrences
+        if isinstance(occurrence, OnChange) and draft.memories[occurrence.memory].state
+    }
+    if not idle:
+        return
+    for memory in idle:
+        del draft.memories[memory]
+        draft.reading.remove_auxiliary(memory)
+    draft.outgoing[state.id] = tuple(
+        replace(
+            transition,
+            occurrences=tuple(
+                replace(occurrence, memory="")
+                if isinstance(occurrence, OnChange) and occurrence.memory in idle
+                else occurrence
+                for occurrence in transition.occurrences
+            ),
+        )
+        for transition in outgoing
+    )
+
+
+def _can_always_enter(draft: MachineDraft, id: str) -> bool:
+    """Whether a vertex is a state that is entered whatever the values of guards are."""
+    vertex = draft.vertices.get(id)
+    if vertex is None or not vertex.is_stable:
+        return False
+    regions = [draft.regions[region] for region in vertex.regions]
+    starts = [(region, draft.outgoing.get(region.initial, ())) for region in regions]
+    return all(
+        len(start) == 1
+        and start[0].guard is None
+        and start[0].target in region.vertices
+        and _can_always_enter(draft, start[0].target)
+        for region, start in starts
+    )
 
 
 # -- forks and joins -----------------------------------------------------------------------------

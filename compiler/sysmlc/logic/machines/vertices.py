@@ -5,13 +5,13 @@ from dataclasses import dataclass, field
 from msgspec.structs import replace
 
 from sysmlc.ir import Edge, Element, Graph, Kind
-from sysmlc.ir.expressions import Expression
 from sysmlc.logic.contract import BooleanDomain, EnumerationDomain, Owner
 from sysmlc.logic.identifiers import identifier, make_unique
 from sysmlc.logic.machines.actions import ReadingContext, read_behaviours
 from sysmlc.logic.machines.machine import (
     INACTIVE,
     Action,
+    Memory,
     Region,
     Transition,
     Vertex,
@@ -30,7 +30,7 @@ class MachineDraft:
     """A state machine that is being read.
 
     ``events`` has the literal of ``event`` for each type of trigger, ``bounds`` the largest time
-    for which a state waits, and ``memories`` the condition that each memory variable stores.
+    for which a state waits, and ``memories`` what each memory variable stores.
     """
 
     reading: ReadingContext
@@ -40,7 +40,7 @@ class MachineDraft:
     outgoing: dict[str, tuple[Transition, ...]] = field(default_factory=dict)
     events: dict[str, str] = field(default_factory=dict)
     bounds: dict[str, int] = field(default_factory=dict)
-    memories: dict[str, Expression] = field(default_factory=dict)
+    memories: dict[str, Memory] = field(default_factory=dict)
     entry: tuple[Action, ...] = ()
     within: str = ""
     """The id of the state whose submachine is being read; empty outside submachines."""
