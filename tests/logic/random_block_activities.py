@@ -30,7 +30,8 @@ Valuation = dict[str, Literal]
 
 def blocks(max_leaves: int = 6) -> st.SearchStrategy[Block]:
     """Draw blocks of the simple kinds."""
-    leaf = st.sampled_from([("act",), ("act",), ("act",), ("send",), ("value",), ("accept",)])
+    words = ("act", "act", "act", "send", "value", "accept", "change")
+    leaf = st.sampled_from([(word,) for word in words])
     return st.recursive(
         leaf,
         lambda inner: st.one_of(
@@ -47,7 +48,7 @@ def blocks(max_leaves: int = 6) -> st.SearchStrategy[Block]:
 
 def rich_blocks(max_leaves: int = 5) -> st.SearchStrategy[Block]:
     """Draw blocks of all kinds."""
-    words = ("act", "act", "act", "send", "value", "accept", "raise")
+    words = ("act", "act", "act", "send", "value", "accept", "change", "raise")
     leaf = st.sampled_from([(word,) for word in words])
     unary = ("loop", "sub", "each", "all", "store", "stop", "cross", "outward", "chain")
     binary = ("seq", "par", "if", "choose", "while", "case", "try", "ask")
@@ -105,6 +106,14 @@ class Canvas:
 
     def _accept(self) -> tuple[Element, Element]:
         node = self.node(Kind.ACTION, "accept", f"e{self.count}")
+        return node, node
+
+    def _change(self) -> tuple[Element, Element]:
+        """Draw an action that waits, as in UML, until a condition becomes true."""
+        node = self.node(Kind.ACTION, "accept", f"e{self.count}")
+        attrs: dict[str, AttrValue] = {"subkind": "change", "condition": "hot"}
+        trigger = self.graph.add(Element(f"t{self.count}", Kind.TRIGGER, "", node.id, attrs=attrs))
+        self.graph.connect(Edge.TRIGGER, node, trigger)
         return node, node
 
     def _seq(self, first: Block, second: Block) -> tuple[Element, Element]:

@@ -43,7 +43,7 @@ def add_counter(tokens, dice):
     variable = Variable("x", Owner.SYSTEM, RANGE, "a")
     initial_value, is_local = dice.choice([0, 2]), dice.random() < 0.5
     store = Store(variable, tuple(writes), initial_value, is_local)
-    return replace(tokens, stores=(store,))
+    return replace(tokens, stores=(store, *tokens.stores))
 
 
 @settings(max_examples=examples(200), deadline=None)
@@ -70,7 +70,7 @@ def test_a_write_that_stops_in_a_run_may_stop_by_the_value_analysis(block, has_f
     if tokens is None:
         return
     tokens = add_counter(tokens, dice)
-    (store,), formulas = tokens.stores, StepFormulas(tokens)
+    store, formulas = tokens.stores[0], StepFormulas(tokens)
     analysis = ValueAnalysis(tokens, ConcurrencyRelation(tokens), store)
     for _, valuation in play(tokens, dice, 80):
         for write in store.writes:

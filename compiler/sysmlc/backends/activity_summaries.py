@@ -53,7 +53,7 @@ class ActivitySummary:
             yield f"**Performance.** It runs {describe_performance(game.handshake, '`')}."
         inputs = [v for v in game.inputs if v.name not in done and v.name not in game.pulses]
         events = [v for v in game.inputs if v.name not in done and v.name in game.pulses]
-        stores = (*game.stores, *game.shared)
+        stores = [store for store in (*game.stores, *game.shared) if store.follows is None]
         names = _join([_quote(event.name) for event in events])
         waits = f" It waits for {names}." if names else ""
         yield f"**Inputs.** {_list_variables('It reads', inputs)}{waits}"
@@ -235,6 +235,7 @@ class ActivitySummary:
         own = {node.run for node in self._game.nodes}
         own |= {edge.variable for edge in self._game.edges}
         own |= {name for _, name in self._game.named_conditions}
+        own |= {store.variable.name for store in self._game.stores if store.follows is not None}
         if self._game.handshake is not None:
             own.add(self._game.handshake.running)
         texts = [

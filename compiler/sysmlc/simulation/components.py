@@ -442,6 +442,9 @@ class ParameterStep:
         options: dict[str, list[Literal]] = {}
         for store, node in self._arguments.locals:
             variable = store.variable
+            if store.follows is not None:
+                options[variable.name] = [evaluate.is_true(store.follows, self._now)]
+                continue
             options[variable.name] = self._list_after(variable.name)
             if node in started:
                 any_value = domains.values(variable.domain)

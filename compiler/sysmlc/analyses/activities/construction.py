@@ -107,6 +107,7 @@ def _finish(draft: Draft, regions: Regions) -> TokenGraph:
         edges=tuple(edges),
         inputs=tuple(draft.inputs.variables.values()),
         pulses=tuple(draft.inputs.pulses),
+        stores=tuple(draft.inputs.memories.values()),
         interruptibles=(
             *_describe_regions(draft, regions),
             *_list_exception_regions(draft),

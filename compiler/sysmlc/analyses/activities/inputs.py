@@ -17,8 +17,9 @@ from sysmlc.ir.expressions import (
     name_of,
     walk_tree,
 )
-from sysmlc.ir.query import port_names
+from sysmlc.ir.query import port_names, waits_for_change
 from sysmlc.logic import formula as f
+from sysmlc.logic.activities.token_nodes import Store
 from sysmlc.logic.contract import (
     BooleanDomain,
     Domain,
@@ -242,6 +243,8 @@ class Inputs:
         self._scope = scope
         self._sink = sink
         self._by_condition: dict[str, str] = {}
+        self.memories: dict[Formula, Store] = {}
+        """The variables that tell whether conditions held in the step before."""
 
     def declare_pulse(self, prefix: str, origin: Element) -> Formula:
         """Declare an event and return its formula: an input that holds in single steps."""
@@ -254,6 +257,18 @@ class Inputs:
         if wanted not in self.variables:
             return self.declare_pulse(wanted, origin)
         return f.var(wanted)
+
+    def remember_condition(self, condition: Formula, text: str, origin: Element) -> Formula:
+        """Return the formula that a condition held in the step before.
+
+        Nothing becomes true in the first step: its values were there before.
+        """
+        if condition not in self.memories:
+            name = self.names.new(f"was_{identifier(text, 'condition')}")
+            facts = name, Owner.SYSTEM, BooleanDomain(), origin.id
+            variable = Variable(*facts, is_auxiliary=True)
+            self.memories[condition] = Store(variable, (), True, follows=condition)
+        return f.var(self.memories[condition].variable.name)
 
     def read_condition(self, text: str, origin: Element, what: str) -> Formula:
         """Return the formula of a text. Unknown names in it become Boolean inputs.
@@ -376,7 +391,8 @@ def describe_events(graph: Graph, action: Element) -> str:
 def _describe_event(graph: Graph, trigger: Element) -> str:
     condition = trigger.attrs.get("condition")
     if trigger.subkind == "change" and condition:
-        return f"'{condition}' holds"
+        verb = "becomes true" if waits_for_change(trigger) else "holds"
+        return f"'{condition}' {verb}"
     type_ = graph.target(trigger, Edge.TYPED_BY)
     name = (type_.name if type_ else "") or trigger.name
     if not name:
@@ -392,7 +408,11 @@ def _list_triggers(graph: Graph, action: Element) -> list[Element]:
 def _read_event(inputs: Inputs, trigger: Element, action: Element) -> Formula:
     if trigger.subkind == "change" and trigger.attrs.get("condition"):
         text = str(trigger.attrs["condition"])
-        return inputs.read_condition(text, action, "the change condition")
+        condition = inputs.read_condition(text, action, "the change condition")
+        if waits_for_change(trigger):
+            was_true = inputs.remember_condition(condition, text, trigger)
+            return f.both(condition, f.negate(was_true))
+        return condition
     name = _name_event(inputs.graph, trigger, action)
     inputs.receivers.setdefault(name, []).append(action)
     return inputs.share_event(name, trigger)

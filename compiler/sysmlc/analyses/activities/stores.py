@@ -165,7 +165,10 @@ class _StoreTracker:
     def build_graph(self) -> TokenGraph:
         """Return the token graph with a store for each tracked variable."""
         tracked = self._select_tracked()
-        stores = tuple(self._make_store(name) for name in self.writes if name in tracked)
+        stores = (
+            *(self._make_store(name) for name in self.writes if name in tracked),
+            *self.tokens.stores,
+        )
         stored = {variable.variable.name for variable in stores}
         self.read_variables = self._read_by_tokens() | self._read_by_values(stored)
         inputs_by_name = {variable.name: variable for variable in self.tokens.inputs}
@@ -199,7 +202,7 @@ class _StoreTracker:
         return {name for name in self.writes if not self._find_refusal(name)}
 
     def _read_by_values(self, names: Iterable[str]) -> set[str]:
-        writes = [write for name in names for write in self.writes[name]]
+        writes = [write for name in names for write in self.writes.get(name, ())]
         formulas = [part for write in writes for pair in write.values for part in pair]
         return {variable.name for formula in formulas for variable in f.variables(formula)}
 

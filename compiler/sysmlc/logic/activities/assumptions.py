@@ -164,7 +164,10 @@ def _open_if_possible(formulas: StepFormulas, condition: Formula) -> Formula:
 
     The environment cannot open a guard that a variable of the activity keeps closed.
     """
-    names = {variable.name for variable in f.variables(condition)}
+    memories = [s.variable.name for s in formulas.graph.stores if s.follows is not None]
+    # The environment can let a condition become false and then true.
+    wanted = substitute(condition, dict.fromkeys(memories, f.FALSE)) if memories else condition
+    names = {variable.name for variable in f.variables(wanted)}
     inside = formulas.graph.written_variables & names
     inputs = {variable.name: variable for variable in formulas.graph.inputs}
     if not inside or not names - inside <= inputs.keys():
@@ -176,7 +179,7 @@ def _open_if_possible(formulas: StepFormulas, condition: Formula) -> Formula:
     if prod(map(len, choices)) > _MAX_CHOICES:
         return f.TRUE
     possible = f.either(
-        *(substitute(condition, dict(zip(free, row, strict=True))) for row in product(*choices))
+        *(substitute(wanted, dict(zip(free, row, strict=True))) for row in product(*choices))
     )
     domains = {store.variable.name: store.variable.domain for store in formulas.graph.stores}
     if not is_satisfiable(f.negate(possible), domains):

@@ -326,6 +326,11 @@ def _derive_initial_value(store: Store) -> Iterator[Conjunct]:
 
 def _derive_store_updates(formulas: StepFormulas, store: Store) -> Iterator[Conjunct]:
     """Yield the conjuncts for the writes of a variable, its reset at a restart, and its frame."""
+    if store.follows is not None:
+        text = f"'{store.variable.name}' is true if {print_formula(store.follows)} held in the "
+        step = f.fold_iff(f.prime(f.var(store.variable.name)), store.follows)
+        yield Conjunct(step, Class.SAFETY, store.variable.origin, f"{text}previous step.")
+        return
     restart = (
         formulas.begin_formula(ACTIVITY_REGION)
         if store.local and store.first is not None

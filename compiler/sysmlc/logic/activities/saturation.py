@@ -80,6 +80,7 @@ def _reduce_to_relevant(graph: TokenGraph, relevant_writes: Sequence[Write]) -> 
             for pair in write.values
             for part in pair
         )
+        added |= _variable_names(store.follows for store in stores if store.follows is not None)
         if added <= names:
             return replace(graph, stores=stores)
         names |= added

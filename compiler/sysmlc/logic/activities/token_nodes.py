@@ -177,13 +177,15 @@ class Store(Struct, frozen=True):
     """A variable that the activity decides: it keeps its value until a node writes another.
 
     ``first`` is its initial value, or None if the model gives none. A ``local`` variable is reset
-    to it each time the activity starts.
+    to it each time the activity starts. A variable that ``follows`` a condition has no writes: it
+    tells in each step whether the condition held in the step before, also while nothing runs.
     """
 
     variable: Variable
     writes: tuple[Write, ...]
     first: Literal | None = None
     local: bool = False
+    follows: Formula | None = None
 
 
 class Handshake(Struct, frozen=True):

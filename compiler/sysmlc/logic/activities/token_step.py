@@ -372,6 +372,9 @@ class TokenStep:
     def _stored_values(self) -> Iterator[tuple[str, Literal]]:
         """Yield the values of the variables after the writes of all finished nodes."""
         for store, (name, value) in zip(self.graph.stores, self.old.stored, strict=True):
+            if store.follows is not None:
+                yield name, self.holds(store.follows, self.inputs)
+                continue
             writes = [write for write in store.writes if write.node in self.finished]
             if len(writes) > 1:
                 writes = [self.choose(self.graph.node(writes[0].node), writes)]

@@ -337,6 +337,10 @@ class Arguments:
         self, formulas: PerformanceFormulas, store: Store, node: str
     ) -> Iterator[Conjunct]:
         """Yield the steps of a variable, which has its default value when its activity starts."""
+        if store.follows is not None:
+            formula = f.fold_iff(f.prime(f.var(store.variable.name)), store.follows)
+            yield Conjunct(formula, Class.SAFETY, store.variable.origin, source=Source.DERIVED)
+            return
         variable, starts = store.variable, formulas.begin_formula(node)
         writes = list(self._iter_writes(formulas, variable.name))
         values = (f.both(when, equals(variable, value, is_next=True)) for when, value in writes)

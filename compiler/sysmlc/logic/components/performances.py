@@ -324,6 +324,11 @@ class Performances:
         slot: Slot | None = None
         if element is not None:
             slot = self.find_slot(copy, element, store.variable.name)
+        if store.follows is not None:
+            variable = replace(self.inputs.pop(name), owner=Owner.SYSTEM)
+            follows = rename_variables(store.follows, copy.variables)
+            self.locals.append((replace(store, variable=variable, follows=follows), copy.id))
+            return
         writes = [copy.rename_write(write, ids) for write in store.writes]
         if slot is not None and self._tree.read_slot(slot).variable.name == name:
             for write in writes:
