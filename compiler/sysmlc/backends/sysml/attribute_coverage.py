@@ -9,6 +9,7 @@ from sysmlc.backends.sysml.shapes import is_succession
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import Edge, Element, Kind
 from sysmlc.ir.expressions import ExpressionError, print_expression
+from sysmlc.ir.query import waits_for_change
 from sysmlc.ir.query.activities import is_joined, pin_subkind
 from sysmlc.logic.expressions.parsing import tree_of
 
@@ -146,6 +147,10 @@ def _has_unexpressed_guard(writer: Writer, _member: Member | None, element: Elem
     return element.kind in _FLOWS and not has_notation
 
 
+def _waits_for_change(_writer: Writer, _member: Member | None, element: Element) -> bool:
+    return waits_for_change(element)
+
+
 def _is_flow(_writer: Writer, _member: Member | None, element: Element) -> bool:
     return element.kind in _FLOWS
 
@@ -275,4 +280,5 @@ _CHECKS: dict[str, _Check] = {
     "default_language": _has_empty_default,
     "body": _has_unexpressed_body,
     "language": _has_unexpressed_language,
+    "immediate": _waits_for_change,
 }

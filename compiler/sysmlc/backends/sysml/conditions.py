@@ -10,7 +10,7 @@ from sysmlc.backends.sysml.library import IMPORTED, ROOTS, name_unit
 from sysmlc.backends.sysml.plan import Member
 from sysmlc.backends.sysml.printing import Line, quote_name
 from sysmlc.backends.sysml.references import look_up
-from sysmlc.backends.sysml.rules import TEXT_AS_NAME
+from sysmlc.backends.sysml.rules import TEXT_AS_NAME, WAITS_FOR_CHANGE
 from sysmlc.backends.sysml.shapes import Shape
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import Edge, Element, query
@@ -111,6 +111,8 @@ def _format_payload(writer: Writer, scope: Member, trigger: Element) -> str:
     if trigger.subkind == "time":
         return _format_time(writer, scope, trigger)
     if trigger.subkind == "change":
+        if query.waits_for_change(trigger):
+            writer.losses.record(WAITS_FOR_CHANGE, trigger)
         text = str(trigger.attrs.get("condition", ""))
         return f"when {format_condition(writer, scope, trigger, text)}"
     return _format_message_payload(writer, scope, trigger)

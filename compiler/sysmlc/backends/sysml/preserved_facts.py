@@ -17,7 +17,7 @@ from sysmlc.backends.sysml.plan import Member
 from sysmlc.backends.sysml.printing import quote_name
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind
-from sysmlc.ir.query import follows_v2, list_rule_dependent_nodes
+from sysmlc.ir.query import follows_v2, list_rule_dependent_nodes, waits_for_change
 
 _NEVER_PRESERVED = frozenset({"external", "library", "unresolved"})
 _PRESERVED_EDGES = tuple(
@@ -130,6 +130,8 @@ def _iter_part_facts(writer: Writer, part: Element, default_name: str) -> Iterat
     if part.kind is Kind.ACTIVITY_PARAMETER and not writer.graph.targets(part, Edge.TYPED_BY):
         construct = "a parameter node without a type"
         writer.record_approximation(part, construct, "one of its parameter's type")
+    if waits_for_change(part) and "immediate" not in part.attrs:
+        yield "immediate=false"
     yield from _iter_attribute_facts(writer, None, part)
 
 

@@ -54,6 +54,15 @@ NAME_LEFT_OUT = rule(
     Severity.INFO,
     "{construct} has no name in SysML v2 ({count} names omitted)",
 )
+WAITS_FOR_CHANGE = rule(
+    "SM463",
+    "sysml-when-is-immediate",
+    Severity.INFO,
+    "a change event of UML waits until its condition becomes true; 'accept when' of SysML v2 also "
+    "fires if the condition is already true ({count} in the text)",
+    help="sysmlc reads the metadata of the text and waits as in UML; for other tools, let the "
+    "behaviour ensure that the condition is false when the wait begins",
+)
 
 UNCHANGED_TEXT = rule(
     "SM738",

@@ -11,6 +11,7 @@ from sysmlc.backends.sysml.printing import Line, quote_name
 from sysmlc.backends.sysml.references import format_element_reference
 from sysmlc.backends.sysml.writer import Writer
 from sysmlc.ir import Edge, Element, Kind
+from sysmlc.ir.query import waits_for_change
 
 _KEYWORDS = {
     "choice": "choice",
@@ -98,7 +99,11 @@ def write_transition(writer: Writer, member: Member) -> list[Line]:
     lines = []
     accepts = [format_trigger(writer, member, trigger) for trigger in triggers] or [""]
     name = member.name
-    for accept in accepts:
+    for index, accept in enumerate(accepts):
+        # The metadata of the element names the trigger only if there is a single one.
+        if len(triggers) > 1 and waits_for_change(triggers[index]):
+            facts = {"attributes": ("trigger.immediate=false",)}
+            body = [*body, make_annotation(writer, member, "Kept", facts)]
         lines.append(_write_line(writer, member, name, (source, target), accept, body))
         name, body = "", []
     return lines

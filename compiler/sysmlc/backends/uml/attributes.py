@@ -6,6 +6,7 @@ from sysmlc.backends.uml.context import Context
 from sysmlc.backends.uml.events import find_or_add_signature
 from sysmlc.backends.uml.features import find_attribute_feature, to_camel_case
 from sysmlc.backends.uml.node import Node
+from sysmlc.backends.uml.rules import IMMEDIATE
 from sysmlc.backends.uml.sysml_profile import iter_applications
 from sysmlc.backends.uml.values import (
     add_expression,
@@ -336,6 +337,12 @@ def _write_payload(context: Context, element: Element, key: str, value: AttrValu
         context.find_node(element).attributes["name"] = format_value(value)
 
 
+def _write_immediate(context: Context, element: Element, _key: str, value: AttrValue) -> None:
+    """Report a trigger that UML lets wait longer than SysML v2."""
+    if value is True:
+        context.losses.record(IMMEDIATE, element)
+
+
 def _write_nothing(context: Context, element: Element, key: str, value: AttrValue) -> None:
     """Write nothing: the event of the trigger or the value of the constraint expresses it."""
 
@@ -402,6 +409,7 @@ _WRITERS: dict[str, _Writer] = {
     "observations": _write_nothing,
     "when": _write_nothing,
     "condition": _write_nothing,
+    "immediate": _write_immediate,
     "relative": _write_nothing,
     "deferred": _write_nothing,
     "payload": _write_payload,

@@ -70,6 +70,14 @@ RESPELT_ID = rule(
         "values in the plant and not in the saved model"
     ),
 )
+IMMEDIATE = rule(
+    "SM490",
+    "uml-when-waits-for-change",
+    Severity.INFO,
+    "'accept when' of SysML v2 also fires if its condition is already true; it is saved as a "
+    "change event, which waits until the condition becomes true ({count})",
+    help="let the behaviour ensure that the condition is false when the wait begins",
+)
 _UNSUPPORTED = frozenset({UNSUPPORTED_KIND, UNSUPPORTED_EDGE, UNSUPPORTED_ATTRIBUTE})
 
 
