@@ -123,6 +123,19 @@ def test_a_block_with_branches_at_once_stays_one_step():
     assert "SM615" in codes
 
 
+def test_several_successions_of_the_start_begin_together():
+    """In UML, they compete for one token; the steps of SysML v2 all follow the start."""
+    model, codes = recipe("""
+        first start then go;
+        first start then come;
+        action go : Move; then both;
+        action come : Move; then both;
+        join both; then done;""")
+    (graph,) = model.function_graphs
+    assert list_edges(graph)[:3] == ["start -> fork", "fork -> come", "fork -> go"]
+    assert "SM604" not in codes
+
+
 def test_a_merge_with_several_successions_is_followed_by_a_fork():
     """Only 'decide' chooses in SysML v2; UML takes such a merge as a merge and a decision."""
     model, codes = recipe("""
