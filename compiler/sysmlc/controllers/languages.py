@@ -1,10 +1,13 @@
 """Formulas about one or two steps as expressions of programming languages."""
 
+import sys
 from collections.abc import Callable, Mapping
+from fractions import Fraction
 
 from msgspec import Struct
 
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
+from sysmlc.logic.regions import Term
 from sysmlc.support.program_text import quote_python
 
 
@@ -41,6 +44,30 @@ def make_c_language(fields: Mapping[str, str], constants: Mapping[str, str]) -> 
     )
 
 
+def print_c_number(number: Fraction, *, is_integral: bool = False) -> str:
+    """Return a number as a double, the nearest one, or as an Integer if it *is_integral*."""
+    if is_integral and number.denominator == 1 and abs(number) <= _MAX_LONG:
+        return f"{number}L"
+    return repr(round_to_double(number))
+
+
+def round_to_double(number: Fraction) -> float:
+    """Return the nearest finite double."""
+    return float(max(-_MAX_DOUBLE, min(_MAX_DOUBLE, number)))
+
+
+_MAX_LONG = 2**63 - 1
+"""The largest Integer in programs of C99; one that is no ``long`` is read as ``long long``."""
+_MAX_DOUBLE = Fraction(sys.float_info.max)
+
+
+def print_python_number(number: Fraction) -> str:
+    """Return a number as an exact number of Python."""
+    if number.denominator == 1:
+        return str(number)
+    return f"Fraction({number.numerator}, {number.denominator})"
+
+
 def _print_python_constant(value: Literal) -> str:
     return quote_python(value) if isinstance(value, str) else str(value)
 
@@ -71,6 +98,18 @@ def print_expression(formula: Formula, language: Language, is_about_two_steps: b
                 return _join_operands(op, [print_part(arg) for arg in args], language)
 
     return print_part(formula)
+
+
+def print_sum(term: Term, language: Language, print_number: Callable[[Fraction], str]) -> str:
+    """Return a sum of the numbers in ``values`` as an expression."""
+    text = ""
+    for name, factor in term:
+        operand = language.print_variable("values", name)
+        if abs(factor) != 1:
+            operand = f"{print_number(abs(factor))} * {operand}"
+        sign = "-" if factor < 0 else "+"
+        text = f"{text} {sign} {operand}" if text else operand
+    return text
 
 
 def _join_operands(op: Op, operands: list[str], language: Language) -> str:

@@ -1,18 +1,27 @@
 """Runtime monitors: the part of a contract that a finite run can break.
 
 A monitor reads one valuation after another and needs only the last one: history bits store what a
-formula asks about earlier steps, as in the reduction to GR(1). Liveness is not monitored, because
-every finite run can still satisfy it (Bauer, Leucker and Schallhart, Runtime Verification for LTL
-and TLTL).
+formula asks about earlier steps, as in the reduction to GR(1). A number is one more kind of input:
+its region is computed. Liveness is not monitored, because every finite run can still satisfy it
+(Bauer, Leucker and Schallhart, Runtime Verification for LTL and TLTL).
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from fractions import Fraction
 
 from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.logic import formula as f
-from sysmlc.logic.contract import Class, Conjunct, Contract, IntegerDomain, Owner, Variable
+from sysmlc.logic.contract import (
+    Class,
+    Conjunct,
+    Contract,
+    EnumerationDomain,
+    IntegerDomain,
+    Owner,
+    Variable,
+)
 from sysmlc.logic.evaluate import compile_evaluation
 from sysmlc.logic.formula import Formula, Literal, Op, has_primes, variable_names
 from sysmlc.logic.reduction.contract_reduction import reduce_contract
@@ -21,6 +30,7 @@ from sysmlc.logic.reduction.history import (
     list_history_bits,
     list_history_conjuncts,
 )
+from sysmlc.logic.regions import LINE, Regions, Term
 
 Valuation = Mapping[str, Literal]
 
@@ -33,6 +43,21 @@ class Check(Struct, frozen=True):
     """The side that breaks the conjunct: the environment for assumptions."""
 
 
+class NumericInput(Struct, frozen=True):
+    """A number that a run gives, and from which regions are computed."""
+
+    unit: str
+    """Symbol of the unit; empty for plain numbers."""
+    is_integral: bool
+
+
+class InputSum(Struct, frozen=True):
+    """A sum of numeric inputs, and the regions of which a variable of the contract is one."""
+
+    term: Term
+    regions: Regions
+
+
 class Monitor(Struct, frozen=True):
     """The checks of one contract, assumptions first, and the history bits that they read."""
 
@@ -42,6 +67,38 @@ class Monitor(Struct, frozen=True):
     bits: tuple[HistoryBit, ...]
     unmonitored: tuple[Conjunct, ...]
     """Conjuncts that no finite run breaks, and those that have no known form with history bits."""
+
+    @property
+    def sums(self) -> dict[str, InputSum]:
+        """The sum of inputs for each variable that is the region of a number."""
+        variables = self.contract.variables
+        # The input for the only number of a variable has the name of the variable.
+        names = {variable.wording: variable.name for variable in variables}
+        names |= {v.term[0][0]: v.name for v in variables if len(v.term) == 1}
+        sums: dict[str, InputSum] = {}
+        for variable in variables:
+            if isinstance(variable.domain, EnumerationDomain) and variable.domain.regions:
+                term = variable.term or ((variable.name, Fraction(1)),)
+                own = tuple((names.get(key, key), factor) for key, factor in term)
+                sums[variable.name] = InputSum(own, variable.domain.regions)
+        return sums
+
+    @property
+    def numbers(self) -> dict[str, NumericInput]:
+        """The numeric inputs by name; Integers in a range are none."""
+        inputs: dict[str, NumericInput] = {}
+        sums = self.sums
+        others = {variable.name for variable in self.contract.variables} - sums.keys()
+        # A sum that is compared with a number without a unit has the unit of its features.
+        for item in sorted(sums.values(), key=lambda item: len(item.term)):
+            names = [name for name, _ in item.term if name not in others]
+            units = (inputs[name].unit for name in names if name in inputs)
+            unit = item.regions.unit or next(filter(None, units), "")
+            for name in names:
+                known = inputs.get(name, NumericInput("", False))
+                is_integral = known.is_integral or item.regions.is_integral
+                inputs[name] = NumericInput(known.unit or unit, is_integral)
+        return inputs
 
     def find_needed_variables(self, formula: Formula) -> set[str]:
         """Return the variables that a formula reads, directly or by history bits."""
@@ -65,7 +122,8 @@ class Violation(Struct, frozen=True):
 def build_monitor(contract: Contract) -> Monitor:
     """Return the monitor of a contract.
 
-    An integer outside of its range breaks a check, too, of the side that decides the variable.
+    An integer outside of its range, or a number in no region, breaks a check, too, of the side that
+    decides the variable.
     """
     reduced = reduce_contract(contract)
     bits = list_history_bits(reduced.contract)
@@ -93,7 +151,7 @@ def build_monitor(contract: Contract) -> Monitor:
 
 
 def _check_ranges(declared: Iterable[Variable], owner: Owner) -> Iterator[Check]:
-    """Yield a check for each integer of one side: the value lies in the range.
+    """Yield a check for each number of one side: the value lies in the range or in a region.
 
     Nothing is guaranteed outside of a range that the compiler assumes.
     """
@@ -107,6 +165,15 @@ def _check_ranges(declared: Iterable[Variable], owner: Owner) -> Iterator[Check]
                 )
                 source = ", which is assumed" if variable.is_range_assumed else ""
                 text = f"'{variable.name}' stays between {low} and {high}{source}."
+                yield Check(Conjunct(formula, Class.SAFETY, variable.origin, text), owner)
+            case EnumerationDomain(literals, regions=Regions() as regions) if side is owner:
+                # A number such as NaN has no region.
+                name = f.var(variable.name)
+                formula = f.either(*(f.eq(name, f.const(literal)) for literal in literals))
+                term, limits = variable.wording or variable.name, regions.join_neighbours()
+                conditions = " or ".join(limits.list_conditions(term))
+                shown = "" if LINE in limits.intervals else f": {conditions}"
+                text = f"'{term}' has a value in each step{shown}."
                 yield Check(Conjunct(formula, Class.SAFETY, variable.origin, text), owner)
 
 

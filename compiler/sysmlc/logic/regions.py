@@ -5,12 +5,13 @@ makes conditions over reals finite without loss: ``temp < 18`` and ``temp >= 18`
 """
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from fractions import Fraction
 from itertools import pairwise
 from math import ceil, floor
 
 from msgspec import Struct
+from msgspec.structs import replace
 
 from sysmlc.support.units import express, show_symbol
 
@@ -161,6 +162,30 @@ class Regions(Struct, frozen=True):
         indices = (index for index, item in enumerate(self.intervals) if item.contains(number))
         return next(indices, None)
 
+    def list_floors(self) -> Iterator[tuple[Cut | None, int | None]]:
+        """Yield the cuts, the highest one first, with the region between this cut and the last.
+
+        A region is given by its index, or None where none is. The last cut is None.
+        """
+        ceiling: Cut | None = None
+        for index, interval in reversed(list(enumerate(self.intervals))):
+            if interval.high != ceiling and interval.high is not None:
+                yield interval.high, None
+            ceiling = interval.low
+            yield ceiling, index
+        if ceiling is not None:
+            yield None, None
+
+    def join_neighbours(self) -> "Regions":
+        """Return the regions without the cuts between two of them."""
+        joined: list[Interval] = []
+        for interval in self.intervals:
+            if joined and joined[-1].high == interval.low:
+                joined[-1] = Interval(joined[-1].low, interval.high)
+            else:
+                joined.append(interval)
+        return replace(self, intervals=tuple(joined))
+
     def select(self, op: str, number: Fraction) -> tuple[int, ...] | None:
         """Return the indices of the regions in which a comparison with a number is true.
 
@@ -215,6 +240,10 @@ class Regions(Struct, frozen=True):
         """Whether the region has a single number."""
         low, high = self.intervals[index].low, self.intervals[index].high
         return low is not None and high is not None and self._is_point(low, high)
+
+    def list_conditions(self, term: str) -> list[str]:
+        """Return each region as a condition, as ``describe`` does."""
+        return [self.describe(index, term) for index in range(len(self.intervals))]
 
     def describe(self, index: int, term: str) -> str:
         """Return a region as a condition: ``temp < low``, ``18 <= temp < 22``, ``temp == 5``."""
