@@ -315,7 +315,7 @@ def test_numbers_have_units_and_checks():
     files = {file.path.rpartition("/")[2]: file.text for file in compilation.artefacts}
     header = files["heater_monitor.h"]
     assert [line for line in header.splitlines() if "double " in line and ";" in line] == [
-        "    double temp; /* temp in K: temp < 20 °C_abs, temp >= 20 °C_abs */",
+        "    double temp; /* temp in K: temp < 20 °C, temp >= 20 °C */",
         "    double inside; /* inside in m: inside < 200 cm, inside >= 200 cm */",
         "    double fill; /* fill: 0 <= fill < 50, 50 <= fill <= 100 */",
         "    double outside; /* outside in m: for inside - outside */",
