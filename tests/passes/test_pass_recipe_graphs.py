@@ -195,6 +195,41 @@ def test_a_block_waits_for_all_flows_that_reach_it():
     assert "SM604" not in list_codes(sink)
 
 
+LOOKS = "".join(
+    f"""\
+    Action {id} "{id}" subkind="call-behavior"
+      -> calls look
+      Pin {id}.ok "ok" direction="out"
+        -> typed-by Boolean
+    ObjectFlow {id}.flow
+      -> flow-source {id}.ok
+      -> flow-target a.in
+"""
+    for id in ("near", "far")
+)
+
+
+@pytest.mark.parametrize(("bound", "kind"), [("", "merge"), ("2", "")])
+def test_a_pin_takes_the_value_of_any_of_its_flows(bound, kind):
+    """Unless its lower bound asks for the values of all flows (UML 2.5.1, 16.2.3)."""
+    nodes = f"""\
+{INITIAL}    Control d "which" subkind="decision"
+    Action a "place" subkind="call-behavior"
+      -> calls place
+      Pin a.in "seen" direction="in" multiplicity="{bound or 1}"
+        -> typed-by Boolean
+    Control e "end" subkind="final"
+{LOOKS}"""
+    steps = ("s d", "d near ok", "d far else", "a e")
+    graph, sink = run_recipe(samples.task(nodes=nodes, steps=steps))
+    (service_graph,) = graph.derived(Model)[0].service_graphs
+    kinds = {shorten_id(node.id): node.kind for node in service_graph.nodes}
+    assert kinds.get("merge", "") == kind
+    before_place = {pair[0] for pair in list_shown_pairs(service_graph) if pair[1] == "place"}
+    assert before_place == ({"merge"} if kind else {"near", "far"})
+    assert ("SM604" in list_codes(sink)) == (not kind)
+
+
 def test_an_initial_node_gives_its_token_to_one_flow():
     """Its flows compete for one token, as in contracts: only a fork starts both branches."""
     steps = ("s g ok", "s l else", "g m", "l m", "m e")

@@ -13,6 +13,7 @@ from sysmlc.analyses.recipe.data_flow import DataFlow
 from sysmlc.analyses.recipe.nodes import build_nodes, is_by_position, step_kind
 from sysmlc.analyses.recipe.profile import read_number
 from sysmlc.ir import Element, Kind, algorithms, query
+from sysmlc.ir.element import derived_id
 from sysmlc.ir.expressions import Binary, Expression, Literal, Unary
 from sysmlc.recipe.flow import add_loop_nodes, find_reachable, sort_nodes
 from sysmlc.recipe.model import FlowEdge, FlowGraph, Node
@@ -85,6 +86,7 @@ def _build_flow_graph(context: Context, activity: Element, activity_level: str) 
     draft.edges.extend(_list_control_edges(context, drawn, data, draft))
     # After the control edges: only object flows that no control flow already orders count.
     draft.edges.extend(_list_object_edges(context, drawn, data, draft))
+    _add_pin_merges(context, drawn, draft)
     for region in regions:
         _connect_region(context, drawn, region, draft)
     _add_ends(context, activity, draft)
@@ -263,6 +265,26 @@ def _list_object_edges(
                 edge = _build_edge(context, flow, target, data, draft)
                 if edge.target not in find_reachable([edge.source], ordered):
                     yield edge
+
+
+def _add_pin_merges(context: Context, drawn: ActivityGraph, draft: Draft) -> None:
+    """Add the merge before a pin that several object flows reach, as in the token graph.
+
+    The node takes the value of any of them, whereas it waits for all its control flows.
+    """
+    flows_by_pin: dict[str, list[Flow]] = {}
+    for flow in drawn.flows:
+        pin = query.flow_target(context.graph, flow.element)
+        if pin is not None and flow.edge.target == derived_id(pin.id, "merge"):
+            flows_by_pin.setdefault(pin.id, []).append(flow)
+    for pin_id, flows in flows_by_pin.items():
+        ids, target = {flow.element.id for flow in flows}, draft.first.get(flows[0].target.id)
+        edges = [e for e in draft.edges if e.element in ids and e.target == target]
+        if target is not None and len(edges) > 1:
+            merge = Node(f"{context.name(context.graph[pin_id])}::merge", "merge", element=pin_id)
+            draft.nodes.append(merge)
+            draft.edges = [replace(e, target=merge.id) if e in edges else e for e in draft.edges]
+            draft.edges.append(FlowEdge(merge.id, target, element=pin_id))
 
 
 def _build_edge(
