@@ -2,7 +2,10 @@
 
 ``env a: bool``, ``sys n: 0..3``, ``sys c: red green`` declare; ``assume always a -> a'`` and
 ``promise recurs n=3`` are conjuncts; ``at first``, ``always`` and ``recurs`` are the classes.
+``env t: number 18 22 K`` is a number in kelvin: below_18_K, _18_K_to_22_K or from_22_K.
 """
+
+from fractions import Fraction
 
 from sysmlc.logic.contract import (
     BooleanDomain,
@@ -14,7 +17,9 @@ from sysmlc.logic.contract import (
     Owner,
     Variable,
 )
+from sysmlc.logic.domains import make_region_domain
 from sysmlc.logic.infix import parse_formula
+from sysmlc.logic.regions import Cut, Regions, split_line
 
 CLASSES = {"at first": Class.INIT, "always": Class.SAFETY, "recurs": Class.LIVENESS}
 SIDES = {"assume": [], "promise": []}
@@ -38,7 +43,9 @@ def parse_contract(text: str, name: str = "c") -> Contract:
 def parse_variable(line: str) -> Variable:
     head, _, values = line.partition(":")
     owner, name = head.split()
-    return Variable(name, Owner(owner), parse_domain(values.strip()))
+    domain = parse_domain(values.strip())
+    term = ((name, Fraction(1)),) if values.split()[0] == "number" else ()
+    return Variable(name, Owner(owner), domain, term=term)
 
 
 def parse_domain(text: str):
@@ -46,7 +53,12 @@ def parse_domain(text: str):
         return BooleanDomain()
     if ".." in text:
         return IntegerDomain(*map(int, text.split("..")))
-    return EnumerationDomain(tuple(text.split()))
+    first, *words = text.split()
+    if first != "number":
+        return EnumerationDomain((first, *words))
+    cuts = [Cut(Fraction(word)) for word in words if not word.isalpha()]
+    unit = "".join(filter(str.isalpha, words))
+    return make_region_domain(Regions(split_line(cuts), unit, symbol=unit))
 
 
 def parse_conjunct(text: str, variables: list[Variable]) -> Conjunct:

@@ -2,7 +2,9 @@
 
 import pytest
 from contracts_in_lines import parse_contract
+from msgspec.structs import replace
 
+from sysmlc.logic.composition.members import Member, Wire, has_single_type, rename_contract
 from sysmlc.logic.contract import Composite, Part
 from sysmlc.synthesis import Manager
 from sysmlc.synthesis.algebra.composition import DriverError, compose_parts
@@ -250,3 +252,54 @@ def test_outputs_that_precede_the_inputs_of_a_step_are_guaranteed():
     client = "sys asked: bool\nenv told: bool\npromise at first !asked"
     client += "\npromise always told' -> !asked'"
     assert list_open_assumptions(compose(server=server, client=client)) == []
+
+
+# -- numbers with different thresholds -------------------------------------------------------------
+
+FAN = """
+    env t: number 22
+    sys fan: bool
+    assume always t=from_22 -> t'=from_22
+    promise always t=from_22 -> fan'
+"""
+
+
+def join_temperature(source, fan):
+    """Return the wire of the two parts, and the composite."""
+    contracts = parse_contract(source, "Source"), parse_contract(fan, "Fan")
+    source, fan = (
+        Member(path, path, "", contract, {name: name})
+        for path, name, contract in zip(("source", "fan"), ("temp", "t"), contracts, strict=True)
+    )
+    ends = (source, contracts[0].variables[0]), (fan, contracts[1].variables[0])
+    wire = Wire("temp", ends)
+    parts = (Part(item.name, rename_contract(item, [wire]), item.name) for item in (source, fan))
+    return wire, Composite("Room", "", tuple(parts))
+
+
+@pytest.mark.parametrize(
+    ("promise", "is_met"),
+    [
+        ("temp=from_18", False),
+        ("temp=below_18", True),
+        ("temp=from_18 -> temp'=from_18", False),
+    ],
+)
+def test_parts_with_different_thresholds_share_a_number(promise, is_met):
+    """The fan assumes that a room of 22 degrees stays so; 18 degrees do not say that."""
+    _, composite = join_temperature(f"sys temp: number 18\npromise always {promise}", FAN)
+    assert [part.contract.variables[0].name for part in composite.parts] == ["temp", "temp"]
+    assert [part.contract.variables[0].term[0][0] for part in composite.parts] == ["temp", "temp"]
+    composition = compose_parts(composite, Manager())
+    assert list_open_assumptions(composition) == (
+        [] if is_met else ["fan: t=from_22 -> t'=from_22"]
+    )
+
+
+def test_parts_that_measure_in_different_units_do_not_fit():
+    celsius = FAN.replace("number 22", "number 22 K").replace("from_22", "from_22_K")
+    wire, _ = join_temperature("sys temp: number 18", FAN)
+    assert has_single_type(wire)
+    contract = parse_contract(celsius, "Fan")
+    other = replace(wire, ends=(wire.ends[0], (wire.ends[1][0], contract.variables[0])))
+    assert not has_single_type(other)

@@ -160,6 +160,88 @@ def test_domains_of_different_kinds_have_no_common_domain():
         align_domains(parse_contract("env n: 0..5"), parse_contract("env n: bool"))
 
 
+# -- numbers with different thresholds -------------------------------------------------------------
+
+WARNER = """
+    env temp: number 18
+    sys warm: bool
+    promise always temp=from_18 -> warm'
+"""
+FAN = """
+    env temp: number 22
+    sys fan: bool
+    promise always temp=from_22 -> fan'
+"""
+HEATED_TO_18 = "sys temp: number 18\npromise always temp=from_18"
+HEATED_TO_22 = "sys temp: number 22\npromise always temp=from_22"
+
+
+def does_refine(concrete, abstract):
+    """Whether a contract refines another one."""
+    pair = align_domains(parse_contract(concrete, "C"), parse_contract(abstract, "A"))
+    return not list(find_refinement_failures(*pair, Manager))
+
+
+def test_the_composition_tells_the_thresholds_of_both_apart():
+    composition = operate(compose, WARNER, FAN)
+    assert show(composition)[3:] == [
+        "promise always temp=_18_to_22 | temp=from_22 -> warm'",
+        "promise always temp=from_22 -> fan'",
+    ]
+    temp = composition.variables[0].domain
+    assert temp.literals == ("below_18", "_18_to_22", "from_22")
+    assert temp.regions.list_conditions("temp") == ["temp < 18", "18 <= temp < 22", "temp >= 22"]
+
+
+@pytest.mark.parametrize(
+    ("concrete", "abstract"),
+    [
+        # Who promises more refines who promises less, and not the other way round.
+        (WARNER, WARNER.replace("18", "22")),
+        (HEATED_TO_22, HEATED_TO_18),
+        # What an input assumes is the other way round.
+        (
+            "env temp: number 18\nassume always temp=from_18",
+            "env temp: number 22\nassume always temp=from_22",
+        ),
+        (
+            "sys t: number 18\npromise always t=below_18 -> t'=from_18",
+            "sys t: number 10 18\npromise always t=below_10 -> t'=from_18",
+        ),
+    ],
+)
+def test_thresholds_of_two_contracts_are_compared(concrete, abstract):
+    assert does_refine(concrete, abstract)
+    assert not does_refine(abstract, concrete)
+
+
+def test_equal_regions_are_not_equal_numbers():
+    """A temperature that stays on one side of 18 may still pass 22."""
+    stays_at_18 = "sys temp: number 18\npromise always temp'=temp"
+    stays_at_22 = "sys temp: number 22\npromise always temp'=temp"
+    assert not does_refine(stays_at_18, stays_at_22)
+    assert not does_refine(stays_at_22, stays_at_18)
+    assert does_refine("sys temp: number 18 22\npromise always temp'=temp", stays_at_18)
+
+
+def test_a_constant_stays_in_its_finer_region():
+    def read(cut):
+        contract = parse_contract(f"env low: number {cut}\nassume always low'=low")
+        return replace(contract, variables=(replace(contract.variables[0], constants=("low",)),))
+
+    first, second = align_domains(read(18), read(22))
+    assert [print_formula(item.formula) for item in first.assumptions] == ["low'=low"]
+    assert [print_formula(item.formula) for item in second.assumptions] == ["low'=low"]
+
+
+def test_numbers_in_different_units_are_not_compared():
+    message = r"'temp' has different values .* \(numbers in K and numbers without a unit\)"
+    with pytest.raises(DomainError, match=message):
+        operate(compose, WARNER.replace("18", "18 K").replace("from_18 K", "from_18_K"), FAN)
+    with pytest.raises(DomainError, match=r"\(numbers without a unit and Boolean\)"):
+        operate(compose, WARNER, "env temp: bool")
+
+
 # -- laws on random contracts ----------------------------------------------------------------------
 
 NAMES = {"a": Owner.ENVIRONMENT, "x": Owner.SYSTEM, "y": Owner.SYSTEM}

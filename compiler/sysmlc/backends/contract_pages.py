@@ -16,12 +16,14 @@ from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.ir.compare.titles import separate_words
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.contract import Class, Conjunct, Contract, Variable
-from sysmlc.logic.domains import describe
+from sysmlc.logic.domains import describe, regions_of
 from sysmlc.logic.expressions.named_elements import VALUE_KINDS
 from sysmlc.logic.feature_writes import iter_writes
 from sysmlc.logic.formula import rename_variables
 from sysmlc.logic.formula import variables as list_variables
 from sysmlc.logic.printing import print_formula
+from sysmlc.logic.region_formulas import describe_literals, word_regions
+from sysmlc.logic.regions import print_quantity
 from sysmlc.logic.requirements.statements import list_texts_about
 from sysmlc.support.escapes import escape_code, escape_markdown
 
@@ -115,9 +117,10 @@ class _PageBuilder:
         self._labels: dict[str, tuple[str, str]] = {}
         self._wordings: dict[str, str] = {}
         """Names in formulas of the author, by variable."""
+        self._variables: tuple[Variable, ...] = ()
 
     def build_page(self, contract: Contract) -> Page:
-        variables = contract.variables
+        variables = self._variables = contract.variables
         self._wordings = contract.wordings
         element, place = self._label_element(contract.origin)
         return Page(
@@ -159,7 +162,7 @@ class _PageBuilder:
 
     def _build_variable(self, variable: Variable) -> Row:
         name = escape_code(variable.wording or variable.name, in_table=True)
-        domain = escape_markdown(describe(variable.domain))
+        domain = _describe_numbers(variable) or escape_markdown(describe(variable.domain))
         if variable.is_range_assumed:
             domain += " (assumed)"
         if variable.condition:
@@ -182,7 +185,8 @@ class _PageBuilder:
         The text of a conjunct from a named constraint begins with the quoted name. The row shows
         the name as a sentence instead, and the requirement or owner of the constraint as element.
         """
-        named = conjunct.wording or rename_variables(conjunct.formula, self._wordings)
+        worded = word_regions(conjunct.formula, self._variables)
+        named = conjunct.wording or rename_variables(worded, self._wordings)
         formula = escape_code(print_formula(named))
         element, place = self._label_element(conjunct.origin)
         constraint = self._graph.get(conjunct.origin)
@@ -201,6 +205,26 @@ class _PageBuilder:
         context = conjunct.viewpoint or ("" if owner is None else owner.name)
         kind = "requirement" if conjunct.viewpoint else "constraint of"
         return Row(formula, escape_markdown(text), escape_markdown(f"{kind} '{context}'"), place)
+
+
+def _describe_numbers(variable: Variable) -> str:
+    """Return the conditions for which the literals of a number stand; empty for other variables.
+
+    The values of the constants in the conditions follow.
+    """
+    regions = regions_of(variable.domain)
+    if regions is None:
+        return ""
+    conditions = (
+        f"`{literal}`: `{escape_code(condition, in_table=True)}`"
+        for literal, condition in describe_literals(variable)
+    )
+    values = (
+        f"; `{escape_code(word, in_table=True)}` = {print_quantity(number, regions.symbol)}"
+        for number, word in regions.labels
+        if word.isidentifier()
+    )
+    return ", ".join(conditions) + "".join(values)
 
 
 def _build_section(class_: Class, rows: list[Row]) -> Section:

@@ -53,6 +53,7 @@ def _read_operand(text: str, language: str, config: "Config", settings: "Setting
     """Read one contract; exits with code 2 if there is none, or more than one."""
     from sysmlc.cli.contract_files import read_contracts, select_contracts, split_operand
     from sysmlc.cli.session import fail
+    from sysmlc.logic.region_formulas import word_contract
 
     file, component = split_operand(text)
     contract_file = read_contracts((file,), language, config, settings)
@@ -63,7 +64,7 @@ def _read_operand(text: str, language: str, config: "Config", settings: "Setting
     if len(contracts) != 1:
         names = ", ".join(contract.component for contract in contracts)
         fail(f"'{file}' has {len(contracts)} contracts; append '#' and one of {names}")
-    return Operand(contracts[0], contract_file, file)
+    return Operand(word_contract(contracts[0]), contract_file, file)
 
 
 def _print_findings(

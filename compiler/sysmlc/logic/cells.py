@@ -21,8 +21,9 @@ from sysmlc.logic.contract import (
     Variable,
     equals,
 )
+from sysmlc.logic.domains import make_region_domain
 from sysmlc.logic.formula import Const, Formula
-from sysmlc.logic.identifiers import Names, make_unique
+from sysmlc.logic.identifiers import Names
 from sysmlc.logic.inequalities import Inequality, find_solution
 from sysmlc.logic.regions import Cut, Interval, Regions, Term, split_line
 from sysmlc.support.disjoint_sets import group_related
@@ -156,7 +157,7 @@ def _compare_constants(variables: Sequence[Variable]) -> Iterator[Variable]:
         if term in terms:
             continue
         regions = Regions(split_line(places))
-        domain = EnumerationDomain(make_unique(regions.list_names(), "region"), regions=regions)
+        domain = make_region_domain(regions)
         name = names.new("order_of_" + "_and_".join(key for key, _ in term))
         yield Variable(
             name,

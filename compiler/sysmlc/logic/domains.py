@@ -5,6 +5,18 @@ from itertools import product
 
 from sysmlc.logic.contract import BooleanDomain, Domain, EnumerationDomain, IntegerDomain
 from sysmlc.logic.formula import Literal
+from sysmlc.logic.identifiers import make_unique
+from sysmlc.logic.regions import Regions
+
+
+def make_region_domain(regions: Regions) -> EnumerationDomain:
+    """Return an enumeration whose literals stand for regions of numbers."""
+    return EnumerationDomain(make_unique(regions.list_names(), "region"), regions=regions)
+
+
+def regions_of(domain: Domain) -> Regions | None:
+    """Return the regions for which the literals of a domain stand; None if they stand for none."""
+    return domain.regions if isinstance(domain, EnumerationDomain) else None
 
 
 def values(domain: Domain) -> Sequence[Literal]:
@@ -49,6 +61,14 @@ def describe(domain: Domain) -> str:
             return f"{low}..{high}"
         case EnumerationDomain(literals):
             return ", ".join(literals)
+
+
+def describe_kind(domain: Domain) -> str:
+    """Return what the values of a domain are; regions are numbers in their unit."""
+    regions = regions_of(domain)
+    if regions is None:
+        return describe(domain)
+    return f"numbers in {regions.unit}" if regions.unit else "numbers without a unit"
 
 
 def describe_difference(actual: EnumerationDomain, expected: EnumerationDomain) -> str:

@@ -202,6 +202,18 @@ class Regions(Struct, frozen=True):
                 indices.append(index)
         return tuple(indices)
 
+    def unite(self, regions: "Regions") -> "Regions":
+        """Return the regions that the cuts of both tell apart, without numbers outside of both."""
+        known = (*self.intervals, *regions.intervals)
+        cuts = (cut for item in known for cut in (item.low, item.high) if cut is not None)
+        intervals = (
+            item for item in split_line(cuts) if any(part.includes(item) for part in known)
+        )
+        is_integral = self.is_integral and regions.is_integral
+        labels = dict(regions.labels) | dict(self.labels)
+        labels_of_both = tuple(labels.items())
+        return Regions(tuple(intervals), self.unit, is_integral, labels_of_both, self.symbol)
+
     def scale(self, factor: Fraction) -> "Regions":
         """Return the regions of the multiple of a number."""
         intervals = [item.move(factor, Fraction(0)) for item in self.intervals]
@@ -245,19 +257,43 @@ class Regions(Struct, frozen=True):
         """Return each region as a condition, as ``describe`` does."""
         return [self.describe(index, term) for index in range(len(self.intervals))]
 
-    def describe(self, index: int, term: str) -> str:
-        """Return a region as a condition: ``temp < low``, ``18 <= temp < 22``, ``temp == 5``."""
-        low, high = self.intervals[index].low, self.intervals[index].high
+    def describe(self, index: int, term: str, subtracted: str = "") -> str:
+        """Return a region as a condition: ``temp < low``, ``18 <= temp < 22``, ``temp == 5``.
+
+        With *subtracted*, the number is a difference, and the condition is ``a < b + 5``.
+        """
+        return self._describe(self.intervals[index], term, subtracted)
+
+    def describe_span(self, first: int, last: int, term: str, subtracted: str = "") -> str:
+        """Return neighbouring regions as one condition, without bounds that all numbers keep."""
+        if first == last and self.is_point(first):
+            return self.describe(first, term, subtracted)
+        low = self.intervals[first].low if first else None
+        high = self.intervals[last].high if last < len(self.intervals) - 1 else None
+        return self._describe(Interval(low, high), term, subtracted)
+
+    def _describe(self, interval: Interval, term: str, subtracted: str) -> str:
+        low, high = interval.low, interval.high
+        bounds = ["" if cut is None else self._write_bound(cut, subtracted) for cut in (low, high)]
         if low is not None and high is not None:
             if self._is_point(low, high):
-                return f"{term} == {self._label(low)}"
+                return f"{term} == {bounds[0]}"
             signs = "<" if low.is_above else "<=", "<=" if high.is_above else "<"
-            return f"{self._label(low)} {signs[0]} {term} {signs[1]} {self._label(high)}"
+            return f"{bounds[0]} {signs[0]} {term} {signs[1]} {bounds[1]}"
         if high is not None:
-            return f"{term} {'<=' if high.is_above else '<'} {self._label(high)}"
+            return f"{term} {'<=' if high.is_above else '<'} {bounds[1]}"
         if low is not None:
-            return f"{term} {'>' if low.is_above else '>='} {self._label(low)}"
+            return f"{term} {'>' if low.is_above else '>='} {bounds[0]}"
         return f"any {term}"
+
+    def _write_bound(self, cut: Cut, subtracted: str) -> str:
+        if not subtracted:
+            return self._label(cut)
+        if not cut.number:
+            return subtracted
+        quantity = print_quantity(cut.number, self.symbol)
+        sign = "-" if quantity.startswith("-") else "+"
+        return f"{subtracted} {sign} {quantity.removeprefix('-')}"
 
     def _is_point(self, low: Cut, high: Cut) -> bool:
         return high.number - low.number == 1 if self.is_integral else low.number == high.number

@@ -34,7 +34,7 @@ from sysmlc.logic.composition.structure import (
     is_end_observable,
 )
 from sysmlc.logic.contract import Composite, Conjunct, Contract, Owner, Part, drop_trivial
-from sysmlc.logic.domains import describe
+from sysmlc.logic.domains import describe_kind
 from sysmlc.logic.feature_writes import WriterIndex
 from sysmlc.logic.simplification import substitute
 
@@ -241,9 +241,12 @@ def _report_faults(
         if not has_single_type(wire):
             (left_member, left_variable), *_ = wire.ends
             right_member, right_variable = next(
-                end for end in wire.ends if end[1].domain != left_variable.domain
+                end
+                for end in wire.ends
+                if not has_single_type(Wire(wire.name, (wire.ends[0], end)))
             )
-            domains = f"{describe(left_variable.domain)} and {describe(right_variable.domain)}"
+            ends = left_variable, right_variable
+            domains = " and ".join(describe_kind(variable.domain) for variable in ends)
             left, right = (
                 _full_name(left_member, left_variable.name),
                 _full_name(right_member, right_variable.name),

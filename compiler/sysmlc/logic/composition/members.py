@@ -35,10 +35,11 @@ from sysmlc.logic.contract import (
     Owner,
     Variable,
 )
-from sysmlc.logic.domains import describe
+from sysmlc.logic.domains import describe, regions_of
 from sysmlc.logic.expressions.context import variables_of
 from sysmlc.logic.formula import Const, Formula, Op, rename_variables
 from sysmlc.logic.machines.reader import find_context_classifier
+from sysmlc.logic.region_formulas import split_regions, unite_regions
 from sysmlc.support.disjoint_sets import DisjointSets
 
 _ACTIONS = (Kind.OPERATION, Kind.ACTIVITY)
@@ -274,8 +275,13 @@ def _name_wire(block_feature: str, ends: list[tuple[Member, Variable]]) -> str:
 
 
 def has_single_type(wire: Wire) -> bool:
-    """Whether the domains of all ends have the same type and, for texts, are equal."""
+    """Whether the domains of all ends have the same type.
+
+    Texts are equal, and numbers have the same unit.
+    """
     domains = [variable.domain for _, variable in wire.ends]
+    if any(map(regions_of, domains)):
+        return unite_regions(domains) is not None
     has_texts = any(isinstance(domain, EnumerationDomain) and domain.texts for domain in domains)
     return len(set(domains) if has_texts else set(map(type, domains))) == 1
 
@@ -285,7 +291,7 @@ def rename_contract(member: Member, wires: Iterable[Wire]) -> Contract:
 
     If the ends of a wire have different ranges, its variable has the range that contains all of
     them. A member that decides the variable then guarantees its own range, and a member that reads
-    the variable assumes its own range.
+    the variable assumes its own range. The regions of a number are cut where any end cuts them.
     """
     wire_by_variable = {
         end_variable.name: wire
@@ -296,14 +302,16 @@ def rename_contract(member: Member, wires: Iterable[Wire]) -> Contract:
     names: dict[str, str] = {}
     variables: list[Variable] = []
     bounds: dict[Owner, list[Conjunct]] = {owner: [] for owner in Owner}
-    for variable in member.contract.variables:
+    domains = {name: _find_common_domain(wire) for name, wire in wire_by_variable.items()}
+    contract = split_regions(member.contract, domains)
+    for variable in contract.variables:
         wire = wire_by_variable.get(variable.name)
         name = join_path(member.path, variable.name) if wire is None else wire.name
-        domain = variable.domain if wire is None else _find_common_domain(wire)
+        domain = domains.get(variable.name, variable.domain)
         names[variable.name] = name
         variables.append(replace(variable, name=name, domain=domain, wording=""))
         bounds[variable.owner] += _iter_range_conjuncts(variable, name, domain)
-    contract = member.contract
+    variables = [_rename_term(member, variable, names) for variable in variables]
     assumptions = _rename_conjuncts(contract.assumptions, names)
     guarantees = _rename_conjuncts(contract.guarantees, names)
     return replace(
@@ -311,6 +319,16 @@ def rename_contract(member: Member, wires: Iterable[Wire]) -> Contract:
         variables=tuple(_drop_duplicates(variables)),
         assumptions=(*bounds[Owner.ENVIRONMENT], *assumptions),
         guarantees=(*bounds[Owner.SYSTEM], *guarantees),
+    )
+
+
+def _rename_term(member: Member, variable: Variable, names: Mapping[str, str]) -> Variable:
+    """Return a number with the names in the composite of the features that it is the sum of."""
+    paths = {key: names.get(key) or join_path(member.path, key) for key, _ in variable.term}
+    return replace(
+        variable,
+        term=tuple((paths[key], factor) for key, factor in variable.term),
+        constants=tuple(paths.get(key, key) for key in variable.constants),
     )
 
 
@@ -345,6 +363,9 @@ def _rename_conjuncts(
 def _find_common_domain(wire: Wire) -> Domain:
     """Return the domain that contains the values of all ends of the wire."""
     domains = [variable.domain for _, variable in wire.ends]
+    united = unite_regions(domains)
+    if united is not None:
+        return united
     numbers = [domain for domain in domains if isinstance(domain, IntegerDomain)]
     if numbers:
         return IntegerDomain(min(d.low for d in numbers), max(d.high for d in numbers))

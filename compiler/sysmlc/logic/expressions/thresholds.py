@@ -34,6 +34,7 @@ from sysmlc.ir.expressions import (
     walk_tree,
 )
 from sysmlc.logic.contract import EnumerationDomain
+from sysmlc.logic.domains import make_region_domain
 from sysmlc.logic.expressions.features import find_number_type
 from sysmlc.logic.expressions.linear import (
     COMPARISONS,
@@ -48,7 +49,6 @@ from sysmlc.logic.expressions.linear import (
 )
 from sysmlc.logic.expressions.named_elements import VALUE_KINDS
 from sysmlc.logic.expressions.parsing import parse_expression
-from sysmlc.logic.identifiers import make_unique
 from sysmlc.logic.regions import (
     LINE,
     Cut,
@@ -392,7 +392,7 @@ class Thresholds:
             )
         labels = tuple(self._labels[term].items())
         unit, symbol = self._units.get(term, ("", ""))
-        return _make_enumeration(Regions(intervals, unit, is_integral, labels, symbol))
+        return make_region_domain(Regions(intervals, unit, is_integral, labels, symbol))
 
     def is_assigned(self, number: Number) -> bool:
         """Whether a behaviour assigns the feature."""
@@ -420,7 +420,7 @@ class Thresholds:
             if len(term) > 1 and regions is not None:
                 for own, scale in _iter_meanings(term, variables):
                     is_same = scale == 1
-                    yield own, domain if is_same else _make_enumeration(regions.scale(scale))
+                    yield own, domain if is_same else make_region_domain(regions.scale(scale))
 
     def list_facts(self, variables: Mapping[str, list[str]]) -> Iterator[tuple[Term, Interval]]:
         """Yield the sums of variables that constraints keep in an interval, as ``list_terms``."""
@@ -439,10 +439,6 @@ def _iter_meanings(
         own = sorted(zip(names, factors, strict=True))
         scale = 1 / own[0][1]
         yield tuple((name, factor * scale) for name, factor in own), scale
-
-
-def _make_enumeration(regions: Regions) -> EnumerationDomain:
-    return EnumerationDomain(make_unique(regions.list_names(), "region"), regions=regions)
 
 
 def thresholds_of(graph: Graph) -> Thresholds:

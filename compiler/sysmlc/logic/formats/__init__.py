@@ -47,7 +47,9 @@ class _FormatModule(Protocol):
 
 
 FORMATS = {
-    "contract": Format("contract_json", (".contract.json",), r'"format"\s*:\s*"sysmlc-contract/1"'),
+    "contract": Format(
+        "contract_json", (".contract.json",), r'"format"\s*:\s*"sysmlc-contract/[12]"'
+    ),
     "neutral": Format("contract_json", (".gr1.json",), r'^\s*\{[\s\S]*"variables"\s*:'),
     "slugsin": Format("slugs", (".slugsin",)),
     "structured": Format("slugs", (".structuredslugs",), r"^\s*\[(INPUT|OUTPUT)\]"),

@@ -1,10 +1,14 @@
-"""Contracts in JSON: ``sysmlc-contract/1`` and the neutral form of corpus/gr1.
+"""Contracts in JSON: ``sysmlc-contract`` and the neutral form of corpus/gr1.
 
-Both have the same structure. In sysmlc-contract/1, the content of ``<component>.contract.json``, a
+Both have the same structure. In sysmlc-contract, the content of ``<component>.contract.json``, a
 conjunct is an object with formula, class, origin and text; in the neutral form it is the formula.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+from fractions import Fraction
+
+import msgspec
 
 from sysmlc.documents import DocumentError, Value, find_in_string, list_violations, parse_json
 from sysmlc.logic.classification import convert_to_class
@@ -25,12 +29,28 @@ from sysmlc.logic.formats.draft import SECTION_NAMES, SIDES, SpecificationFile
 from sysmlc.logic.formats.lowering import rename_ambiguous_literals
 from sysmlc.logic.infix import FormulaReader, parse_formula
 from sysmlc.logic.printing import print_formula
+from sysmlc.logic.regions import Cut, Interval, Regions, print_number
 from sysmlc.logic.syntax import FormulaError
 from sysmlc.support.output import encode_json
 from sysmlc.support.suggestions import find_similar
 
-FORMAT = "sysmlc-contract/1"
+FORMATS = ("sysmlc-contract/1", "sysmlc-contract/2")
+"""The second version adds the numbers behind literals; a contract without them has the first."""
+_LOW_ENDS, _HIGH_ENDS = ("from", "above"), ("below", "up_to")
+"""Members for the ends of an interval, by whether the cut is above the number."""
 _NEUTRAL_KEYS = ("name", "origin", "variables", *SIDES.values())
+
+
+class _Numbers(msgspec.Struct, omit_defaults=True):
+    """The member ``numbers`` of a variable: the regions of a number and the sum that it is."""
+
+    intervals: tuple[Mapping[str, str], ...] = ()
+    unit: str = ""
+    symbol: str = ""
+    integers: bool = False
+    words: Mapping[str, str] = {}
+    term: Mapping[str, str] = {}
+    constants: tuple[str, ...] = ()
 
 
 class _NeutralReader(FormulaReader):
@@ -106,6 +126,12 @@ def _read_contract(file: SpecificationFile, document: Value) -> Contract:
 def _read_variable(name: str, declaration: Value) -> Variable:
     check_name(name, declaration)
     domain = read_domain(name, declaration.find(["type"]))
+    numbers = declaration.get("numbers")
+    if numbers is not None:
+        if not isinstance(domain, EnumerationDomain):
+            raise ShapeError(f"the type of '{name}' has no literals for its numbers", numbers)
+        domain = replace(domain, regions=_read_regions(name, domain, numbers))
+    sum_ = _Numbers() if numbers is None else msgspec.convert(numbers.as_json(), _Numbers)
     return Variable(
         name,
         Owner(declaration.get_text("owner")),
@@ -116,7 +142,33 @@ def _read_variable(name: str, declaration: Value) -> Variable:
         condition=declaration.get_text("condition"),
         reason=declaration.get_text("reason"),
         wording=declaration.get_text("wording"),
+        term=tuple((name, Fraction(factor)) for name, factor in sum_.term.items()),
+        constants=sum_.constants,
     )
+
+
+def _read_regions(name: str, domain: EnumerationDomain, numbers: Value) -> Regions:
+    """Return the regions behind the literals of a variable. Raises ShapeError."""
+    document = msgspec.convert(numbers.as_json(), _Numbers)
+    intervals = tuple(map(_read_interval, document.intervals))
+    ends = [cut for interval in intervals for cut in (interval.low, interval.high)]
+    is_ascending = all(interval.intersect(interval) for interval in intervals) and all(
+        high is not None and low is not None and high <= low
+        for high, low in zip(ends[1:-1:2], ends[2::2], strict=True)
+    )
+    if len(intervals) != len(domain.literals) or not is_ascending:
+        reason = f"the intervals of '{name}' are not one for each literal in ascending order"
+        raise ShapeError(reason, numbers)
+    words = tuple((Fraction(number), word) for number, word in document.words.items())
+    return Regions(intervals, document.unit, document.integers, words, document.symbol)
+
+
+def _read_interval(ends: Mapping[str, str]) -> Interval:
+    def find_cut(below: str, above: str) -> Cut | None:
+        cuts = (Cut(Fraction(ends[key]), key == above) for key in (below, above) if key in ends)
+        return next(cuts, None)
+
+    return Interval(find_cut(*_LOW_ENDS), find_cut(*_HIGH_ENDS))
 
 
 def check_name(name: str, declaration: Value) -> None:
@@ -202,8 +254,9 @@ def write(contract: Contract, format_name: str) -> str:
 
 def print_contract(contract: Contract) -> str:
     """Return the contract as a document after metamodels/sysmlc-contract.schema.json."""
+    has_numbers = any(variable.term for variable in contract.variables)
     document = {
-        "format": FORMAT,
+        "format": FORMATS[has_numbers],
         "name": contract.component,
         "origin": contract.origin,
         "variables": {variable.name: _encode_variable(variable) for variable in contract.variables},
@@ -229,7 +282,26 @@ def _encode_variable(variable: Variable) -> dict[str, object]:
         entry["reason"] = variable.reason
     if variable.wording:
         entry["wording"] = variable.wording
+    if isinstance(variable.domain, EnumerationDomain) and variable.domain.regions is not None:
+        entry["numbers"] = msgspec.to_builtins(_encode_numbers(variable, variable.domain.regions))
     return entry
+
+
+def _encode_numbers(variable: Variable, regions: Regions) -> _Numbers:
+    return _Numbers(
+        tuple(map(_encode_interval, regions.intervals)),
+        regions.unit,
+        regions.symbol,
+        regions.is_integral,
+        {print_number(number): word for number, word in regions.labels},
+        {name: print_number(factor) for name, factor in variable.term},
+        variable.constants,
+    )
+
+
+def _encode_interval(interval: Interval) -> dict[str, str]:
+    ends = (interval.low, _LOW_ENDS), (interval.high, _HIGH_ENDS)
+    return {keys[cut.is_above]: print_number(cut.number) for cut, keys in ends if cut is not None}
 
 
 def _group_by_class(conjuncts: Iterable[Conjunct]) -> dict[str, list[dict[str, str]]]:

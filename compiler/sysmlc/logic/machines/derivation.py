@@ -37,6 +37,7 @@ from sysmlc.logic.machines.moves import (
     is_chosen_formula,
 )
 from sysmlc.logic.machines.paths import Path
+from sysmlc.logic.region_formulas import word_regions
 from sysmlc.logic.simplification import is_satisfiable, remove_redundant
 
 Touches = Callable[[Path, str], bool]
@@ -176,9 +177,17 @@ def _derive_transition(exploration: Exploration, move: Move) -> Iterator[Conjunc
         taken = taken_formula(exploration, move, path)
         formula = f.implies(taken, f.both(*_effect_formulas(exploration, path)))
         if formula != f.TRUE:
-            branch = remove_redundant(
-                path.when, exploration.domains, f.split_conjunction(move.fires)
+            known = f.split_conjunction(move.fires)
+            # The text shows the guard, which compares the numbers.
+            shown = exploration.machine.variables
+            when = f.both(
+                *(
+                    part
+                    for part in f.split_conjunction(path.when)
+                    if part not in known or word_regions(part, shown) == part
+                )
             )
+            branch = remove_redundant(when, exploration.domains, known)
             preempting = [item.transition for item in _find_overtaking(exploration, move, path)]
             text = texts.describe_transition(
                 exploration.machine, move.transition, path, branch, preempting
@@ -344,7 +353,7 @@ def _derive_memories(exploration: Exploration) -> Iterator[Conjunct]:
     for name, memory in machine.memories.items():
         truth = elaborate_condition(memory.condition, machine.scope)
         state = machine.vertices.get(memory.state)
-        text = texts.describe_memory(name, truth, state)
+        text = texts.describe_memory(machine, name, truth, state)
         if state is not None:
             has_entered = f.negate(f.var(state.opening)) if state.opening else f.TRUE
             truth = f.both(truth, has_entered, _stay_condition(exploration, state))

@@ -19,6 +19,7 @@ from sysmlc.logic.machines.machine import (
 )
 from sysmlc.logic.machines.paths import Path
 from sysmlc.logic.printing import print_formula, print_literal
+from sysmlc.logic.region_formulas import print_worded, word_regions
 from sysmlc.support.counts import count as count_nouns
 
 CLOCK_RUNS = "'{clock}' counts the steps for which '{state}' has been active."
@@ -134,7 +135,8 @@ def _print_expression(expression: Expression) -> str:
 
 
 def _print_condition(machine: Machine, condition: Formula) -> str:
-    return print_formula(rename_variables(condition, machine.wordings))
+    worded = word_regions(condition, machine.variables)
+    return print_formula(rename_variables(worded, machine.wordings))
 
 
 def _describe_outcome(machine: Machine, transition: Transition, path: Path) -> str:
@@ -183,12 +185,13 @@ def describe_frame(machine: Machine, name: str) -> str:
     return f"'{machine.wordings.get(name, name)}' does not change unless a transition changes it."
 
 
-def describe_memory(name: str, truth: Formula, state: Vertex | None) -> str:
+def describe_memory(machine: Machine, name: str, truth: Formula, state: Vertex | None) -> str:
     """Describe a memory: it stores whether a condition was true in the previous step.
 
     With a *state*, it stores this only for the steps of the present stay in the state.
     """
-    text = f"'{name}' is true if {print_formula(truth)} held in the previous step"
+    condition = print_worded(truth, machine.variables)
+    text = f"'{name}' is true if {condition} held in the previous step"
     return f"{text}, and '{state.literal}' has remained active since." if state else f"{text}."
 
 

@@ -29,6 +29,7 @@ from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines.reader import MachineOptions, find_context_classifier
 from sysmlc.logic.printing import print_literal
 from sysmlc.logic.reduction.contract_reduction import add_history_bits
+from sysmlc.logic.region_formulas import word_conjunct
 from sysmlc.logic.requirements.scope import (
     Scope,
     make_scope,
@@ -425,7 +426,8 @@ def _classify(
         Conjunct(part, class_, id, text, viewpoint)
         for class_, part in _split_by_class(scope, statement, reading.formula, is_assumed)
     ]
-    yield from word_conjuncts(conjuncts, reading.wording)
+    for conjunct in word_conjuncts(conjuncts, reading.wording):
+        yield word_conjunct(conjunct, scope.variables.values())
 
 
 def _split_by_class(

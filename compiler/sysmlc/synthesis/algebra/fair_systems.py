@@ -12,6 +12,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.logic.contract import Class, Conjunct, Contract, Domain, Variable
+from sysmlc.logic.domains import describe_kind, regions_of
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.reduction.contract_reduction import as_ltl, is_gr1
 from sysmlc.logic.reduction.formula_reduction import NotReducibleError, reduce_formula
@@ -27,7 +28,11 @@ class DomainError(Exception):
     """Reports that two contracts declare a variable with different domains."""
 
     def __init__(self, name: str, domains: tuple[Domain, Domain]) -> None:
-        super().__init__(f"'{name}' has different values in the two contracts")
+        kinds = f" ({describe_kind(domains[0])} and {describe_kind(domains[1])})"
+        is_number = any(map(regions_of, domains))
+        super().__init__(
+            f"'{name}' has different values in the two contracts{kinds if is_number else ''}"
+        )
         self.name = name
         self.domains = domains
 

@@ -32,12 +32,14 @@ from sysmlc.logic.contract import (
     Owner,
     Variable,
 )
+from sysmlc.logic.domains import regions_of
 from sysmlc.logic.formula import Const
 from sysmlc.logic.identifiers import identifier
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import as_ltl
 from sysmlc.logic.reduction.formula_reduction import NotReducibleError
 from sysmlc.logic.reduction.history import add_history, share_history
+from sysmlc.logic.region_formulas import split_regions, unite_regions
 from sysmlc.synthesis.algebra.fair_systems import DomainError
 from sysmlc.synthesis.algebra.refinement import RunSearch
 from sysmlc.synthesis.bdd.limits import LimitError
@@ -74,9 +76,9 @@ def align_domains(first: Contract, second: Contract) -> tuple[Contract, Contract
     """Return both contracts with common domains of the variables that they share.
 
     The common domain of integers is the smallest range that includes both ranges, that of
-    enumerations has the literals of both. The smaller domain of a contract becomes a conjunct: a
-    component assumes the values of its inputs, and guarantees those of its outputs. Raises
-    DomainError for domains of different kinds.
+    enumerations has the literals of both, that of numbers has regions with the cuts of both. The
+    smaller domain of a contract becomes a conjunct: a component assumes the values of its inputs,
+    and guarantees those of its outputs. Raises DomainError for domains of different kinds.
     """
     domains = {variable.name: variable.domain for variable in first.variables}
     for variable in second.variables:
@@ -88,6 +90,11 @@ def align_domains(first: Contract, second: Contract) -> tuple[Contract, Contract
 def _unite_domains(name: str, first: Domain, second: Domain) -> Domain:
     if first == second:
         return first
+    if regions_of(first) or regions_of(second):
+        united = unite_regions((first, second))
+        if united is None:
+            raise DomainError(name, (first, second))
+        return united
     match first, second:
         case IntegerDomain(), IntegerDomain():
             return IntegerDomain(min(first.low, second.low), max(first.high, second.high))
@@ -100,6 +107,7 @@ def _unite_domains(name: str, first: Domain, second: Domain) -> Domain:
 def _widen(contract: Contract, domains: dict[str, Domain]) -> Contract:
     """Return the contract with other domains, and with its own domains as conjuncts."""
     ranges: dict[Owner, list[Conjunct]] = {owner: [] for owner in Owner}
+    contract = split_regions(contract, domains)
     for variable in contract.variables:
         if domains[variable.name] != variable.domain:
             formula = _restrict_values(variable)

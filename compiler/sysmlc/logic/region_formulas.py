@@ -1,0 +1,245 @@
+"""Formulas over regions of numbers: common regions of several contracts, and texts for people.
+
+Two contracts that cut the values of one number at different places have different literals for it.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Set
+from functools import reduce
+from itertools import groupby
+
+from msgspec.structs import replace
+
+from sysmlc.logic import domains
+from sysmlc.logic import formula as f
+from sysmlc.logic.classification import add_temporal_operators
+from sysmlc.logic.contract import Conjunct, Contract, Domain, EnumerationDomain, Variable
+from sysmlc.logic.domains import make_region_domain, regions_of
+from sysmlc.logic.expressions.linear import print_term
+from sysmlc.logic.formats.lowering import rewrite_contract_atoms
+from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
+from sysmlc.logic.printing import print_formula
+from sysmlc.logic.regions import Regions
+
+# -- common regions --------------------------------------------------------------------------------
+
+
+def unite_regions(own_domains: Iterable[Domain]) -> EnumerationDomain | None:
+    """Return the domain of a number with the cuts of all domains.
+
+    None if one of them has no regions, or if their units differ.
+    """
+    regions = [regions_of(domain) for domain in own_domains]
+    known = [item for item in regions if item is not None]
+    if not known or len(known) < len(regions) or len({item.unit for item in known}) > 1:
+        return None
+    return make_region_domain(reduce(Regions.unite, known))
+
+
+def split_regions(contract: Contract, new_domains: Mapping[str, Domain]) -> Contract:
+    """Return the contract with the finer regions of *new_domains* for its numbers.
+
+    A comparison with a literal becomes one with the regions within it. Two equal values become two
+    values in the same one of the former regions, because nothing more is known about them. A
+    variable has those literals of its new domain that lie within its former regions.
+    """
+    variables: list[Variable] = []
+    parts: dict[str, dict[str, tuple[str, ...]]] = {}
+    for variable in contract.variables:
+        domain = new_domains.get(variable.name, variable.domain)
+        old, new = regions_of(variable.domain), regions_of(domain)
+        if domain != variable.domain and old is not None and new is not None:
+            assert isinstance(variable.domain, EnumerationDomain)
+            assert isinstance(domain, EnumerationDomain)
+            finer = dict(zip(domain.literals, new.intervals, strict=True))
+            parts[variable.name] = {
+                literal: tuple(name for name in finer if interval.includes(finer[name]))
+                for literal, interval in zip(variable.domain.literals, old.intervals, strict=True)
+            }
+            inside = set().union(*parts[variable.name].values())
+            own = replace(new, intervals=tuple(finer[name] for name in finer if name in inside))
+            literals = tuple(name for name in finer if name in inside)
+            variable = replace(variable, domain=EnumerationDomain(literals, regions=own))
+        variables.append(variable)
+    if not parts:
+        return contract
+    split = _make_splitting({v.name: v for v in contract.variables}, parts)
+    return rewrite_contract_atoms(contract, split, variables)
+
+
+def _make_splitting(
+    variables: Mapping[str, Variable], parts: Mapping[str, Mapping[str, tuple[str, ...]]]
+) -> Callable[[Formula], Formula]:
+    """Return a function that splits the comparisons of variables; *parts* are finer literals."""
+
+    def belongs(operand: Formula, literal: str) -> Formula:
+        if isinstance(operand, Const):
+            return Const(operand.value == literal)
+        assert isinstance(operand, Var)
+        names = parts.get(operand.name, {}).get(literal, (literal,))
+        return f.either(*(f.eq(operand, Const(name)) for name in names))
+
+    def split(atom: Formula) -> Formula:
+        match atom:
+            case Apply(Op.EQ | Op.NE as op, (left, right)):
+                names = [side.name for side in (left, right) if isinstance(side, Var)]
+                if parts.keys().isdisjoint(names):
+                    return atom
+                if len(set(names)) < len(names) and _is_constant(variables[names[0]]):
+                    return atom
+                domain = variables[names[0]].domain
+                assert isinstance(domain, EnumerationDomain)
+                is_same = f.either(
+                    *(f.both(belongs(left, name), belongs(right, name)) for name in domain.literals)
+                )
+                return is_same if op is Op.EQ else f.negate(is_same)
+        return atom
+
+    return split
+
+
+def _is_constant(variable: Variable) -> bool:
+    """Whether the variable is a sum of numbers that never change."""
+    return {name for name, _ in variable.term} <= set(variable.constants)
+
+
+# -- texts for people ------------------------------------------------------------------------------
+
+
+def word_regions(formula: Formula, variables: Iterable[Variable]) -> Formula:
+    """Return a formula with comparisons in the place of regions: ``temp < low``.
+
+    The result is only for people: a comparison is a variable whose name is its text.
+    """
+    by_name = {item.name: item for item in variables if regions_of(item.domain) is not None}
+    return _Wording(by_name).word(formula) if by_name else formula
+
+
+def print_worded(formula: Formula, variables: Iterable[Variable]) -> str:
+    """Return a formula as text for people, with comparisons in the place of regions."""
+    return print_formula(word_regions(formula, variables))
+
+
+def word_conjunct(conjunct: Conjunct, variables: Iterable[Variable]) -> Conjunct:
+    """Return a conjunct with comparisons in the place of regions as its wording, if it has any."""
+    worded = word_regions(conjunct.formula, variables)
+    if conjunct.wording is not None or worded == conjunct.formula:
+        return conjunct
+    return replace(conjunct, wording=add_temporal_operators(conjunct.class_, worded))
+
+
+def word_contract(contract: Contract) -> Contract:
+    """Return the contract with the wordings of ``word_conjunct``."""
+    assumptions, guarantees = (
+        tuple(word_conjunct(conjunct, contract.variables) for conjunct in side)
+        for side in (contract.assumptions, contract.guarantees)
+    )
+    return replace(contract, assumptions=assumptions, guarantees=guarantees)
+
+
+class _Wording:
+    """Writes comparisons of variables whose values are regions."""
+
+    def __init__(self, variables: Mapping[str, Variable]) -> None:
+        self._variables = variables
+
+    def word(self, formula: Formula) -> Formula:
+        """Return the formula with a comparison for each variable of a connective."""
+        selection = self._select(formula)
+        if selection is not None:
+            return self._describe(*selection)
+        match formula:
+            case Apply(Op.AND | Op.OR as op, args):
+                return f.apply(op, tuple(self._word_operands(op, args)))
+            case Apply(op, args):
+                return Apply(op, tuple(map(self.word, args)))
+        return formula
+
+    def _word_operands(self, op: Op, args: Iterable[Formula]) -> Iterator[Formula]:
+        """Yield the operands; those about regions of one variable are one comparison."""
+        operands: dict[Formula, Set[int] | None] = {}
+        for arg in args:
+            variable, indices = self._select(arg) or (arg, None)
+            earlier = operands.get(variable)
+            if indices is not None and earlier is not None:
+                indices = _merge(op, earlier, indices)
+            operands[variable] = indices
+        for operand, indices in operands.items():
+            if indices is not None and isinstance(operand, Var):
+                yield self._describe(operand, indices)
+            else:
+                yield self.word(operand)
+
+    def _select(self, formula: Formula) -> tuple[Var, Set[int]] | None:
+        """Return the variable of a formula about one number, and the indices of true regions."""
+        match formula:
+            case Apply(Op.EQ, (Var(name) as variable, Const(literal))) if name in self._variables:
+                literals = domains.values(self._domain(name))
+                return variable, {i for i, item in enumerate(literals) if item == literal}
+            case Apply(Op.NE, args):
+                return self._complement(self._select(Apply(Op.EQ, args)))
+            case Apply(Op.NOT, (arg,)):
+                return self._complement(self._select(arg))
+            case Apply(Op.AND | Op.OR as op, args):
+                selection = self._select(args[0])
+                for following in map(self._select, args[1:]):
+                    if selection is None or following is None or selection[0] != following[0]:
+                        return None
+                    selection = selection[0], _merge(op, selection[1], following[1])
+                return selection
+        return None
+
+    def _complement(self, selection: tuple[Var, Set[int]] | None) -> tuple[Var, Set[int]] | None:
+        if selection is None:
+            return None
+        variable, indices = selection
+        return variable, set(range(domains.size(self._domain(variable.name)))) - indices
+
+    def _domain(self, name: str) -> Domain:
+        return self._variables[name].domain
+
+    def _describe(self, variable: Var, indices: Set[int]) -> Formula:
+        """Return the comparisons that are true in the regions with these indices."""
+        regions = regions_of(self._domain(variable.name))
+        assert regions is not None
+        sides = self.print_sides(variable)
+        rest = set(range(len(regions.intervals))) - indices
+        runs = [
+            [i for _, i in group]
+            for _, group in groupby(enumerate(sorted(indices)), lambda pair: pair[1] - pair[0])
+        ]
+        if not rest:
+            return f.TRUE
+        excluded = min(rest)
+        if len(runs) > 1 and len(rest) == 1 and regions.is_point(excluded):
+            return Var(regions.describe(excluded, *sides).replace("==", "!="))
+        return f.either(*(Var(regions.describe_span(run[0], run[-1], *sides)) for run in runs))
+
+    def print_sides(self, variable: Var) -> tuple[str, str]:
+        """Return what is compared and, of a difference, what is subtracted: ``a - b`` by sides."""
+        number = self._variables[variable.name]
+        prime = "'" * variable.primed
+        if len(number.term) < 2:
+            return (number.wording or number.name) + prime, ""
+        named = [(self._name(key) + prime, factor) for key, factor in number.term]
+        left = tuple((name, factor) for name, factor in named if factor > 0)
+        right = tuple((name, -factor) for name, factor in named if factor < 0)
+        return print_term(left), print_term(right)
+
+    def _name(self, key: str) -> str:
+        variable = self._variables.get(key)
+        return variable.wording or key if variable is not None else key
+
+
+def _merge(op: Op, left: Set[int], right: Set[int]) -> Set[int]:
+    return left | right if op is Op.OR else left & right
+
+
+def describe_literals(variable: Variable) -> tuple[tuple[str, str], ...]:
+    """Return the literals of a number with the conditions that they stand for."""
+    regions = regions_of(variable.domain)
+    if regions is None:
+        return ()
+    sides = _Wording({variable.name: variable}).print_sides(Var(variable.name))
+    conditions = (regions.describe(index, *sides) for index in range(len(regions.intervals)))
+    literals = map(str, domains.values(variable.domain))
+    return tuple(zip(literals, conditions, strict=True))
