@@ -3,12 +3,15 @@
 Each model is written in SysML v2. Saved as UML, it has change events.
 """
 
+import re
+
 import pytest
 from test_simulation_component import assert_steps_agree
 
 from sysmlc import compile_model, driver
 from sysmlc.diagnostics import Sink
 from sysmlc.driver import Request, select_backends
+from sysmlc.ir import Kind
 from sysmlc.logic.contract import Contract
 from sysmlc.logic.printing import print_formula
 from sysmlc.simulation import run_scenarios
@@ -229,3 +232,20 @@ def test_text_of_sysml_v2_is_written_without_a_note(write):
     text, codes = save_as(write(PLAIN, "v2"), "sysml")
     assert codes == set()
     assert "immediate" not in text
+
+
+def test_each_trigger_of_a_transition_waits_as_in_uml(write, tmp_path):
+    """SysML v2 has a transition for each trigger."""
+    original = write(PLAIN, "uml")
+    saved = original.read_text("utf-8")
+    (trigger,) = re.findall(r"<trigger [^>]*/>", saved.partition('name="Heat"')[2])
+    second = re.sub(r'xmi:id="[^"]*"', 'xmi:id="second"', trigger)
+    original.write_text(saved.replace(trigger, trigger + second), "utf-8")
+    text, codes = save_as(original, "sysml")
+    assert codes == {"SM463"}
+    assert text.count("accept when hot then Off {") == 2
+    written = tmp_path / "written.sysml"
+    written.write_text(text, "utf-8")
+    graph = compile_model(written).graph
+    triggers = [each for each in graph.of_kind(Kind.TRIGGER) if each.subkind == "change"]
+    assert [each.attrs["immediate"] for each in triggers] == [False, False]
