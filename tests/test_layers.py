@@ -34,7 +34,7 @@ SUBLAYERS = {
         {"syntax", "infix", "printing", "simplification", "classification", "violations", "cells"},
         {"expressions"},
         {"property_patterns", "structured_sentences", "sentences", "formal_texts", "basis"},
-        {"formats", "reduction", "region_formulas"},
+        {"formats", "reduction", "region_formulas", "quantities"},
         # behaviours
         {"feature_writes", "activities", "machines"},
         {"composition", "services"},

@@ -53,6 +53,7 @@ NEVER_WRITTEN = {
             *("requirement", "component", "formula", "verdict", "reason"),
             *("witness", "witness/loop", "witness/steps", "vacuous", "needs"),
             *("witness/violated", "assumed_ranges", "unread_conditions"),
+            *("witness/numbers", "witness/numbers/number", "witness/numbers/unit"),
         )
     ),
     *(

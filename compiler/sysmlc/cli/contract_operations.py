@@ -230,7 +230,7 @@ def _list_verdicts(
 ) -> "Iterator[dict[str, object]]":
     """Yield an entry for each conjunct; those after an obstacle are not decided."""
     from sysmlc.logic.basis import Basis
-    from sysmlc.synthesis.witnesses import print_temporal
+    from sysmlc.synthesis.witnesses import export_numbers, print_temporal
 
     sides = [(concrete, conjunct) for conjunct in concrete.contract.assumptions]
     sides += ((abstract, conjunct) for conjunct in abstract.contract.guarantees)
@@ -258,7 +258,8 @@ def _list_verdicts(
             "verdict": verdict,
             "vacuous": False,
             "needs": [],
-            "witness": trace and {"steps": [*map(dict, trace.steps)], "loop": trace.loop},
+            "witness": trace
+            and {"steps": [*map(dict, trace.steps)], "loop": trace.loop, **export_numbers(trace)},
             "reason": reason,
             "assumed_ranges": list(basis.ranges),
             "unread_conditions": list(basis.conditions) if verdict == "not-decided" else [],

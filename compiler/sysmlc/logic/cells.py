@@ -100,7 +100,7 @@ def _exclude(members: list[Variable], facts: list[Fact]) -> list[Formula] | None
     """Return the shortest combinations of regions without solution; None if there are too many."""
     excluded: list[Formula] = []
     cells: list[tuple[Formula, list[Inequality]]] = [
-        (f.TRUE, [row for fact in facts for row in _list_rows(*fact)])
+        (f.TRUE, [row for fact in facts for row in list_inequalities(*fact)])
     ]
     for member in members:
         assert isinstance(member.domain, EnumerationDomain)
@@ -111,7 +111,7 @@ def _exclude(members: list[Variable], facts: list[Fact]) -> list[Formula] | None
                 member.domain.literals, member.domain.regions.intervals, strict=True
             ):
                 combination = f.both(formula, f.eq(f.var(member.name), Const(literal)))
-                more = [*rows, *_list_rows(member.term, interval)]
+                more = [*rows, *list_inequalities(member.term, interval)]
                 if find_solution(more) is None:
                     excluded.append(combination)
                 else:
@@ -122,7 +122,7 @@ def _exclude(members: list[Variable], facts: list[Fact]) -> list[Formula] | None
     return excluded
 
 
-def _list_rows(term: Term, interval: Interval) -> Iterator[Inequality]:
+def list_inequalities(term: Term, interval: Interval) -> Iterator[Inequality]:
     """Yield the inequalities that keep a term in an interval."""
     if interval.high is not None:
         yield Inequality(dict(term), interval.high.number, is_strict=not interval.high.is_above)

@@ -225,10 +225,16 @@ def measure(number: Fraction, unit: str) -> tuple[Fraction, str]:
     return number * Fraction(source.factor), base.symbol
 
 
+def find_scale(unit: str) -> tuple[Fraction, Fraction]:
+    """Return the size and the zero of a unit: ``measure`` returns ``size * number + zero``."""
+    zero, one = (measure(Fraction(value), unit)[0] for value in (0, 1))
+    return one - zero, zero
+
+
 def express(number: Fraction, unit: str) -> Fraction:
     """Return a number as ``measure`` returns it as a number of *unit*."""
-    zero, one = (measure(Fraction(value), unit)[0] for value in (0, 1))
-    return (number - zero) / (one - zero)
+    size, zero = find_scale(unit)
+    return (number - zero) / size
 
 
 def show_symbol(unit: str) -> str:

@@ -12,6 +12,7 @@ from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.evaluate import value_of
 from sysmlc.logic.formula import Literal, rename_variables
 from sysmlc.logic.printing import print_formula, print_literal
+from sysmlc.logic.quantities import Quantity, show_numbers
 from sysmlc.logic.violations import find_violated_step
 from sysmlc.support.counts import count
 from sysmlc.support.output import assign_file_names
@@ -28,7 +29,7 @@ _NAMES_OF_VIOLATIONS = {False: "violated here", True: "never fulfilled from here
 """How texts mark the violated step of a run, by whether a demand stays open."""
 _ENVIRONMENT = "environment"
 
-Values = Mapping[str, Literal]
+ShownValues = Mapping[str, Literal | Quantity]
 
 
 class Party(Struct, frozen=True):
@@ -55,15 +56,18 @@ def mark_violation(trace: Trace, broken: Conjunct) -> Trace:
     return replace(trace, violated=step, is_open=not is_decided)
 
 
-def _iter_changes(trace: Trace) -> Iterator[Values]:
+def _iter_changes(trace: Trace, hidden: Set[str] = frozenset()) -> Iterator[ShownValues]:
     """Yield for each step the values that have changed; for the first step all values.
 
-    Quiet variables are false before the first step.
+    Numbers replace regions, and *hidden* variables are omitted. Quiet variables are false before
+    the first step.
     """
-    previous: Values = dict.fromkeys(trace.quiet, False)
-    for values in trace.steps:
-        yield {name: value for name, value in values.items() if previous.get(name) != value}
-        previous = values
+    previous: ShownValues = dict.fromkeys(trace.quiet, False)
+    for values, numbers in zip(trace.steps, trace.numbers or [{}] * len(trace.steps), strict=True):
+        visible = {name: value for name, value in values.items() if name not in hidden}
+        shown = show_numbers(visible, numbers)
+        yield {name: value for name, value in shown.items() if previous.get(name) != value}
+        previous = shown
 
 
 def describe_run(trace: Trace, broken: Conjunct | None = None) -> Iterator[str]:
@@ -76,15 +80,15 @@ def describe_run(trace: Trace, broken: Conjunct | None = None) -> Iterator[str]:
     marked = mark_violation(trace, broken) if broken is not None else trace
     violated = 0 if marked.violated is None else marked.violated + 1
     last_shown = 0
-    for number, changed in enumerate(_iter_changes(trace), 1):
+    changes = zip(_iter_changes(trace), _iter_changes(trace, hidden), strict=True)
+    for number, (changed, shown) in enumerate(changes, 1):
         if number > _MAX_SHOWN_STEPS and number != violated:
             continue
         if number > last_shown + 1:
             yield f"and {count(number - last_shown - 1, 'more step')}"
-        shown_names = [name for name in changed if name not in hidden]
         unchanged = "only auxiliary variables change" if changed else "nothing changes"
         mark = KEY_MARK + _NAMES_OF_VIOLATIONS[marked.is_open] if number == violated else ""
-        yield f"step {number}: {_print_values(changed, shown_names) or unchanged}{mark}"
+        yield f"step {number}: {_print_values(shown, shown) or unchanged}{mark}"
         last_shown = number
     if last_shown < len(trace.steps):
         yield f"and {count(len(trace.steps) - last_shown, 'more step')}"
@@ -102,7 +106,8 @@ def _hidden_variables(trace: Trace, broken: Conjunct | None) -> Set[str]:
 
 def _constant_variables(trace: Trace, broken: Conjunct) -> set[str]:
     """Return the variables that never change, unless the conjunct reads them or they matter."""
-    changing = {name for changed in list(_iter_changes(trace))[1:] for name in changed}
+    changes = list(_iter_changes(replace(trace, numbers=())))[1:]
+    changing = {name for changed in changes for name in changed}
     return set(trace.steps[0]) - changing - f.variable_names(broken.formula) - trace.relevant
 
 
@@ -125,9 +130,17 @@ def name_run(trace: Trace, atoms: Sequence[Atom]) -> Trace:
     auxiliary = {atom.variable.name for atom in atoms if atom.variable.is_auxiliary}
     quiet = frozenset(atom.variable.name for atom in atoms if atom.is_quiet)
     names = {atom.replaced: atom.variable.name for atom in atoms}
+    numbers = tuple(
+        {
+            names.get(name, name): {names.get(key, key): item for key, item in quantities.items()}
+            for name, quantities in step.items()
+        }
+        for step in trace.numbers
+    )
     return replace(
         trace,
         steps=steps,
+        numbers=numbers,
         auxiliary=trace.auxiliary | auxiliary,
         quiet=quiet,
         relevant=frozenset(names.get(name, name) for name in trace.relevant),
@@ -152,7 +165,22 @@ def export_run(trace: Trace) -> dict[str, object]:
         {name: value for name, value in values.items() if name not in trace.auxiliary}
         for values in trace.steps
     ]
-    return {"steps": steps, "loop": trace.loop, "violated": trace.violated}
+    run = {"steps": steps, "loop": trace.loop, "violated": trace.violated}
+    return run | export_numbers(trace)
+
+
+def export_numbers(trace: Trace) -> dict[str, object]:
+    """Return the member of a run for JSON with the numbers for regions; nothing without regions."""
+    numbers = [
+        {
+            key: quantity.export()
+            for name, quantities in step.items()
+            if name not in trace.auxiliary
+            for key, quantity in quantities.items()
+        }
+        for step in trace.numbers
+    ]
+    return {"numbers": numbers} if numbers else {}
 
 
 def witness_files(witnesses: Iterable[Witness]) -> Iterator[tuple[str, str]]:
@@ -170,18 +198,17 @@ def witness_diagram(witness: Witness) -> str:
     broken = format_label(print_temporal(witness.broken))
     title = f"{format_label(witness.component)}\\nnot kept: {broken}"
     hidden = _hidden_variables(witness.trace, witness.broken)
-    steps = tuple(
-        {name: value for name, value in values.items() if name not in hidden}
-        for values in witness.trace.steps
-    )
-    trace = replace(mark_violation(witness.trace, witness.broken), steps=steps)
-    return run_diagram(title, trace, witness.parties)
+    trace = mark_violation(witness.trace, witness.broken)
+    return run_diagram(title, trace, witness.parties, hidden)
 
 
-def run_diagram(title: str, trace: Trace, parties: Sequence[Party]) -> str:
+def run_diagram(
+    title: str, trace: Trace, parties: Sequence[Party], hidden: Set[str] = frozenset()
+) -> str:
     """Return a run as a sequence diagram of the environment and the parties.
 
     A changed variable is a message from its owner to each reader, or a note if it has no reader.
+    *hidden* variables are omitted.
     """
     head = [
         "@startuml",
@@ -194,7 +221,7 @@ def run_diagram(title: str, trace: Trace, parties: Sequence[Party]) -> str:
         ),
     ]
     contracts = [party.contract for party in parties]
-    return "\n".join((*head, *_diagram_steps(trace, contracts), "@enduml", ""))
+    return "\n".join((*head, *_diagram_steps(trace, contracts, hidden), "@enduml", ""))
 
 
 _TEMPORAL_PREFIXES = {Class.INIT: "", Class.SAFETY: "G ", Class.LIVENESS: "G F ", Class.OTHER: ""}
@@ -208,26 +235,35 @@ def print_temporal(conjunct: Conjunct) -> str:
     return f"{operators}({formula})" if operators else formula
 
 
-def _diagram_steps(trace: Trace, contracts: Sequence[Contract]) -> Iterator[str]:
-    for number, changed in enumerate(_iter_changes(trace)):
+def _diagram_steps(trace: Trace, contracts: Sequence[Contract], hidden: Set[str]) -> Iterator[str]:
+    variables = {key: name for step in trace.numbers for name in step for key in step[name]}
+    for number, changed in enumerate(_iter_changes(trace, hidden)):
         if number == trace.loop:
             yield "group again and again"
         yield f"== step {number + 1} =="
-        yield from _diagram_messages(changed, contracts)
+        yield from _diagram_messages(changed, contracts, variables)
         if number == trace.violated:
             yield f"note over p1 #FFDDDD : {_NAMES_OF_VIOLATIONS[trace.is_open]}"
     is_ended = trace.loop == len(trace.steps)
     yield "note over p1 : no answer is left" if is_ended else "end"
 
 
-def _diagram_messages(changed: Values, contracts: Sequence[Contract]) -> Iterator[str]:
-    """Yield the messages of one step, from the owner of a variable to its readers."""
+def _diagram_messages(
+    changed: ShownValues, contracts: Sequence[Contract], variables: Mapping[str, str]
+) -> Iterator[str]:
+    """Yield the messages of one step, from the owner of a variable to its readers.
+
+    *variables* are those that carry the numbers of features without a variable of their own.
+    """
 
     def find_parties(name: str, owner: Owner) -> list[int]:
         return [
             index
             for index, contract in enumerate(contracts, 1)
-            if any(item.name == name and item.owner is owner for item in contract.variables)
+            if any(
+                item.name in (name, variables.get(name)) and item.owner is owner
+                for item in contract.variables
+            )
         ]
 
     names_by_arrow: dict[tuple[int, int], list[str]] = {}
@@ -244,8 +280,13 @@ def _diagram_messages(changed: Values, contracts: Sequence[Contract]) -> Iterato
             yield f"p{sender} -> p{receiver} : {format_label(text)}"
 
 
-def _print_values(values: Values, names: Iterable[str]) -> str:
-    return ", ".join(f"{name}={print_literal(values[name])}" for name in names)
+def _print_values(values: ShownValues, names: Iterable[str]) -> str:
+    return ", ".join(_print_value(name, values[name]) for name in names)
+
+
+def _print_value(name: str, value: Literal | Quantity) -> str:
+    """Return a value of a step: ``temp = 17 °C (below low)``, ``state=Idle``."""
+    return f"{name} = {value}" if isinstance(value, Quantity) else f"{name}={print_literal(value)}"
 
 
 def manager_factory(options: Options) -> Callable[[], Manager]:

@@ -297,8 +297,7 @@ class Thresholds:
             expression = parse_comparison(match[0])
             if expression is None:
                 continue
-            nodes = (node for node in walk_tree(expression) if isinstance(node, Name | Member))
-            names = dict.fromkeys(map(_last_name, nodes))
+            names = dict.fromkeys(map(_last_name, _list_features(expression)))
             candidates = [self._numbers_by_name.get(name, ()) for name in names]
             for meaning in islice(product(*candidates), _MAX_MEANINGS):
                 numbers = dict(zip(names, meaning, strict=True))
@@ -468,6 +467,13 @@ def _is_resolved(text: ParsedText[Expression | tuple[Statement, ...]]) -> bool:
     """Whether all names have elements: not in ``G (x < 3)``, which may be read as a call of G."""
     nodes = (node for node in walk_tree(text.tree) if isinstance(node, Name | Member))
     return all(node.element for node in nodes)
+
+
+def _list_features(expression: Expression) -> list[Name | Member]:
+    """Return the names in an expression except those of units."""
+    nodes = list(walk_tree(expression))
+    units = [unit for node in nodes if isinstance(node, Index) for unit in walk_tree(node.index)]
+    return [node for node in nodes if isinstance(node, Name | Member) and node not in units]
 
 
 def _list_comparisons(expression: Binary, find: Lookup) -> list[Comparison]:

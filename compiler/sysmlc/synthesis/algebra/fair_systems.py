@@ -14,6 +14,7 @@ from msgspec.structs import replace
 from sysmlc.logic.contract import Class, Conjunct, Contract, Domain, Variable
 from sysmlc.logic.domains import describe_kind, regions_of
 from sysmlc.logic.formula import Literal
+from sysmlc.logic.quantities import StepQuantities, choose_numbers
 from sysmlc.logic.reduction.contract_reduction import as_ltl, is_gr1
 from sysmlc.logic.reduction.formula_reduction import NotReducibleError, reduce_formula
 from sysmlc.logic.reduction.history import History, share_history
@@ -300,7 +301,8 @@ class Trace(Struct, frozen=True):
     auxiliary variables (``Variable``), ``quiet`` those that texts omit while they have been false.
     ``violated`` is the step that violates the formula which the run refutes, if one is to blame;
     ``is_open`` means that the formula only demands something later that never comes. ``relevant``
-    are inputs that texts show although they never change.
+    are inputs that texts show although they never change. ``numbers`` are those that texts show in
+    place of regions, for each step; empty without regions.
     """
 
     steps: tuple[Mapping[str, Literal], ...]
@@ -310,6 +312,7 @@ class Trace(Struct, frozen=True):
     violated: int | None = None
     is_open: bool = False
     relevant: frozenset[str] = frozenset()
+    numbers: tuple[StepQuantities, ...] = ()
 
 
 def shortest_path(runs: Runs, target: Node) -> list[Node]:
@@ -391,4 +394,5 @@ def _decode_trace(runs: Runs, states: list[Node], loop: int) -> Trace:
     assignments = (runs.manager.pick(state, runs.bits) or {} for state in states)
     auxiliary = (variable.name for variable in symbols.variables.values() if variable.is_auxiliary)
     steps = tuple(symbols.decode(assignment) for assignment in assignments)
-    return Trace(steps, loop, frozenset(auxiliary))
+    numbers = choose_numbers(symbols.variables.values(), steps)
+    return Trace(steps, loop, frozenset(auxiliary), numbers=numbers)

@@ -8,6 +8,7 @@ from sysmlc.controllers.counter_strategy import CounterStrategy, Row, State
 from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.logic.contract import Contract, Owner
 from sysmlc.logic.formula import Literal
+from sysmlc.logic.quantities import choose_numbers
 from sysmlc.logic.reduction.contract_reduction import reduce_contract
 from sysmlc.synthesis.algebra.fair_systems import Trace
 from sysmlc.synthesis.bdd.limits import LimitError
@@ -135,11 +136,16 @@ def example_run(machine: CounterStrategy) -> Trace:
         steps.append(machine.inputs_in(state))
         moves = machine.states[state].moves
         if not moves:
-            return Trace(tuple(steps), len(steps))
+            return _make_trace(machine, steps, len(steps))
         answer, state = max(moves.items(), key=lambda move: steps_left[move[1]])
         names = (variable.name for variable in machine.outputs)
         steps[-1] |= zip(names, answer, strict=True)
-    return Trace(tuple(steps), first_steps[state])
+    return _make_trace(machine, steps, first_steps[state])
+
+
+def _make_trace(machine: CounterStrategy, steps: list[dict[str, Literal]], loop: int) -> Trace:
+    numbers = choose_numbers((*machine.inputs, *machine.outputs), steps)
+    return Trace(tuple(steps), loop, numbers=numbers)
 
 
 def _steps_until_stuck(machine: CounterStrategy) -> list[int]:
