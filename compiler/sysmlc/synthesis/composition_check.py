@@ -14,7 +14,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.basis import Basis, find_basis
 from sysmlc.logic.contract import Class, Composite, Conjunct, Contract, Owner
 from sysmlc.logic.formula import Formula
-from sysmlc.logic.printing import print_formula
+from sysmlc.logic.region_formulas import print_worded
 from sysmlc.support.disjoint_sets import DisjointSets
 from sysmlc.synthesis.algebra.composition import Composition, DriverError, compose_parts
 from sysmlc.synthesis.algebra.discharge import OpenAssumption
@@ -237,7 +237,7 @@ def _drop_doubtful(
         if basis.conditions:
             doubtful[conjunct] = Basis(conditions=basis.conditions)
     for conjunct, basis in doubtful.items():
-        formula = print_formula(conjunct.formula)
+        formula = _print_formula(composite, conjunct)
         sink.report(
             DEPENDS,
             place(conjunct.origin or composite.origin),
@@ -271,7 +271,7 @@ def _report_conflict(
     }
     notes = (
         f"{names.get(conjunct, composite.component)}: "
-        f"'{print_formula(conjunct.formula)}'{text_in_parentheses(conjunct)}"
+        f"'{_print_formula(composite, conjunct)}'{text_in_parentheses(conjunct)}"
         for conjunct in composition.conflict
     )
     subject = place(composite.origin)
@@ -307,9 +307,14 @@ def _report_open(
         ),
         part=assumption.part.name,
         component=composite.component,
-        formula=print_formula(assumption.conjunct.formula),
+        formula=_print_formula(composite, assumption.conjunct),
         context=text_in_parentheses(assumption.conjunct),
     )
+
+
+def _print_formula(composite: Composite, conjunct: Conjunct) -> str:
+    variables = (item for contract in _list_contracts(composite) for item in contract.variables)
+    return print_worded(conjunct.formula, variables)
 
 
 def _note_free_outputs(composite: Composite, assumption: Conjunct) -> Iterator[str]:

@@ -12,8 +12,8 @@ from sysmlc.logic.basis import Basis
 from sysmlc.logic.components.derivation import ComponentBehaviour
 from sysmlc.logic.contract import Conjunct, Contract, Domain, Owner
 from sysmlc.logic.evaluate import find_violation
-from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import reduce_contract
+from sysmlc.logic.region_formulas import print_worded
 from sysmlc.synthesis.algebra.composition import conjoin_viewpoints
 from sysmlc.synthesis.algebra.fair_systems import DomainError, Trace
 from sysmlc.synthesis.algebra.refinement import Failure, find_refinement_failures
@@ -451,7 +451,7 @@ def check_viewpoints(contract: Contract, place: Place, sink: Sink, options: Opti
     if not is_realizable:
         origins = {conjunct.origin for conjunct in core if conjunct.viewpoint}
         notes = dict.fromkeys(
-            f"'{conjunct.viewpoint}' demands '{print_formula(conjunct.formula)}'"
+            f"'{conjunct.viewpoint}' demands '{print_worded(conjunct.formula, contract.variables)}'"
             for conjunct in contract.guarantees
             if conjunct.viewpoint and conjunct.origin in origins
         )

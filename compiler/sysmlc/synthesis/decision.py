@@ -18,8 +18,8 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.basis import Basis, find_basis
 from sysmlc.logic.contract import Class, Conjunct, Contract, Domain, IntegerDomain
 from sysmlc.logic.formula import Apply, Const, Op, Var
-from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import reduce_contract
+from sysmlc.logic.region_formulas import print_worded
 from sysmlc.support.counts import count
 from sysmlc.synthesis import rules
 from sysmlc.synthesis.bdd.limits import LimitError, Limits, Progress, TooLargeError
@@ -213,7 +213,7 @@ def _report_outside(contract: Contract, problem: OutsideGr1Error, place: Place, 
             rules.OUTSIDE_GR1,
             place(conjunct.origin or contract.origin),
             component=contract.component,
-            formula=print_formula(conjunct.formula),
+            formula=print_worded(conjunct.formula, contract.variables),
             why=problem.reason,
         )
 

@@ -25,7 +25,8 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.domains import size, values
 from sysmlc.logic.formula import Formula, Var, variable_names, variables
-from sysmlc.logic.printing import print_formula, print_literal
+from sysmlc.logic.printing import print_literal
+from sysmlc.logic.region_formulas import print_worded
 from sysmlc.synthesis import rules
 from sysmlc.synthesis.algebra.fair_systems import FairSystem, Runs
 from sysmlc.synthesis.algebra.refinement import has_environment
@@ -71,7 +72,8 @@ def lint(
         if has_behaviour and finding.rule in _LEFT_OPEN:
             continue
         origin = contract.origin if finding.conjunct is None else finding.conjunct.origin
-        formula = "" if finding.conjunct is None else print_formula(finding.conjunct.formula)
+        conjunct = finding.conjunct
+        formula = "" if conjunct is None else print_worded(conjunct.formula, contract.variables)
         sink.report(
             finding.rule,
             place(origin),
@@ -212,7 +214,8 @@ def _suggest_fairness(contract: Contract, create_manager: ManagerFactory) -> Ite
         if is_won(extended_contract, create_manager) and not is_forced(
             extended_contract, create_manager
         ):
-            text = f", for instance if '{print_formula(condition)}' recurred"
+            shown = print_worded(condition, contract.variables)
+            text = f", for instance if '{shown}' recurred"
             yield LintFinding(rules.NO_FAIRNESS, detail=text)
             return
 
@@ -257,7 +260,8 @@ def _describe_culprits(contract: Contract, create_manager: ManagerFactory) -> st
             create_manager,
         )
     ]
-    texts = ", ".join(f"'{print_formula(assumption.formula)}'" for assumption in culprits)
+    formulas = (print_worded(culprit.formula, contract.variables) for culprit in culprits)
+    texts = ", ".join(f"'{formula}'" for formula in formulas)
     return f"; not without {texts}" if texts else ""
 
 

@@ -22,6 +22,7 @@ from sysmlc.logic.domains import size, values
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import is_gr1
+from sysmlc.logic.region_formulas import print_worded
 from sysmlc.support.counts import count
 from sysmlc.synthesis.bdd.limits import LimitError
 from sysmlc.synthesis.games.command_elimination import eliminate_commands
@@ -154,7 +155,8 @@ def explain_unrealizability(game: Game, contract: Contract) -> Iterator[str]:
     except LimitError:
         return
     for assumption in helpful:
-        yield f"it is realizable under the further assumption {_print_conjunct(assumption)}"
+        shown = _print_conjunct(assumption, contract)
+        yield f"it is realizable under the further assumption {shown}"
 
 
 def _describe_conflict(game: Game, contract: Contract) -> Iterator[str]:
@@ -174,7 +176,7 @@ def _describe_conflict(game: Game, contract: Contract) -> Iterator[str]:
     for conjunct in core:
         is_new = conjunct.text not in ("", print_formula(conjunct.formula))
         text = f" ({conjunct.text})" if is_new else ""
-        yield f"{_print_conjunct(conjunct)}{text}"
+        yield f"{_print_conjunct(conjunct, contract)}{text}"
 
 
 def find_original_conjuncts(conjuncts: Iterable[Conjunct], contract: Contract) -> list[Conjunct]:
@@ -196,8 +198,9 @@ def find_original_conjuncts(conjuncts: Iterable[Conjunct], contract: Contract) -
     return list(result.values())
 
 
-def _print_conjunct(conjunct: Conjunct) -> str:
-    return f"{_PREFIXES[conjunct.class_]}{print_formula(conjunct.formula)}"
+def _print_conjunct(conjunct: Conjunct, contract: Contract) -> str:
+    formula = print_worded(conjunct.formula, contract.variables)
+    return f"{_PREFIXES[conjunct.class_]}{formula}"
 
 
 MAX_CANDIDATES = 60
