@@ -297,8 +297,10 @@ class Thresholds:
             expression = parse_comparison(match[0])
             if expression is None:
                 continue
-            names = dict.fromkeys(map(_last_name, _list_features(expression)))
-            candidates = [self._numbers_by_name.get(name, ()) for name in names]
+            features = dict.fromkeys(map(_last_name, _list_features(expression)))
+            # The subject in ``heater.temp < 22 [K]`` is no number.
+            names = [name for name in features if name in self._numbers_by_name]
+            candidates = [self._numbers_by_name[name] for name in names]
             for meaning in islice(product(*candidates), _MAX_MEANINGS):
                 numbers = dict(zip(names, meaning, strict=True))
                 self._add_condition(expression, partial(_find_by_name, numbers))
