@@ -191,14 +191,12 @@ def compare(random, make_machine, path):
         if verdict not in (expected, "not-decided"):
             wrong.append((name, verdict, expected))
     for behaviour in document["behaviours"]:
-        unreachable, never_taken = set(behaviour["unreachable"]), len(behaviour["never_taken"])
+        unreachable, never_taken = set(behaviour["unreachable"]), behaviour["never_taken"]
         expected = set(explored.list_unreachable()), explored.count_never_taken()
-        # The values of an attribute may be approximated: then less is reported.
+        # The values of an attribute may be approximated, so that fewer states are reported.
         is_exact = not explored.has_attributes
-        if not (unreachable <= expected[0] and never_taken <= expected[1]) or (
-            is_exact and (unreachable, never_taken) != expected
-        ):
-            wrong.append((unreachable, behaviour["never_taken"], expected))
+        if (unreachable, len(never_taken)) != expected if is_exact else unreachable - expected[0]:
+            wrong.append((unreachable, never_taken, expected))
     return wrong, verdicts
 
 
@@ -226,4 +224,4 @@ def test_requirements_about_assigned_numbers_have_the_verdicts_of_the_checker(tm
 @pytest.mark.parametrize("start", range(1000, 1500, 50))
 def test_requirements_of_many_machines_have_the_verdicts_of_the_checker(start, tmp_path):
     assert compare_many(range(start, start + 50), make_machine, tmp_path) <= UNDECIDED
-    compare_many(range(start, start + 50), make_assigning_machine, tmp_path)
+    compare_many(range(start, start + 20), make_assigning_machine, tmp_path)
