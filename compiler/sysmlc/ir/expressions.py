@@ -183,13 +183,13 @@ def is_nested_too_deeply(tree: Expression | tuple[Statement, ...]) -> bool:
     """Whether the tree is so deep that functions cannot recurse over it."""
     level: list[object] = [tree]
     for _ in range(_MAX_NESTING):
-        level = [child for node in level for child in _list_children(node)]
+        level = [child for node in level for child in list_children(node)]
         if not level:
             return False
     return True
 
 
-def _list_children(node: object) -> list[object]:
+def list_children(node: object) -> list[object]:
     """Return the nodes and the tuples below a node of a tree, or in a tuple."""
     names = getattr(type(node), "__match_args__", ())
     parts = node if isinstance(node, tuple) else [getattr(node, name) for name in names]
@@ -328,7 +328,7 @@ def walk_tree(tree: Expression | tuple[Statement, ...]) -> list[Expression | Sta
         node = worklist.pop()
         if isinstance(node, Expression | Statement):
             nodes.append(node)
-        worklist += reversed(_list_children(node))
+        worklist += reversed(list_children(node))
     return nodes
 
 

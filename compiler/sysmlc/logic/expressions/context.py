@@ -270,8 +270,10 @@ class _FeatureTable(Mapping[str, Feature]):
         self._graph = graph
         self._thresholds = thresholds_of(graph)
         self._features: dict[str, Feature] = {}
-        self._add_terms(elements)
         self._classifier = classifier
+        self.facts: tuple[Fact, ...] = ()
+        if self._thresholds.has_sums or self._thresholds.limits.has_facts:
+            self._add_terms(elements)
         self._behaviour = behaviour or classifier
         self._elements = elements
         self._assumed_range = assumed_range
@@ -279,15 +281,14 @@ class _FeatureTable(Mapping[str, Feature]):
 
     def _add_terms(self, elements: Mapping[str, Element]) -> None:
         """Add a feature for each sum of features that the model compares, such as ``a - b``."""
-        self.facts: tuple[Fact, ...] = ()
-        if not self._thresholds.has_sums:
-            return
         variables: dict[str, list[str]] = defaultdict(list)
+        members_by_path: dict[str, dict[str, list[str]]] = defaultdict(lambda: defaultdict(list))
         names = {variable: name for name, variable in self.variables.items()}
         for name, variable in self.variables.items():
             number = self._thresholds.number_of(elements[name])
             if number is not None and number.key:
                 variables[number.key].append(variable)
+                members_by_path[name.rpartition(".")[0]][number.key].append(variable)
         unique = Names("value", "event", "none", *names)
         for term, domain in self._thresholds.list_terms(variables):
             text = print_term(term)
@@ -303,8 +304,15 @@ class _FeatureTable(Mapping[str, Feature]):
                 wording=text,
                 term=term,
                 constants=tuple(key for key, n in numbers.items() if n is not None and n.is_frozen),
+                restriction=self._find_restriction(*numbers.values()),
             )
-        self.facts = tuple(self._thresholds.list_facts(variables))
+        family = [self._classifier, *query.generals(self._graph, self._classifier)]
+        blocks = {block.id for block in family}
+        self.facts = tuple(
+            fact
+            for path, members in members_by_path.items()
+            for fact in self._thresholds.list_facts(members, () if path else blocks)
+        )
 
     def __getitem__(self, name: str) -> Feature:
         if name not in self._features:
@@ -369,7 +377,14 @@ class _FeatureTable(Mapping[str, Feature]):
             invalid_default="",
             term=((feature.variable, Fraction(1)),),
             constants=(feature.variable,) if number.is_frozen else (),
+            restriction=self._find_restriction(number),
         )
+
+    def _find_restriction(self, *numbers: Number | None) -> str:
+        """Return a constraint on one of the numbers that their regions do not show."""
+        unread = self._thresholds.limits.unread
+        texts = (unread.get(number.key, "") for number in numbers if number is not None)
+        return next(filter(None, texts), "")
 
     def _widen_range(self, name: str, feature: Feature) -> Feature:
         """Extend an assumed range to numbers on both sides of the thresholds of the feature.

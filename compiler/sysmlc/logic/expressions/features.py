@@ -75,6 +75,8 @@ class Feature(Struct, frozen=True):
     """The variables of the numbers in a compared sum, or of the number; empty for others."""
     constants: tuple[str, ...] = ()
     """The variables in the term that never change."""
+    restriction: str = ""
+    """A constraint that restricts the number in a way that the regions do not show."""
 
     def make_variable(self, owner: Owner) -> Variable:
         """Return the variable of a feature with a finite domain."""
@@ -88,6 +90,7 @@ class Feature(Struct, frozen=True):
             wording=self.wording,
             term=self.term,
             constants=self.constants,
+            condition=self.restriction,
         )
 
 

@@ -7,8 +7,8 @@ same ones for features that connectors join. Differences and sums that are compa
 """
 
 import re
-from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections import Counter, defaultdict
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from fractions import Fraction
 from functools import cached_property, partial, reduce
 from itertools import islice, product
@@ -36,6 +36,7 @@ from sysmlc.ir.expressions import (
 from sysmlc.logic.contract import EnumerationDomain
 from sysmlc.logic.domains import make_region_domain
 from sysmlc.logic.expressions.features import find_number_type
+from sysmlc.logic.expressions.limits import read_limits
 from sysmlc.logic.expressions.linear import (
     COMPARISONS,
     Comparison,
@@ -56,7 +57,6 @@ from sysmlc.logic.regions import (
     Regions,
     Term,
     list_cuts,
-    select_interval,
     split_line,
 )
 from sysmlc.support.disjoint_sets import DisjointSets
@@ -71,8 +71,6 @@ _MAX_MEANINGS = 64
 """Most combinations of equally named features that one formula may compare."""
 _MAX_VALUES = 64
 """Most assigned constants of a feature that are told apart."""
-_MOMENTARY = frozenset(["precondition", "postcondition", "body"])
-"""Kinds of constraints that do not hold at all times."""
 
 
 def parse_comparison(text: str) -> Expression | None:
@@ -126,14 +124,12 @@ class Thresholds:
         self._cuts: dict[Term, dict[Cut, None]] = defaultdict(dict)
         self._labels: dict[Term, dict[Fraction, str]] = defaultdict(dict)
         self._units: dict[Term, tuple[str, str]] = {}
-        self._limits: dict[Term, Interval] = {}
         self._written: set[str] = set()
         for expression in self._iter_conditions():
             self._add_condition(expression, self.find_number)
         for text in self._iter_formal_texts():
             self._add_formal_text(text)
-        for element in graph.of_kind(Kind.CONSTRAINT):
-            self._add_limits(element)
+        self.limits = read_limits(graph, self.find_number, self.is_integral, self._joined_keys)
         for key, values in self._values.items():
             # Sums need a feature with several values, also if nothing compares it by itself.
             term = ((key, Fraction(1)),)
@@ -232,6 +228,13 @@ class Thresholds:
             ends = [graph.target(flow, edge) for edge in edges]
             self._join(joined, [end for end in ends if end is not None])
         return joined
+
+    @cached_property
+    def _joined_keys(self) -> frozenset[str]:
+        """The keys that several features share."""
+        features = self._graph.of_kind(*VALUE_KINDS)
+        counts = Counter(self._groups.find(feature.id) for feature in features)
+        return frozenset(key for key, count in counts.items() if count > 1)
 
     def _join(self, joined: DisjointSets[str], features: list[Element]) -> None:
         """Join features, or the equally named features of the types of ports."""
@@ -340,27 +343,6 @@ class Thresholds:
                 if text:
                     self._labels[comparison.term].setdefault(comparison.number, text)
 
-    def _add_limits(self, constraint: Element) -> None:
-        """Read the bounds of features and sums in a constraint that always holds."""
-        body = constraint.attrs.get("body")
-        owner = self._graph.owner(constraint)
-        is_fact = owner is not None and owner.kind in (Kind.CLASS, Kind.COMPONENT, Kind.DATA_TYPE)
-        if not isinstance(body, ParsedText) or constraint.subkind in _MOMENTARY or not is_fact:
-            return
-        for comparison in (
-            comparison
-            for part in split_conjunction(body.tree)
-            if isinstance(part, Binary)
-            for comparison in _list_comparisons(part, self.find_number)
-        ):
-            term, op, number = comparison.term, comparison.op, comparison.number
-            if not term or op == "!=":
-                continue
-            interval = select_interval(op, number, is_integral=self.is_integral(term))
-            limits = self._limits.get(term, LINE).intersect(interval)
-            if limits is not None:
-                self._limits[term] = limits
-
     def is_integral(self, term: Term) -> bool:
         """Whether a term has only Integers as values."""
         return all(
@@ -376,7 +358,7 @@ class Thresholds:
         return {term: self._make_domain(term) for term in self._cuts}
 
     def _make_domain(self, term: Term) -> EnumerationDomain:
-        cuts, limits = list(self._cuts[term]), self._limits.get(term, LINE)
+        cuts, limits = list(self._cuts[term]), self.limits.everywhere.get(term, LINE)
         updates = self._updates.get(term[0][0]) if len(term) == 1 else None
         points = () if updates is None else updates.list_points(cuts)
         is_integral = self.is_integral(term)
@@ -423,12 +405,16 @@ class Thresholds:
                     is_same = scale == 1
                     yield own, domain if is_same else make_region_domain(regions.scale(scale))
 
-    def list_facts(self, variables: Mapping[str, list[str]]) -> Iterator[tuple[Term, Interval]]:
-        """Yield the sums of variables that constraints keep in an interval, as ``list_terms``."""
-        for term, limits in self._limits.items():
-            if len(term) > 1:
-                for own, scale in _iter_meanings(term, variables):
-                    yield own, limits.move(scale, Fraction(0))
+    def list_facts(
+        self, variables: Mapping[str, list[str]], blocks: Collection[str]
+    ) -> Iterator[tuple[Term, Interval]]:
+        """Yield the sums of variables that constraints keep in an interval, as ``list_terms``.
+
+        The variables belong to one object, which is one of each of the *blocks*.
+        """
+        for term, limits in self.limits.list_facts(blocks):
+            for own, scale in _iter_meanings(term, variables):
+                yield own, limits.move(scale, Fraction(0))
 
 
 def _iter_meanings(
@@ -450,19 +436,6 @@ def thresholds_of(graph: Graph) -> Thresholds:
     thresholds = Thresholds(graph)
     graph.store(Thresholds, (thresholds,))
     return thresholds
-
-
-def split_conjunction(expression: Expression) -> Iterator[Expression]:
-    """Yield the comparisons of a conjunction; ``0 <= x <= 7`` has two."""
-    match expression:
-        case Binary("and", left, right):
-            yield from split_conjunction(left)
-            yield from split_conjunction(right)
-        case Binary(op, Binary(first, _, middle) as left, right) if {op, first} <= COMPARISONS:
-            yield left
-            yield Binary(op, middle, right)
-        case _:
-            yield expression
 
 
 def _is_resolved(text: ParsedText[Expression | tuple[Statement, ...]]) -> bool:
