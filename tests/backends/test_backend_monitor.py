@@ -277,6 +277,13 @@ def test_numbers_have_the_same_regions_in_c_and_in_python(number_files, tmp_path
     assert len(set(expected)) == 2 * len(NUMBERS)
 
 
+def test_floors_name_regions_from_the_top_and_gaps_between_them():
+    regions = Regions((Interval(None, Cut(0)), Interval(Cut(3), Cut(3, ABOVE))))
+    floors = [(Cut(3, ABOVE), None), (Cut(3), 1), (Cut(0), None), (None, 0)]
+    assert list(regions.list_floors()) == floors
+    assert list(Regions((LINE,)).list_floors()) == [(None, 0)]
+
+
 def test_exact_numbers_are_compared_exactly(number_files):
     row = {"temp": 1, "level": 1, "huge": 1, "a": 0, "count": 1}
     row |= {shown.name: f"{number.name}_0" for number, shown in NUMBERS}
