@@ -337,6 +337,9 @@ def test_numbers_have_units_and_checks():
         "'fill' has a value in each step: 0 <= fill <= 100.",
         "'inside - outside' has a value in each step.",
     ]
+    formulas = [formula for _, _, formula, _ in names["CHECKS"]]
+    assert "G (state=Cold & temp >= 20 °C & inside < 200 cm -> state'=Hot)" in formulas
+    assert "G (state=Hot & inside > outside & fill < 50 -> state'=Cold)" in formulas
 
 
 def test_a_check_names_its_element(gate):

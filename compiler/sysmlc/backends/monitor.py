@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from functools import partial
 
 from msgspec import Struct
+from msgspec.structs import replace
 
 from sysmlc.backends.base import EmitOptions
 from sysmlc.backends.contracts import list_traced_elements
@@ -27,10 +28,11 @@ from sysmlc.diagnostics import Severity, Sink, rule
 from sysmlc.ir import Graph
 from sysmlc.logic import domains
 from sysmlc.logic.contract import BooleanDomain, Class, Contract, EnumerationDomain, Owner, Variable
-from sysmlc.logic.formula import Apply, Formula, Op, has_primes
+from sysmlc.logic.formula import TRUE, Apply, Formula, Op, has_primes
 from sysmlc.logic.identifiers import identifier, make_unique
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import as_ltl
+from sysmlc.logic.region_formulas import describe_literals, print_worded, word_regions
 from sysmlc.support.output import Output
 from sysmlc.support.program_text import format_comment, is_c_word, quote_c, quote_python
 
@@ -176,9 +178,13 @@ def _build_page(graph: Graph, monitor: Monitor, prefix: str) -> _Page:
             )
             for bit in monitor.bits
         ),
-        checks=tuple(_build_check(graph, check, c_language) for check in monitor.checks),
+        checks=tuple(
+            _build_check(graph, check, c_language, contract.variables) for check in monitor.checks
+        ),
         unmonitored=tuple(
-            format_comment(conjunct.text or print_formula(as_ltl(conjunct)), _MAX_COMMENT)
+            format_comment(
+                conjunct.text or print_worded(as_ltl(conjunct), contract.variables), _MAX_COMMENT
+            )
             for conjunct in monitor.unmonitored
         ),
         uses_division=any(map(_has_division, formulas)),
@@ -221,7 +227,7 @@ def _list_inputs(
         number = numbers[name]
         uses = {key: item for key, item in sums.items() if name in dict(item.term)}
         if name in uses:
-            text = ", ".join(uses[name].regions.list_conditions(name))
+            text = ", ".join(condition for _, condition in describe_literals(variables[name]))
         else:
             text = f"for {', '.join(variables[key].wording or key for key in uses)}"
         unit = f" in {number.unit}" if number.unit else ""
@@ -279,12 +285,17 @@ def _describe_variable(variable: Variable) -> str:
     return f"{variable.name}: {domains.describe(variable.domain)}{wording}"
 
 
-def _build_check(graph: Graph, check: Check, c_language: "Language") -> _Check:
+def _build_check(
+    graph: Graph, check: Check, c_language: Language, variables: tuple[Variable, ...]
+) -> _Check:
     conjunct = check.conjunct
     is_about_two_steps = has_primes(conjunct.formula)
     condition = "first" if conjunct.class_ is Class.INIT else "each"
     side = "assumption" if check.owner is Owner.ENVIRONMENT else "guarantee"
-    formula = print_formula(as_ltl(conjunct))
+    worded = word_regions(conjunct.formula, variables)
+    # That a number has a value is true for each number.
+    shown = conjunct if worded == TRUE else replace(conjunct, formula=worded)
+    formula = print_formula(as_ltl(shown))
     element = graph.qualified_name(graph[conjunct.origin]) if conjunct.origin in graph else ""
     description = (side, conjunct.text or formula, formula, element)
     return _Check(

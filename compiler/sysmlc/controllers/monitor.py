@@ -22,6 +22,7 @@ from sysmlc.logic.contract import (
     Owner,
     Variable,
 )
+from sysmlc.logic.domains import make_region_domain, regions_of
 from sysmlc.logic.evaluate import compile_evaluation
 from sysmlc.logic.formula import Formula, Literal, Op, has_primes, variable_names
 from sysmlc.logic.reduction.contract_reduction import reduce_contract
@@ -30,6 +31,7 @@ from sysmlc.logic.reduction.history import (
     list_history_bits,
     list_history_conjuncts,
 )
+from sysmlc.logic.region_formulas import describe_literals
 from sysmlc.logic.regions import LINE, Regions, Term
 
 Valuation = Mapping[str, Literal]
@@ -77,10 +79,11 @@ class Monitor(Struct, frozen=True):
         names |= {v.term[0][0]: v.name for v in variables if len(v.term) == 1}
         sums: dict[str, InputSum] = {}
         for variable in variables:
-            if isinstance(variable.domain, EnumerationDomain) and variable.domain.regions:
+            regions = regions_of(variable.domain)
+            if regions is not None:
                 term = variable.term or ((variable.name, Fraction(1)),)
                 own = tuple((names.get(key, key), factor) for key, factor in term)
-                sums[variable.name] = InputSum(own, variable.domain.regions)
+                sums[variable.name] = InputSum(own, regions)
         return sums
 
     @property
@@ -170,10 +173,11 @@ def _check_ranges(declared: Iterable[Variable], owner: Owner) -> Iterator[Check]
                 # A number such as NaN has no region.
                 name = f.var(variable.name)
                 formula = f.either(*(f.eq(name, f.const(literal)) for literal in literals))
-                term, limits = variable.wording or variable.name, regions.join_neighbours()
-                conditions = " or ".join(limits.list_conditions(term))
+                limits = regions.join_neighbours()
+                widest = replace(variable, domain=make_region_domain(limits))
+                conditions = " or ".join(condition for _, condition in describe_literals(widest))
                 shown = "" if LINE in limits.intervals else f": {conditions}"
-                text = f"'{term}' has a value in each step{shown}."
+                text = f"'{variable.wording or variable.name}' has a value in each step{shown}."
                 yield Check(Conjunct(formula, Class.SAFETY, variable.origin, text), owner)
 
 

@@ -240,6 +240,5 @@ def describe_literals(variable: Variable) -> tuple[tuple[str, str], ...]:
     if regions is None:
         return ()
     sides = _Wording({variable.name: variable}).print_sides(Var(variable.name))
-    conditions = (regions.describe(index, *sides) for index in range(len(regions.intervals)))
     literals = map(str, domains.values(variable.domain))
-    return tuple(zip(literals, conditions, strict=True))
+    return tuple(zip(literals, regions.list_conditions(*sides), strict=True))

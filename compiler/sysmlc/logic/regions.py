@@ -253,9 +253,10 @@ class Regions(Struct, frozen=True):
         low, high = self.intervals[index].low, self.intervals[index].high
         return low is not None and high is not None and self._is_point(low, high)
 
-    def list_conditions(self, term: str) -> list[str]:
+    def list_conditions(self, term: str, subtracted: str = "") -> list[str]:
         """Return each region as a condition, as ``describe`` does."""
-        return [self.describe(index, term) for index in range(len(self.intervals))]
+        indices = range(len(self.intervals))
+        return [self.describe(index, term, subtracted) for index in indices]
 
     def describe(self, index: int, term: str, subtracted: str = "") -> str:
         """Return a region as a condition: ``temp < low``, ``18 <= temp < 22``, ``temp == 5``.
