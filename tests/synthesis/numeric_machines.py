@@ -338,4 +338,7 @@ def _make_move(random: Random, source: str, target: str, literals: list[Literal]
     if kind < 0.55:
         return Move(source, target, condition)
     guard = condition if random.random() < 0.7 else None
-    return Move(source, target, guard, random.choice(EVENTS))
+    if kind < 0.8:
+        return Move(source, target, guard, random.choice(EVENTS))
+    change = _make_condition(random, literals)
+    return Move(source, target, guard if random.random() < 0.3 else None, when=change)
