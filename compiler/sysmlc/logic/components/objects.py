@@ -306,10 +306,22 @@ class ObjectTree:
 
     def find_features(self, slot: Slot) -> list[tuple[ComponentObject, Feature]]:
         """Return the features that share a slot, each with the object that has it."""
-        return [
+        features = [
             (object_, self.context(object_).features[name])
             for object_, name in self.iter_joined_names(slot)
         ]
+        path, name = slot
+        holder = self.find_object(path)
+        if features or holder is None or " " not in name:
+            return features
+        # Only the behaviours of an object name the features of its parts, and sums of them.
+        sums = (context.features.get(name) for context in self._list_contexts(holder))
+        return [(holder, feature) for feature in sums if feature is not None][:1]
+
+    def _list_contexts(self, object_: ComponentObject) -> list[Context]:
+        """Return what names mean inside an object, and in the behaviours that were read so far."""
+        read = (item for key, item in self._contexts.items() if key.startswith(f"{object_.path} "))
+        return [self.context(object_), *read]
 
     def iter_joined_names(self, slot: Slot) -> Iterator[tuple[ComponentObject, str]]:
         """Yield the names of the features that share a slot, each with the object that has it."""
@@ -370,7 +382,11 @@ class ObjectTree:
 
     def _place_names(self, holder: ComponentObject, variables: Iterable[str]) -> tuple[str, ...]:
         """Return the slots, as paths, of variables in the context of an object."""
-        names = {variable: name for name, variable in self.context(holder).variables.items()}
+        names = {
+            variable: name
+            for context in reversed(self._list_contexts(holder))
+            for name, variable in context.variables.items()
+        }
         slots = (self.slot_of(holder.path, names[variable]) for variable in variables)
         return tuple(join_path(*slot) for slot in slots)
 

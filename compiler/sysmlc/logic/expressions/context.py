@@ -292,6 +292,8 @@ class _FeatureTable(Mapping[str, Feature]):
         unique = Names("value", "event", "none", *names)
         for term, domain in self._thresholds.list_terms(variables):
             text = print_term(term)
+            if text in self._features:
+                continue  # A difference of parts, also read in the other direction
             spelled = text.replace(" - ", " minus ").replace(" + ", " plus ").replace("*", " ")
             variable = self.variables[text] = unique.new(spelled)
             members = {key: elements[names[key]] for key, _ in term}

@@ -36,7 +36,7 @@ from sysmlc.ir.expressions import (
 from sysmlc.logic.contract import EnumerationDomain
 from sysmlc.logic.domains import make_region_domain
 from sysmlc.logic.expressions.features import find_number_type
-from sysmlc.logic.expressions.limits import read_limits
+from sysmlc.logic.expressions.limits import iter_paths, read_limits
 from sysmlc.logic.expressions.linear import (
     COMPARISONS,
     Comparison,
@@ -67,6 +67,8 @@ _OPERAND = r"(?:-\s*)?{atom}(?:\s*[-+*/]\s*{atom})*".format(
 )
 COMPARISON = re.compile(rf"(?<![\w.]){_OPERAND}\s*(?:<=|>=|==|!=|=|<|>)\s*{_OPERAND}(?![\w.(])")
 """A comparison of sums in a formula or a sentence, without parentheses."""
+_PATH = "\0"
+"""Separates the key of a feature from the path to it."""
 _MAX_MEANINGS = 64
 """Most combinations of equally named features that one formula may compare."""
 _MAX_VALUES = 64
@@ -323,12 +325,14 @@ class Thresholds:
     def _add_condition(self, expression: Expression, find: Lookup) -> None:
         if not isinstance(expression, Binary):
             return
-        for comparison in _list_comparisons(expression, find):
-            term, number = comparison.term, comparison.number
+        for comparison in _list_comparisons(expression, _distinguish_paths(expression, find)):
+            term, number = _merge_paths(comparison.term), comparison.number
             if not term:
                 continue
             for cut in list_cuts(comparison.op, number, is_integral=self.is_integral(term)):
                 self._cuts[term][cut] = None
+                if _is_antisymmetric(term):  # The difference of two parts may be meant either way.
+                    self._cuts[term][Cut(-cut.number, not cut.is_above)] = None
             if comparison.unit is not None:
                 self._units.setdefault(term, (comparison.unit, comparison.symbol))
             self._add_label(expression, find, comparison)
@@ -422,6 +426,8 @@ def _iter_meanings(
 ) -> Iterator[tuple[Term, Fraction]]:
     """Yield a term in variables, and the factor by which it is a multiple of the term in keys."""
     for names in product(*(variables.get(key, ()) for key, _ in term)):
+        if len(set(names)) < len(names):
+            continue
         factors = (factor for _, factor in term)
         own = sorted(zip(names, factors, strict=True))
         scale = 1 / own[0][1]
@@ -449,6 +455,35 @@ def _list_features(expression: Expression) -> list[Name | Member]:
     nodes = list(walk_tree(expression))
     units = [unit for node in nodes if isinstance(node, Index) for unit in walk_tree(node.index)]
     return [node for node in nodes if isinstance(node, Name | Member) and node not in units]
+
+
+def _distinguish_paths(expression: Expression, find: Lookup) -> Lookup:
+    """Return a lookup with a key for each path to a feature if several lead to the same one.
+
+    ``left.level - right.level`` is not zero if both parts have the same type.
+    """
+    numbers = {dotted_name(path): find(path) for path in iter_paths(expression)}
+    keys = [number.key for number in numbers.values() if number is not None and number.key]
+    if len(set(keys)) == len(keys):
+        return find
+
+    def find_path(path: Name | Member) -> Number | None:
+        number = find(path)
+        if number is None or not number.key:
+            return number
+        return replace(number, key=f"{number.key}{_PATH}{dotted_name(path)}")
+
+    return find_path
+
+
+def _merge_paths(term: Term) -> Term:
+    return tuple((key.partition(_PATH)[0], factor) for key, factor in term)
+
+
+def _is_antisymmetric(term: Term) -> bool:
+    """Whether a term is the difference of one feature in two objects."""
+    (first, _), (second, factor) = term if len(term) == 2 else (("", 1), (" ", 1))
+    return first == second and factor == -1
 
 
 def _list_comparisons(expression: Binary, find: Lookup) -> list[Comparison]:

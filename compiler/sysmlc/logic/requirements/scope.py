@@ -167,7 +167,7 @@ class Scope(Struct, frozen=True):
             return match[0]
         try:
             formula = compare_regions(expression, self.find_symbol)
-        except ElaborationError as error:
+        except (ComponentError, ElaborationError) as error:
             raise FormulaError(str(error), match.start()) from None
         if formula is None:
             return match[0]
