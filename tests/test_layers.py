@@ -33,8 +33,15 @@ SUBLAYERS = {
         # languages of formulas: texts to values and back
         {"syntax", "infix", "printing", "simplification", "classification", "violations", "cells"},
         {"expressions"},
-        {"property_patterns", "structured_sentences", "sentences", "formal_texts", "basis"},
-        {"formats", "reduction", "region_formulas", "quantities"},
+        {
+            "property_patterns",
+            "structured_sentences",
+            "sentences",
+            "formal_texts",
+            "basis",
+            "quantities",
+        },
+        {"formats", "reduction", "region_formulas"},
         # behaviours
         {"feature_writes", "activities", "machines"},
         {"composition", "services"},

@@ -14,9 +14,9 @@ from msgspec.structs import replace
 from sysmlc.logic.cells import list_inequalities
 from sysmlc.logic.contract import Owner, Variable
 from sysmlc.logic.domains import regions_of, values
+from sysmlc.logic.expressions.linear import print_term
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.inequalities import Inequality, find_solution
-from sysmlc.logic.region_formulas import describe_literals
 from sysmlc.logic.regions import Cut, Interval, Regions, print_number
 from sysmlc.support.disjoint_sets import group_related
 from sysmlc.support.units import find_scale, read_number, show_symbol
@@ -59,6 +59,19 @@ def show_numbers(values: Values, quantities: StepQuantities) -> dict[str, Litera
         if name not in quantities:
             shown[name] = value
     return shown
+
+
+def rename_features(
+    quantities: Iterable[StepQuantities], names: Mapping[str, str]
+) -> tuple[StepQuantities, ...]:
+    """Return the numbers of a run with other names of variables and features."""
+    return tuple(
+        {
+            names.get(name, name): {names.get(key, key): item for key, item in numbers.items()}
+            for name, numbers in step.items()
+        }
+        for step in quantities
+    )
 
 
 def choose_numbers(
@@ -202,7 +215,10 @@ class FeatureGroup(Struct, frozen=True, dict=True):
         if len(keys) == 1:
             return regions.words[index]
         compared = _compare_features(dict(variable.term), subject, interval)
-        return compared or describe_literals(variable)[index][1]
+        named = [(self.features[name], factor) for name, factor in variable.term]
+        left = print_term(tuple((name, factor) for name, factor in named if factor > 0))
+        right = print_term(tuple((name, -factor) for name, factor in named if factor < 0))
+        return compared or regions.describe(index, left, right)
 
 
 def _compare_features(factors: Numbers, subject: str, interval: Interval) -> str:
@@ -271,42 +287,53 @@ class NumberReader:
     def __init__(self, variables: Iterable[Variable]) -> None:
         self._groups = find_groups(variables)
         self._group_of = {key: group for group in self._groups for key in group.features}
-        self.keys = {name: key for group in self._groups for key, name in group.features.items()}
-        """The features by their names: that of the own variable, or that in a term."""
+        keys = {key: key for key in self._group_of}
+        own = {name: key for group in self._groups for key, name in group.features.items()}
+        self.keys = keys | own
+        """The features by their names: those in terms, and those of variables."""
+
+    def describe(self, key: str) -> str:
+        """Return the numbers that a feature can have: ``numbers in °C, 0 °C to 100 °C``."""
+        group = self._group_of[key]
+        symbol = show_symbol(group.symbols[key])
+        kind = "Integers" if key in group.integral else "numbers"
+        text = f"{kind} in {symbol}" if symbol else f"{kind} without unit"
+        own = [_regions_of(v) for v in group.variables if v.term == ((key, Fraction(1)),)]
+        for regions in own:
+            limits = Interval(regions.intervals[0].low, regions.intervals[-1].high)
+            words = replace(regions, intervals=(limits,)).words
+            text += "" if limits == Interval() else f", {words[0]}"
+        return text
 
     def read(self, key: str, text: str) -> Fraction | None:
-        """Return the number of a feature that a text states; None if it can have no such number."""
+        """Return the number of a feature that a text states; None for other texts."""
         group = self._group_of[key]
         number = read_number(text, group.symbols[key])
         return None if number is None or (key in group.integral and number % 1) else number
 
-    def find_regions(self, numbers: Numbers) -> dict[str, str | None]:
-        """Return the region of each variable whose features all have numbers; None outside all."""
-        located: dict[str, str | None] = {}
+    def find_regions(self, numbers: Numbers) -> Iterator[tuple[Variable, str | None]]:
+        """Yield each variable whose features all have numbers, with its region or None."""
         for variable in self._list_variables(numbers):
-            if numbers.keys() >= {key for key, _ in variable.term}:
+            if all(key in numbers for key, _ in variable.term):
                 number = sum((factor * numbers[key] for key, factor in variable.term), Fraction(0))
                 index = _regions_of(variable).find(number)
-                located[variable.name] = (
-                    None if index is None else str(values(variable.domain)[index])
-                )
-        return located
+                yield variable, None if index is None else str(values(variable.domain)[index])
 
-    def list_missing(self, numbers: Numbers) -> dict[str, list[str]]:
-        """Return the names of features without number by variables about others with numbers."""
-        return {
-            variable.name: [
-                self._group_of[key].features[key] for key, _ in variable.term if key not in numbers
-            ]
-            for variable in self._list_variables(numbers)
-            if not numbers.keys() >= {key for key, _ in variable.term}
-        }
+    def list_missing(
+        self, stated: Iterable[str], numbers: Numbers
+    ) -> Iterator[tuple[Variable, list[str]]]:
+        """Yield sums of features with *stated* and without *numbers*, and the latter features."""
+        for variable in self._list_variables(stated):
+            missing = [key for key, _ in variable.term if key not in numbers]
+            if missing:
+                yield variable, missing
 
-    def _list_variables(self, numbers: Numbers) -> list[Variable]:
-        """List the variables of regions, except auxiliary ones, about features with numbers."""
+    def _list_variables(self, keys: Iterable[str]) -> list[Variable]:
+        """List the variables of regions, except auxiliary ones, about some of the features."""
+        wanted = set(keys)
         return [
             variable
             for group in self._groups
             for variable in group.variables
-            if not variable.is_auxiliary and any(key in numbers for key, _ in variable.term)
+            if not variable.is_auxiliary and any(key in wanted for key, _ in variable.term)
         ]

@@ -15,11 +15,21 @@ from sysmlc.logic.contract import Contract, IntegerDomain, Owner, Variable
 from sysmlc.logic.domains import contains, describe
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.machines.interpreter import Valuation
+from sysmlc.logic.quantities import (
+    NumberReader,
+    Numbers,
+    Quantity,
+    choose_numbers,
+    rename_features,
+    show_numbers,
+)
 from sysmlc.simulation.components import MAX_RUNS
+from sysmlc.simulation.numbers import ScenarioNumbers
 from sysmlc.simulation.players import (
     NamedPlayer,
     Player,
     find_component_player,
+    find_default_number,
     find_players,
     find_resting_value,
     list_atoms,
@@ -61,10 +71,13 @@ def _play_scenario(
 ) -> Result:
     played = _find_player(graph, scenario, players_by_name, sink)
     player = None if played is None else NamedPlayer(played, list_atoms(graph, played))
-    if player is not None:
-        scenario = _resolve_inputs(scenario, player.atoms)
-    if player is None or not _has_valid_entries(scenario, player, sink):
-        return Result(scenario.name, scenario.component, scenario.location.line, is_valid=False)
+    invalid = Result(scenario.name, scenario.component, scenario.location.line, is_valid=False)
+    if player is None:
+        return invalid
+    numbers = _read_numbers(graph, _resolve_inputs(scenario, player.atoms), player, sink)
+    scenario = numbers.scenario
+    if not numbers.is_valid or not _has_valid_entries(scenario, player, sink):
+        return invalid
     resting_values = {
         variable.name: find_resting_value(graph, variable)
         for variable in player.variables
@@ -75,7 +88,39 @@ def _play_scenario(
         {name: value for name, value in step.items() if name not in player.hidden_names}
         for step in result.trace
     )
-    return replace(result, trace=trace)
+    given = numbers.numbers[: len(trace)]
+    return replace(_show_numbers(result, player, given), trace=trace)
+
+
+def _read_numbers(
+    graph: Graph, scenario: Scenario, player: NamedPlayer, sink: Sink
+) -> ScenarioNumbers:
+    own = player.player.variables
+    inputs = (variable for variable in own if variable.owner is Owner.ENVIRONMENT)
+    defaults = {
+        variable.term[0][0]: number
+        for variable in inputs
+        if (number := find_default_number(graph, variable)) is not None
+    }
+    return ScenarioNumbers(scenario, own, player.variables, defaults, sink)
+
+
+def _show_numbers(result: Result, player: NamedPlayer, given: tuple[Numbers, ...]) -> Result:
+    """Return a result with numbers in place of the regions in its run."""
+    chosen = choose_numbers(player.player.variables, result.trace, given)
+    names = {atom.replaced: atom.variable.name for atom in player.atoms if atom.replaced}
+    numbers = rename_features(chosen, names)
+    features = {
+        key for step in numbers for name in step.keys() & result.inputs for key in step[name]
+    }
+    difference = result.difference
+    if difference is not None and numbers:
+        shown = show_numbers({difference.variable: difference.actual or ""}, numbers[-1])
+        actual = shown.get(difference.variable)
+        difference = (
+            replace(difference, actual=str(actual)) if isinstance(actual, Quantity) else difference
+        )
+    return replace(result, numbers=numbers, inputs=result.inputs | features, difference=difference)
 
 
 def _resolve_inputs(scenario: Scenario, atoms: Iterable[Atom]) -> Scenario:
@@ -108,10 +153,19 @@ def list_variables(graph: Graph) -> Iterator[str]:
             *(variable for variable in player.variables if variable.name not in replaced),
         ]
         yield component
+        reader = NumberReader(player.variables)
         for variable in variables:
             if not variable.is_auxiliary:
                 sort = "input " if variable.owner is Owner.ENVIRONMENT else "output"
-                yield f"  {sort} {variable.name}: {describe(variable.domain)}"
+                yield f"  {sort} {variable.name}: {_describe_values(variable, reader)}"
+
+
+def _describe_values(variable: Variable, reader: NumberReader) -> str:
+    regions = describe(variable.domain)
+    keys = [key for key, _ in variable.term]
+    if len(keys) == 1:
+        return f"{reader.describe(keys[0])} ({regions})"
+    return f"numbers for {' and '.join(keys)} ({regions})" if keys else regions
 
 
 # -- checks ------------------------------------------------------------------------------------
@@ -163,7 +217,7 @@ def _is_valid_entry(
             name=name,
             advice=did_you_mean(name, variables),
         )
-    elif not contains(variable.domain, entry.value):
+    elif not entry.text and not contains(variable.domain, entry.value):
         shown, domain = show_value(entry.value), describe(variable.domain)
         domain += " (assumed)" if variable.is_range_assumed else ""
         sink.report(VALUE, scenario.subject(entry.location), value=shown, name=name, domain=domain)
@@ -210,7 +264,8 @@ def _follow_runs(
                 sink.report(TOO_MANY_RUNS, location, name=name, component=component, limit=MAX_RUNS)
                 return replace(result, is_decided=False)
             actual = trace[-1].get(entry.name)
-            difference = Difference(number, entry.name, entry.value, actual, entry.location.line)
+            expected = entry.text or entry.value
+            difference = Difference(number, entry.name, expected, actual, entry.location.line)
             text = _describe_bounds(player, trace)
             return replace(result, trace=trace, difference=difference, range_text=text)
         traces = matching

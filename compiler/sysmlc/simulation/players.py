@@ -1,6 +1,7 @@
 """Players: activities and state machines that can be simulated, behind one interface."""
 
 from collections.abc import Mapping, Sequence
+from fractions import Fraction
 from functools import cached_property
 from typing import Protocol
 
@@ -25,13 +26,15 @@ from sysmlc.logic.contract import (
     Owner,
     Variable,
 )
-from sysmlc.logic.domains import contains, values
+from sysmlc.logic.domains import contains, regions_of, values
+from sysmlc.logic.expressions.linear import read_quantity
 from sysmlc.logic.formula import Formula, Literal, both, var, variable_names
 from sysmlc.logic.machines import interpreter as machine_interpreter
 from sysmlc.logic.machines.interpreter import Valuation
 from sysmlc.logic.machines.machine import Machine
 from sysmlc.logic.machines.reader import read_machine
 from sysmlc.simulation.components import ComponentPlayer, open_component
+from sysmlc.support.units import find_scale
 
 _LASTING_KINDS = (Kind.PROPERTY, Kind.PORT, Kind.FLOW_PROPERTY)
 """Kinds of inputs whose value lasts until it is set again; other inputs are events."""
@@ -205,11 +208,25 @@ def find_resting_value(graph: Graph, variable: Variable) -> Literal:
 
     It is the default of the feature, else false, 0 or the first value of the domain.
     """
+    regions = regions_of(variable.domain)
+    if regions is not None:
+        number = find_default_number(graph, variable)
+        if number is None:
+            zero = find_scale(regions.symbol)[1]
+            number = sum((factor * zero for _, factor in variable.term), Fraction(0))
+        return values(variable.domain)[regions.find(number) or 0]
     element = graph.get(variable.origin)
     default = _default_value(graph, element, variable.domain) if element is not None else None
     if default is not None:
         return default
     return 0 if contains(variable.domain, 0) else values(variable.domain)[0]
+
+
+def find_default_number(graph: Graph, variable: Variable) -> Fraction | None:
+    """Return the number that a real feature has by default, if any."""
+    element = graph.get(variable.origin) if len(variable.term) == 1 else None
+    default = None if element is None else read_quantity(graph, element, "default")
+    return None if default is None else default.number
 
 
 def _default_value(graph: Graph, element: Element, domain: Domain) -> Literal | None:

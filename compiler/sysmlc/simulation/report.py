@@ -1,16 +1,19 @@
 """Reports of played scenarios: as text, as JUnit XML, and as a sequence diagram."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from lxml import etree
 from msgspec import Struct, field
 
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.machines.interpreter import Valuation
+from sysmlc.logic.quantities import Quantity, StepQuantities, show_numbers
 from sysmlc.support.counts import count
 from sysmlc.support.escapes import escape_invisible, replace_illegal_in_xml
 from sysmlc.support.plantuml_text import escape_line
 from sysmlc.support.xml_text import print_element
+
+ShownValues = Mapping[str, Literal | Quantity]
 
 
 class Difference(Struct, frozen=True):
@@ -43,6 +46,8 @@ class Result(Struct, frozen=True):
     inputs: frozenset[str] = field(default_factory=frozenset)
     is_valid: bool = True
     is_decided: bool = True
+    numbers: tuple[StepQuantities, ...] = ()
+    """Numbers in place of regions, for each step of the run; empty without regions."""
     range_text: str = ""
     """The assumed ranges at whose bounds the run has values, as a phrase behind the verdict."""
 
@@ -129,7 +134,7 @@ class Report(Struct, frozen=True):
         return "" if shown is None else "\n".join(_iter_diagram_lines(shown)) + "\n"
 
 
-def show_value(value: Literal | None) -> str:
+def show_value(value: Literal | Quantity | None) -> str:
     """Return a value as scenarios spell it."""
     if isinstance(value, bool):
         return str(value).lower()
@@ -145,8 +150,9 @@ def _iter_diagram_lines(result: Result) -> Iterator[str]:
     yield "hide footbox"
     yield "participant environment"
     yield f'participant "{escape_line(result.component)}" as component'
-    previous: Valuation = {}
-    for number, valuation in enumerate(result.trace, 1):
+    previous: ShownValues = {}
+    steps = map(show_numbers, result.trace, result.numbers or ({},) * len(result.trace))
+    for number, valuation in enumerate(steps, 1):
         messages = list(_iter_message_lines(result, previous, valuation))
         is_failing = result.difference is not None and result.difference.step == number
         if messages or is_failing:
@@ -158,7 +164,7 @@ def _iter_diagram_lines(result: Result) -> Iterator[str]:
     yield "@enduml"
 
 
-def _iter_message_lines(result: Result, before: Valuation, after: Valuation) -> Iterator[str]:
+def _iter_message_lines(result: Result, before: ShownValues, after: ShownValues) -> Iterator[str]:
     """Yield a message for each value that differs from the previous step, inputs first.
 
     Before the first step all values count as false.

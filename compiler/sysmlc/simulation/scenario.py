@@ -80,6 +80,8 @@ class Entry(Struct, frozen=True):
     name: str
     value: Literal
     location: Spot
+    text: str = ""
+    """The number that the file states for a feature whose values are regions."""
 
 
 class Step(Struct, frozen=True):

@@ -71,7 +71,7 @@ def accept_run(contract: Contract, source: Source, place: Place, sink: Sink) -> 
         for check in monitor.checks
     )
     if skipped:
-        _report_missing_variables(monitor, run.missing, skipped, source.name, place, sink)
+        _report_missing_variables(monitor, run.missing_columns, skipped, source.name, place, sink)
     violation = None
     if skipped < len(monitor.checks):
         violation = find_first_violation(monitor, run.steps, run.missing)

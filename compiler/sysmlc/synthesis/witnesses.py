@@ -12,7 +12,7 @@ from sysmlc.logic.contract import Class, Conjunct, Contract, Owner
 from sysmlc.logic.evaluate import value_of
 from sysmlc.logic.formula import Literal, rename_variables
 from sysmlc.logic.printing import print_formula, print_literal
-from sysmlc.logic.quantities import Quantity, show_numbers
+from sysmlc.logic.quantities import Quantity, rename_features, show_numbers
 from sysmlc.logic.violations import find_violated_step
 from sysmlc.support.counts import count
 from sysmlc.support.output import assign_file_names
@@ -130,17 +130,10 @@ def name_run(trace: Trace, atoms: Sequence[Atom]) -> Trace:
     auxiliary = {atom.variable.name for atom in atoms if atom.variable.is_auxiliary}
     quiet = frozenset(atom.variable.name for atom in atoms if atom.is_quiet)
     names = {atom.replaced: atom.variable.name for atom in atoms}
-    numbers = tuple(
-        {
-            names.get(name, name): {names.get(key, key): item for key, item in quantities.items()}
-            for name, quantities in step.items()
-        }
-        for step in trace.numbers
-    )
     return replace(
         trace,
         steps=steps,
-        numbers=numbers,
+        numbers=rename_features(trace.numbers, names),
         auxiliary=trace.auxiliary | auxiliary,
         quiet=quiet,
         relevant=frozenset(names.get(name, name) for name in trace.relevant),

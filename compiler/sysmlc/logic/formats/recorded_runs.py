@@ -2,21 +2,23 @@
 
 A CSV file has a line with names and then a line for each step. A JSON file has a list of objects,
 or an object whose member ``steps`` is such a list. Columns that are not variables of the contract,
-such as times of a log, are ignored.
+such as times of a log, are ignored. Real features have numbers, with or without unit.
 """
 
 import csv
 import io
 from collections.abc import Iterable, Iterator, Mapping
+from fractions import Fraction
 
 from msgspec import Struct
 
 from sysmlc.diagnostics import Place, Sink, Subject
 from sysmlc.documents import DocumentError, parse_json
 from sysmlc.logic.contract import BooleanDomain, Contract, IntegerDomain, Variable
-from sysmlc.logic.domains import describe
+from sysmlc.logic.domains import contains, describe
 from sysmlc.logic.formats import rules
 from sysmlc.logic.formula import Literal
+from sysmlc.logic.quantities import NumberReader
 from sysmlc.sources import Source
 from sysmlc.support.counts import count
 from sysmlc.support.suggestions import did_you_mean
@@ -33,6 +35,8 @@ class RecordedRun(Struct, frozen=True):
     lines: tuple[int, ...]
     missing: frozenset[str]
     """Variables of the contract that the file does not contain."""
+    missing_columns: frozenset[str]
+    """Names whose values the file lacks: those variables, and for sums of numbers the features."""
     ignored: tuple[str, ...]
     """Names in the file that are not variables of the contract."""
 
@@ -85,12 +89,13 @@ def _convert_rows(rows: list[_Row], contract: Contract) -> RecordedRun:
         for row in rows
     ]
     names = rows[0].cells.keys()
-    if declared.keys().isdisjoint(names):
+    numbers = _NumberColumns(contract.variables, names)
+    if declared.keys().isdisjoint(names) and not numbers.keys:
         advice = did_you_mean(next(iter(names), ""), list(declared))
         raise _RunFileError(
             f"none of its names is a variable of '{contract.component}'; {advice}", 1
         )
-    steps = []
+    steps: list[Mapping[str, Literal]] = []
     for row in rows:
         if row.cells.keys() != names:
             differing = min(row.cells.keys() ^ names)
@@ -99,15 +104,59 @@ def _convert_rows(rows: list[_Row], contract: Contract) -> RecordedRun:
             {
                 name: _convert_cell(cell, declared[name], row.line)
                 for name, cell in row.cells.items()
-                if name in declared
+                if name in declared and name not in numbers.keys
             }
+            | numbers.convert(row)
         )
+    missing = frozenset(name for name in declared if any(name not in step for step in steps))
     return RecordedRun(
         tuple(steps),
         tuple(row.line for row in rows),
-        frozenset(declared.keys() - names),
-        tuple(name for name in names if name not in declared),
+        missing,
+        frozenset(column for name in missing for column in numbers.list_missing(declared[name])),
+        tuple(name for name in names if name not in declared and name not in numbers.keys),
     )
+
+
+class _NumberColumns:
+    """The columns with numbers of features, and the variables whose regions they decide."""
+
+    def __init__(self, variables: Iterable[Variable], names: Iterable[str]) -> None:
+        self._variables = {variable.name: variable for variable in variables}
+        self._reader = NumberReader(self._variables.values())
+        self.keys = {name: self._reader.keys[name] for name in names if name in self._reader.keys}
+        """The features with a column, by the name of the column."""
+
+    def list_missing(self, variable: Variable) -> list[str]:
+        """List the features without column of a sum; the name of any other variable."""
+        keys = [key for key, _ in variable.term if key not in self.keys.values()]
+        return keys if len(variable.term) > 1 else [variable.name]
+
+    def convert(self, row: _Row) -> dict[str, Literal]:
+        """Return the regions of the variables about the features. Raises _RunFileError."""
+        texts = {name: str(row.cells[name]).strip() for name in self.keys}
+        numbers: dict[str, Fraction] = {}
+        regions: dict[str, Literal] = {}
+        for name, key in self.keys.items():
+            number, variable = self._reader.read(key, texts[name]), self._variables.get(name)
+            if number is not None:
+                numbers[key] = number
+            elif variable is not None and contains(variable.domain, texts[name]):
+                regions[name] = texts[name]
+            else:
+                raise _refuse(texts[name], name, self._reader.describe(key), row.line)
+        for variable, region in self._reader.find_regions(numbers):
+            if region is None:
+                own = {key for key, _ in variable.term}
+                stated = ", ".join(texts[name] for name, key in self.keys.items() if key in own)
+                domain = describe(variable.domain)
+                raise _refuse(stated, variable.wording or variable.name, domain, row.line)
+            regions[variable.name] = region
+        return regions
+
+
+def _refuse(text: str, name: str, domain: str, line: int) -> _RunFileError:
+    return _RunFileError(f"{text!r} is not a value of '{name}', which takes {domain}", line)
 
 
 def _convert_cell(cell: object, variable: Variable, line: int) -> Literal:
@@ -123,10 +172,7 @@ def _convert_cell(cell: object, variable: Variable, line: int) -> Literal:
         case domain:
             if text in domain.literals:
                 return text
-    domain_text = describe(variable.domain)
-    raise _RunFileError(
-        f"{text!r} is not a value of '{variable.name}', which takes {domain_text}", line
-    )
+    raise _refuse(text, variable.name, describe(variable.domain), line)
 
 
 # -- CSV -------------------------------------------------------------------------------------------

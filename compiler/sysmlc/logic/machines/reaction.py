@@ -1,7 +1,8 @@
 """Reactions of the reference interpreter: how one transition is taken.
 
 Expressions are evaluated as they are written, independently of ``elaboration`` and ``evaluate``:
-these two belong to the derivation that the interpreter checks.
+these two belong to the derivation that the interpreter checks. Only numbers whose values are
+regions are compared and assigned with their formulas.
 """
 
 from collections.abc import Callable, Mapping
@@ -21,7 +22,10 @@ from sysmlc.ir.expressions import (
 )
 from sysmlc.ir.expressions import Literal as LiteralExpression
 from sysmlc.logic.contract import IntegerDomain
-from sysmlc.logic.expressions.elaboration import find_symbol
+from sysmlc.logic.domains import regions_of
+from sysmlc.logic.evaluate import is_true, value_of
+from sysmlc.logic.expressions.elaboration import compare_regions, elaborate_value, find_symbol
+from sysmlc.logic.expressions.linear import COMPARISONS
 from sysmlc.logic.formula import Const, Literal, Var
 from sysmlc.logic.machines.machine import (
     HISTORIES,
@@ -55,6 +59,9 @@ def evaluate_expression(
             branch = then if evaluate_expression(machine, condition, store) else otherwise
             return evaluate_expression(machine, branch, store)
         case Binary(op, left, right):
+            truth = compare_regions(expression, machine.scope) if op in COMPARISONS else None
+            if truth is not None:
+                return is_true(truth, store)
             return _OPERATIONS[op](
                 evaluate_expression(machine, left, store),
                 evaluate_expression(machine, right, store),
@@ -296,8 +303,13 @@ def run_actions(machine: Machine, run: Reaction, actions: tuple[Action, ...]) ->
             case Raise(output):
                 run = replace(run, raised=run.raised | {output})
             case Assign(variable, expression):
-                value = evaluate_expression(machine, expression, run.store)
                 domain = machine.find_variable(variable).domain
+                if regions_of(domain) is not None:
+                    cases = elaborate_value(expression, machine.scope, domain).cases
+                    fitting = (case for case in cases if is_true(case.condition, run.store))
+                    value = value_of(next(fitting).value, run.store)
+                else:
+                    value = evaluate_expression(machine, expression, run.store)
                 if isinstance(domain, IntegerDomain):
                     value = clamp(int(value), domain)
                 run = run.with_value(variable, value)
