@@ -6,7 +6,8 @@ by one more than the number of features has points in all regions (a simplex wit
 lattice, enlarged by more than its dimension, contains a point of the lattice).
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from fractions import Fraction
 from itertools import product
 
 from msgspec import Struct
@@ -148,6 +149,14 @@ class Configuration(Struct, frozen=True):
     remembered: frozenset[Condition] = frozenset()
 
 
+class Step(Struct, frozen=True):
+    """A step of a run; values are in parts of a unit."""
+
+    state: str
+    event: str
+    values: Mapping[str, Fraction]
+
+
 class ExploredMachine:
     """The steps of a machine for all values of its constants."""
 
@@ -204,12 +213,15 @@ class ExploredMachine:
         return graph
 
     def _list_reactions(
-        self, configuration: Configuration, letter: Letter
+        self, configuration: Configuration, letter: Letter, *events: str
     ) -> Iterator[tuple[Move | None, Configuration]]:
-        """Yield the reactions to each event and to none, and the configurations after them."""
+        """Yield the reactions to each of the events, and the configurations after them.
+
+        Without *events* these are all events, also the absence of an event.
+        """
         state = configuration.state
         own = [move for move in self._machine.moves if move.source == state]
-        for event in {"", *(move.event for move in own)}:
+        for event in events or {"", *(move.event for move in own)}:
             enabled = [
                 move
                 for move in own
@@ -237,6 +249,42 @@ class ExploredMachine:
         if abs(value) <= self._grid.limit:
             values[name] = value
         return tuple(values.items())
+
+    def replay(self, requirement: Requirement, steps: list[Step], loop: int) -> bool:
+        """Whether a run is one of the machine and violates a requirement.
+
+        After the last step it continues with the step *loop*.
+        """
+        graph: Graph = {}
+        nodes = [Configuration(step.state, (("step", n),)) for n, step in enumerate(steps)]
+        followers = [*range(1, len(steps)), loop]
+        present = {self._initial}
+        for number, step in enumerate(steps):
+            letter = frozenset(item for item in self._grid.literals if item.is_true(step.values))
+            reactions = [
+                successor
+                for configuration in present
+                if self._agrees(configuration, step) and self._is_possible(step, letter, steps[0])
+                for _, successor in self._list_reactions(configuration, letter, step.event)
+            ]
+            following = followers[number]
+            present = {s for s in reactions if self._agrees(s, steps[following])}
+            graph[nodes[number]] = {letter: {nodes[following]}}
+        return bool(present) and _violates(graph, requirement)
+
+    def _agrees(self, configuration: Configuration, step: Step) -> bool:
+        """Whether a step shows the state and the attributes of a configuration."""
+        has_values = all(step.values[name] == value for name, value in configuration.attributes)
+        return has_values and configuration.state == step.state
+
+    def _is_possible(self, step: Step, letter: Letter, first: Step) -> bool:
+        """Whether the values satisfy the constraints, and constants are as in the first step."""
+        features = self._machine.features
+        return (
+            all(is_true(condition, "", letter) for condition in self._machine.constraints)
+            and all(step.values[f.name] == first.values[f.name] for f in features if f.is_constant)
+            and all(step.values[f.name] == f.value * RESOLUTION for f in features if f.is_known)
+        )
 
     def list_unreachable(self) -> list[str]:
         """Return the states that no run enters."""

@@ -56,7 +56,7 @@ class Literal(Struct, frozen=True):
     comparison: str
     bound: int
 
-    def is_true(self, values: Mapping[str, int]) -> bool:
+    def is_true(self, values: Mapping[str, int] | Mapping[str, Fraction]) -> bool:
         """Whether the comparison holds for these values."""
         total = sum(factor * values[name] for name, factor in self.terms)
         return COMPARISONS[self.comparison](total, self.bound * RESOLUTION)

@@ -8,8 +8,9 @@ from random import Random
 
 import pytest
 from click.testing import CliRunner
-from explicit_numbers import ExploredMachine, Grid
+from explicit_numbers import ExploredMachine, Grid, Step
 from numeric_machines import (
+    RESOLUTION,
     Feature,
     InState,
     Literal,
@@ -175,6 +176,24 @@ def check(path):
     return json.loads(result.stdout)
 
 
+def read_steps(machine, witness):
+    """Return the steps of a run; an input without a number is one that nothing compares.
+
+    A run that does not know the number of an attribute has no steps.
+    """
+    attributes = {item.name for item in machine.features if item.kind == "attribute"}
+    if not all(attributes <= numbers.keys() for numbers in witness["numbers"]):
+        return []
+    scale = RESOLUTION / machine.unit
+    steps = []
+    for step, numbers in zip(witness["steps"], witness["numbers"], strict=True):
+        values = {item.name: Fraction((item.value or 0) * RESOLUTION) for item in machine.features}
+        for name, entry in numbers.items():
+            values[name] = Fraction(str(entry["number"])) * scale
+        steps.append(Step(step["state"], step.get("event", "").replace("none", ""), values))
+    return steps
+
+
 def compare(random, make_machine, path):
     """Return the disagreements about a random machine, and the verdicts of ``contracts check``."""
     machine = make_machine(random)
@@ -190,6 +209,10 @@ def compare(random, make_machine, path):
         verdicts.append(verdict)
         if verdict not in (expected, "not-decided"):
             wrong.append((name, verdict, expected))
+        for witness in (entry["witness"] for entry in entries if entry["verdict"] == "broken"):
+            steps = read_steps(machine, witness)
+            if steps and not explored.replay(requirement, steps, witness["loop"]):
+                wrong.append((name, "no run of the machine violates it so", witness))
     for behaviour in document["behaviours"]:
         unreachable, never_taken = set(behaviour["unreachable"]), behaviour["never_taken"]
         expected = set(explored.list_unreachable()), explored.count_never_taken()
