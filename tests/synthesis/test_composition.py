@@ -6,6 +6,7 @@ from msgspec.structs import replace
 
 from sysmlc.logic.composition.members import Member, Wire, has_single_type, rename_contract
 from sysmlc.logic.contract import Composite, Part
+from sysmlc.support.disjoint_sets import DisjointSets
 from sysmlc.synthesis import Manager
 from sysmlc.synthesis.algebra.composition import DriverError, compose_parts
 from sysmlc.synthesis.algebra.fair_systems import Universe
@@ -273,7 +274,12 @@ def join_temperature(source, fan):
     )
     ends = (source, contracts[0].variables[0]), (fan, contracts[1].variables[0])
     wire = Wire("temp", ends)
-    parts = (Part(item.name, rename_contract(item, [wire]), item.name) for item in (source, fan))
+    features = DisjointSets()
+    features.union(("source", "temp"), ("fan", "t"))
+    parts = (
+        Part(item.name, rename_contract(item, [wire], features), item.name)
+        for item in (source, fan)
+    )
     return wire, Composite("Room", "", tuple(parts))
 
 
@@ -289,7 +295,8 @@ def test_parts_with_different_thresholds_share_a_number(promise, is_met):
     """The fan assumes that a room of 22 degrees stays so; 18 degrees do not say that."""
     _, composite = join_temperature(f"sys temp: number 18\npromise always {promise}", FAN)
     assert [part.contract.variables[0].name for part in composite.parts] == ["temp", "temp"]
-    assert [part.contract.variables[0].term[0][0] for part in composite.parts] == ["temp", "temp"]
+    terms = {part.contract.variables[0].term for part in composite.parts}
+    assert [key for ((key, _),) in terms] == ["source.temp"]
     composition = compose_parts(composite, Manager())
     assert list_open_assumptions(composition) == (
         [] if is_met else ["fan: t=from_22 -> t'=from_22"]

@@ -21,6 +21,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.activities import derivation as activity_contract
 from sysmlc.logic.activities.action_names import name_actions
 from sysmlc.logic.activities.token_graph import TokenGraph
+from sysmlc.logic.cells import state_facts
 from sysmlc.logic.classification import classify
 from sysmlc.logic.components.derivation import ComponentBehaviour
 from sysmlc.logic.contract import (
@@ -99,8 +100,14 @@ class Contracts(Struct, frozen=True):
         )
         given = [entry.contract for entry in graph.derived(GivenContract)]
         names = {contract.component for contract in given}
-        contracts = [*given, *(c for c in derived if c.component not in names)]
+        contracts = [*given, *(_add_facts(c) for c in derived if c.component not in names)]
         graph.store(Contract, sorted(contracts, key=lambda contract: contract.component))
+
+
+def _add_facts(contract: Contract) -> Contract:
+    """Return the contract with the assumption that its numbers do not contradict one another."""
+    facts = state_facts(contract.variables, contract.origin)
+    return replace(contract, assumptions=(*contract.assumptions, *facts))
 
 
 def _derive_machines(graph: Graph, options: MachineOptions, sink: Sink) -> Iterator[Contract]:

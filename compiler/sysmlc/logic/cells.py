@@ -66,6 +66,22 @@ class Cells(Struct, frozen=True):
         return tuple(replace(fact, source=Source.DERIVED) for fact in facts)
 
 
+def state_facts(variables: Sequence[Variable], origin: str) -> Iterator[Conjunct]:
+    """Yield what is true of numbers that the environment decides: initially, and in each step.
+
+    The facts about a next step have primes: no step of the environment leads to other numbers.
+    """
+    names = {variable.name for variable in variables if variable.owner is Owner.ENVIRONMENT}
+    for fact in find_cells(variables, ()).describe(origin):
+        if not names.issuperset(f.variable_names(fact.formula)):
+            continue
+        if f.has_primes(fact.formula):
+            yield fact
+        else:
+            yield replace(fact, class_=Class.INIT)
+            yield replace(fact, formula=f.prime(fact.formula))
+
+
 def find_cells(variables: Iterable[Variable], facts: Sequence[Fact]) -> Cells:
     """Return what the terms of the variables imply about their regions."""
     numeric = [variable for variable in variables if variable.term]

@@ -124,6 +124,7 @@ def split_line(cuts: Iterable[Cut], limits: Interval = LINE) -> tuple[Interval, 
 # -- texts -----------------------------------------------------------------------------------------
 
 _SIGNS = re.compile(r"\W+")
+_MINUS = re.compile(r"(?<!\w)-(?=\d)")
 
 
 def print_number(number: Fraction) -> str:
@@ -229,7 +230,8 @@ class Regions(Struct, frozen=True):
 
         The names differ, because the regions do not overlap.
         """
-        return [_SIGNS.sub("_", words.replace("-", "minus_")).strip("_") for words in self.words]
+        spelled = (_MINUS.sub("minus_", words) for words in self.words)
+        return [_SIGNS.sub("_", words).strip("_") for words in spelled]
 
     @property
     def words(self) -> list[str]:

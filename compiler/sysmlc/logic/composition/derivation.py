@@ -4,7 +4,7 @@ The direction of a port decides which member owns its variable. Connectors make 
 sender and the input of the receiver one variable (SysML 1.6 clause 9.3.2).
 """
 
-from collections.abc import Container, Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 
 from msgspec import Struct
 from msgspec.structs import replace
@@ -14,6 +14,7 @@ from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.logic import formula as f
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.activities.token_nodes import Handshake
+from sysmlc.logic.cells import state_facts
 from sysmlc.logic.composition.free_outputs import add_free_outputs
 from sysmlc.logic.composition.members import (
     Block,
@@ -168,23 +169,40 @@ def _make_composite(block: Block, whole: Member | None, sink: Sink) -> Composite
     _report_flows(block, sink)
     if list(_report_faults(block, whole, wires, sink)):
         return None
+    parts = tuple(
+        Part(
+            member.name,
+            rename_contract(member, wires, block.features),
+            member.origin,
+            block.graph[member.origin].kind not in (Kind.PROPERTY, Kind.PORT),
+            bool(member.contract.component),
+        )
+        for member in block.members
+    )
     return Composite(
         component=query.component_name(block.graph, block.element),
         origin=block.element.id,
-        parts=tuple(
-            Part(
-                member.name,
-                rename_contract(member, wires),
-                member.origin,
-                block.graph[member.origin].kind not in (Kind.PROPERTY, Kind.PORT),
-                bool(member.contract.component),
-            )
-            for member in block.members
+        parts=parts,
+        wiring=(
+            *derive_wiring(block, block.members, wires),
+            *dict.fromkeys(_derive_facts(block, parts)),
         ),
-        wiring=tuple(derive_wiring(block, block.members, wires)),
-        whole=None if whole is None else rename_contract(whole, wires),
+        whole=None if whole is None else rename_contract(whole, wires, block.features),
         exclusions=tuple(derive_exclusions(block, block.members, wires)),
     )
+
+
+def _derive_facts(block: Block, parts: Sequence[Part]) -> Iterator[Conjunct]:
+    """Yield what is true of the numbers of all parts, and of those of each part.
+
+    The facts about all parts are omitted if there are too many numbers.
+    """
+    groups = [part.contract.variables for part in parts]
+    together = {variable.name: variable for group in groups for variable in group}
+    for group in (*groups, together.values()):
+        # Whoever decides the numbers, they do not contradict one another.
+        given = [replace(variable, owner=Owner.ENVIRONMENT) for variable in group]
+        yield from state_facts(given, block.element.id)
 
 
 def _add_own_contracts(block: Block) -> Member | None:

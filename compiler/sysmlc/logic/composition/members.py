@@ -286,8 +286,10 @@ def has_single_type(wire: Wire) -> bool:
     return len(set(domains) if has_texts else set(map(type, domains))) == 1
 
 
-def rename_contract(member: Member, wires: Iterable[Wire]) -> Contract:
-    """Return the contract of a member in the variables of the composite.
+def rename_contract(
+    member: Member, wires: Iterable[Wire], features: DisjointSets[Slot]
+) -> Contract:
+    """Return the contract of a member in the variables of the composite; *features* are joined.
 
     If the ends of a wire have different ranges, its variable has the range that contains all of
     them. A member that decides the variable then guarantees its own range, and a member that reads
@@ -311,7 +313,7 @@ def rename_contract(member: Member, wires: Iterable[Wire]) -> Contract:
         names[variable.name] = name
         variables.append(replace(variable, name=name, domain=domain, wording=""))
         bounds[variable.owner] += _iter_range_conjuncts(variable, name, domain)
-    variables = [_rename_term(member, variable, names) for variable in variables]
+    variables = [_rename_term(member, variable, features) for variable in variables]
     assumptions = _rename_conjuncts(contract.assumptions, names)
     guarantees = _rename_conjuncts(contract.guarantees, names)
     return replace(
@@ -322,13 +324,15 @@ def rename_contract(member: Member, wires: Iterable[Wire]) -> Contract:
     )
 
 
-def _rename_term(member: Member, variable: Variable, names: Mapping[str, str]) -> Variable:
-    """Return a number with the names in the composite of the features that it is the sum of."""
-    paths = {key: names.get(key) or join_path(member.path, key) for key, _ in variable.term}
+def _rename_term(member: Member, variable: Variable, features: DisjointSets[Slot]) -> Variable:
+    """Return a number as a sum of slots, of which joined ones have one name."""
+    names = {own_variable: name for name, own_variable in member.features.items()}
+    keys = {*variable.constants, *(key for key, _ in variable.term)}
+    slots = {key: join_path(*features.find((member.path, names.get(key, key)))) for key in keys}
     return replace(
         variable,
-        term=tuple((paths[key], factor) for key, factor in variable.term),
-        constants=tuple(paths.get(key, key) for key in variable.constants),
+        term=tuple((slots[key], factor) for key, factor in variable.term),
+        constants=tuple(slots[key] for key in variable.constants),
     )
 
 
