@@ -45,6 +45,17 @@ MODEL = """package Plant {
             transition first Empty if gross > tare + 50 [g] then Loaded;
         }
     }
+    part def Mixer {
+        in attribute a : Real;
+        in attribute b : Real;
+        assert constraint { a + b <= 10.2 }
+        exhibit state Control {
+            entry; then Off;
+            state Off;
+            state On;
+            transition first Off if a > 3.0 and b > 6.5 then On;
+        }
+    }
     part def Tank {
         attribute level : Real := 0.0;
         exhibit state Control {
@@ -103,6 +114,12 @@ def test_constants_without_value_get_one_value_for_the_whole_run(check):
 def test_features_of_a_sum_have_numbers_instead_of_the_sum(check):
     steps = list_steps(check("Scale", "G state=Empty"))
     assert steps[0] == "step 1: gross = 60 g (gross > tare + 50 g), tare = 0 g, state=Empty"
+
+
+def test_numbers_respect_constraints_between_features(check):
+    # The shortest numbers, 4 and 7, are more than 10.2 together.
+    steps = list_steps(check("Mixer", "G state=Off"))
+    assert steps[0] == "step 1: a = 3.1 (above 3), b = 7 (above 6.5), state=Off"
 
 
 def test_a_number_that_the_component_sets_is_the_one_that_it_sets(check):

@@ -11,7 +11,7 @@ from functools import cached_property
 from msgspec import Struct
 from msgspec.structs import replace
 
-from sysmlc.logic.cells import list_inequalities
+from sysmlc.logic.cells import Fact, list_inequalities
 from sysmlc.logic.contract import Owner, Variable
 from sysmlc.logic.domains import regions_of, values
 from sysmlc.logic.expressions.linear import print_term
@@ -75,16 +75,19 @@ def rename_features(
 
 
 def choose_numbers(
-    variables: Iterable[Variable], steps: Sequence[Values], given: Sequence[Numbers] = ()
+    variables: Iterable[Variable],
+    steps: Sequence[Values],
+    given: Sequence[Numbers] = (),
+    limits: Sequence[Fact] = (),
 ) -> tuple[StepQuantities, ...]:
     """Return numbers for the regions in the steps of a run; nothing if no variable is a region.
 
     A number stays as long as it fits, else it has few digits. The *given* numbers of the steps
-    are respected. A step lacks numbers of features if the component decides one of them and its
-    region has several, or if no numbers are in all their regions at once.
+    and the *limits* of sums are respected. A step lacks numbers of features if the component
+    decides one of them and its region has several, or if no numbers are in all regions at once.
     """
     chosen: list[dict[str, Mapping[str, Quantity]]] = [{} for _ in steps]
-    for group in find_groups(variables):
+    for group in find_groups(variables, limits):
         for quantities, more in zip(chosen, group.choose(steps, given), strict=True):
             quantities.update(more)
     return tuple(chosen) if any(chosen) else ()
@@ -94,6 +97,8 @@ class FeatureGroup(Struct, frozen=True, dict=True):
     """Variables of regions that share features, directly or through others."""
 
     variables: tuple[Variable, ...]
+    limits: tuple[Fact, ...] = ()
+    """Sums of the features that are always in an interval."""
 
     @cached_property
     def features(self) -> Mapping[str, str]:
@@ -154,6 +159,7 @@ class FeatureGroup(Struct, frozen=True, dict=True):
         """
         known = {key: number for key, number in given.items() if key in self.features}
         rows = [row for key, number in known.items() for row in _equate(key, number)]
+        rows += (row for limit in self.limits for row in list_inequalities(*limit))
         for variable in self.variables:
             index = _find_index(variable, step)
             if index is None:
@@ -254,17 +260,20 @@ def _list_distinct(systems: Iterable[list[Inequality]]) -> list[list[Inequality]
     return distinct
 
 
-def find_groups(variables: Iterable[Variable]) -> list[FeatureGroup]:
-    """Return the variables of regions in groups with common features."""
+def find_groups(variables: Iterable[Variable], limits: Sequence[Fact] = ()) -> list[FeatureGroup]:
+    """Return the variables of regions in groups with common features, or common *limits*."""
     numeric = [v for v in variables if v.term and regions_of(v.domain) is not None]
     keys = {variable.name: {key for key, _ in variable.term} for variable in numeric}
-    relations = (
-        [name for name in keys if key in keys[name]] for key in set().union(*keys.values())
-    )
-    return [
-        FeatureGroup(tuple(variable for variable in numeric if variable.name in names))
-        for names in group_related(keys, relations)
-    ]
+    related = [{key} for key in set().union(*keys.values())]
+    related += ({key for key, _ in term} for term, _ in limits)
+    relations = ([name for name in keys if keys[name] & features] for features in related)
+    groups = []
+    for names in group_related(keys, relations):
+        known = set[str]().union(*(keys[name] for name in names))
+        own = (limit for limit in limits if known.issuperset(key for key, _ in limit[0]))
+        members = (variable for variable in numeric if variable.name in names)
+        groups.append(FeatureGroup(tuple(members), tuple(own)))
+    return groups
 
 
 def _regions_of(variable: Variable) -> Regions:

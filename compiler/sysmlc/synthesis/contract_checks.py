@@ -12,6 +12,7 @@ from sysmlc.logic.basis import Basis
 from sysmlc.logic.components.derivation import ComponentBehaviour
 from sysmlc.logic.contract import Conjunct, Contract, Domain, Owner
 from sysmlc.logic.evaluate import find_violation
+from sysmlc.logic.quantities import choose_numbers
 from sysmlc.logic.reduction.contract_reduction import reduce_contract
 from sysmlc.logic.region_formulas import print_worded
 from sysmlc.synthesis.algebra.composition import conjoin_viewpoints
@@ -300,7 +301,7 @@ def _check_requirements(
     undischarged = [failure.conjunct for failure in failures]
     check = BehaviourCheck(behaviour, requirements, tuple(undischarged), setting.options)
     verdicts = tuple(
-        replace(answer, trace=answer.trace and _trim_run(answer.trace, answer.conjunct, contract))
+        replace(answer, trace=answer.trace and _trim_run(answer.trace, answer.conjunct, behaviour))
         for answer in check.decide_requirements()
     )
     for requirement in verdicts:
@@ -319,8 +320,12 @@ def _check_requirements(
     return CheckedContract(verdict, named, bool(undischarged), findings, witnesses=witnesses)
 
 
-def _trim_run(trace: Trace, broken: Conjunct, behaviour: Contract) -> Trace:
+def _trim_run(trace: Trace, broken: Conjunct, described: ComponentBehaviour) -> Trace:
     """Return a run with its violated step and the inputs that matter, without those not read."""
+    behaviour, limits = described.contract, described.limits
+    if limits:
+        numbers = choose_numbers(behaviour.variables, trace.steps, limits=limits)
+        trace = replace(trace, numbers=numbers)
     formulas = (*behaviour.guarantees, *behaviour.assumptions, broken)
     read = f.variable_names(*(conjunct.formula for conjunct in formulas))
     unread = {

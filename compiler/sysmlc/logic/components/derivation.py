@@ -17,7 +17,7 @@ from sysmlc.logic.activities.derivation import derive_run_update, derive_token_u
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.basis import Reads
-from sysmlc.logic.cells import find_cells
+from sysmlc.logic.cells import Fact, find_cells
 from sysmlc.logic.components.component import Component
 from sysmlc.logic.components.machines import MachineWrite, PlacedMachine, find_unread_features
 from sysmlc.logic.components.names import Atom, finish_name, iter_atoms
@@ -75,6 +75,8 @@ class ComponentBehaviour(Struct, frozen=True):
     """Variables that machines decide, and those with assumed ranges that they read for them."""
     facts: tuple[Conjunct, ...] = ()
     """The conjuncts of the contract that are true of numbers, whatever the behaviour does."""
+    limits: tuple[Fact, ...] = ()
+    """The sums of features that constraints keep in an interval."""
 
     def list_reads(self) -> tuple[Reads, ...]:
         """Return ``reads``; if they are not known, each variable depends on all assumed ranges."""
@@ -185,6 +187,7 @@ class _Description:
             clamps=clamps,
             reads=tuple(reads for machine in self.machines for reads in machine.iter_reads()),
             facts=facts,
+            limits=tuple(self.tree.iter_facts()),
         )
 
     def _derive_cells(self) -> tuple[tuple[Variable, ...], tuple[Conjunct, ...]]:

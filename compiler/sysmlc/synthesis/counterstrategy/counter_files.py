@@ -14,6 +14,7 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.printing import print_literal
+from sysmlc.logic.region_formulas import describe_literals
 from sysmlc.support.output import assign_file_names
 from sysmlc.support.plantuml_text import format_label
 from sysmlc.synthesis.counterstrategy.counter_machine import example_run
@@ -93,7 +94,7 @@ def _describe_conditions(
 ) -> Iterator[list[str]]:
     """Yield lists of equations: each row satisfies all of some list, no other row does."""
     for row, columns in _distinguish_rows(rows, other_rows):
-        yield [f"{variables[column].name}={print_literal(row[column])}" for column in columns]
+        yield [_print_value(variables[column], row[column]) for column in columns]
 
 
 def _distinguish_rows(
@@ -131,7 +132,13 @@ def _find_constant_columns(rows: Sequence[Row]) -> list[int]:
 
 
 def _print_values(variables: Sequence[Variable], row: Row, columns: Iterable[int]) -> str:
-    return ", ".join(f"{variables[column].name}={print_literal(row[column])}" for column in columns)
+    return ", ".join(_print_value(variables[column], row[column]) for column in columns)
+
+
+def _print_value(variable: Variable, value: Literal) -> str:
+    """Return a value as text: ``mode=auto``, and the region of a number as ``temp < 18 °C``."""
+    regions = dict(describe_literals(variable))
+    return regions.get(str(value)) or f"{variable.name}={print_literal(value)}"
 
 
 QualifiedNames = Callable[[str], str]
