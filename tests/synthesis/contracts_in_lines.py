@@ -2,7 +2,8 @@
 
 ``env a: bool``, ``sys n: 0..3``, ``sys c: red green`` declare; ``assume always a -> a'`` and
 ``promise recurs n=3`` are conjuncts; ``at first``, ``always`` and ``recurs`` are the classes.
-``env t: number 18 22 K`` is a number in kelvin: below_18_K, _18_K_to_22_K or from_22_K.
+``env t: number 18 22 K`` is a number in kelvin: below_18_K, _18_K_to_22_K or from_22_K;
+``number 18 Integer`` has the Integers below 18 and from 18 on.
 """
 
 from fractions import Fraction
@@ -57,8 +58,9 @@ def parse_domain(text: str):
     if first != "number":
         return EnumerationDomain((first, *words))
     cuts = [Cut(Fraction(word)) for word in words if not word.isalpha()]
-    unit = "".join(filter(str.isalpha, words))
-    return make_region_domain(Regions(split_line(cuts), unit, symbol=unit))
+    unit = "".join(word for word in words if word.isalpha() and word != "Integer")
+    is_integral = "Integer" in words
+    return make_region_domain(Regions(split_line(cuts), unit, is_integral, symbol=unit))
 
 
 def parse_conjunct(text: str, variables: list[Variable]) -> Conjunct:

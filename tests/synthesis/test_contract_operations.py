@@ -234,6 +234,37 @@ def test_a_constant_stays_in_its_finer_region():
     assert [print_formula(item.formula) for item in second.assumptions] == ["low'=low"]
 
 
+COUNTED = """
+    sys level: 0..7
+    promise at first level=0
+    promise always level'=level | level'=level + 1 | level' + 1=level
+"""
+
+
+@pytest.mark.parametrize(
+    ("demand", "is_met"),
+    [
+        ("promise always level!=from_9", True),
+        ("promise always level=_5_to_9 -> level'=_5_to_9 | level'=_3_to_5", True),
+        ("promise always level=below_3", False),
+        ("promise at first level=below_3", True),
+        ("promise always level=below_3 -> level'=below_3", False),
+        ("promise always level=_3_to_5 -> level'!=from_9", True),
+    ],
+)
+def test_a_range_is_compared_with_thresholds(demand, is_met):
+    """One contract counts a level from 0 to 7, the other one only compares it."""
+    assert does_refine(COUNTED, f"sys level: number 3 5 9 Integer\n{demand}") is is_met
+
+
+def test_a_large_range_and_reals_are_not_compared_with_thresholds():
+    for level in ("number 3", "number 3 m"):
+        with pytest.raises(DomainError, match=r"'level' has different values"):
+            operate(compose, COUNTED, f"env level: {level}")
+    with pytest.raises(DomainError, match=r"\(0..200 and numbers without a unit\)"):
+        operate(compose, COUNTED.replace("0..7", "0..200"), "env level: number 3 Integer")
+
+
 def test_numbers_in_different_units_are_not_compared():
     message = r"'temp' has different values .* \(numbers in K and numbers without a unit\)"
     with pytest.raises(DomainError, match=message):

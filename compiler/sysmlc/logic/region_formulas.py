@@ -4,6 +4,7 @@ Two contracts that cut the values of one number at different places have differe
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Set
+from fractions import Fraction
 from functools import reduce
 from itertools import groupby
 
@@ -12,27 +13,54 @@ from msgspec.structs import replace
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.classification import add_temporal_operators
-from sysmlc.logic.contract import Conjunct, Contract, Domain, EnumerationDomain, Variable
+from sysmlc.logic.contract import (
+    Conjunct,
+    Contract,
+    Domain,
+    EnumerationDomain,
+    IntegerDomain,
+    Variable,
+)
 from sysmlc.logic.domains import make_region_domain, regions_of
 from sysmlc.logic.expressions.linear import print_term
-from sysmlc.logic.formats.lowering import rewrite_contract_atoms
-from sysmlc.logic.formula import Apply, Const, Formula, Op, Var
+from sysmlc.logic.formats.lowering import expand_comparison, rewrite_atoms, rewrite_contract_atoms
+from sysmlc.logic.formula import Apply, Const, Formula, Literal, Op, Var
 from sysmlc.logic.printing import print_formula
-from sysmlc.logic.regions import Regions
+from sysmlc.logic.regions import Cut, Regions, split_line
 
 # -- common regions --------------------------------------------------------------------------------
+
+
+_MAX_RANGE = 64
+"""Most Integers of a range that become regions."""
 
 
 def unite_regions(own_domains: Iterable[Domain]) -> EnumerationDomain | None:
     """Return the domain of a number with the cuts of all domains.
 
-    None if one of them has no regions, or if their units differ.
+    Beside regions of Integers, each Integer of a range is a region. None if no domain has regions,
+    if the units differ, or if other values are among them.
     """
-    regions = [regions_of(domain) for domain in own_domains]
+    own_domains = list(own_domains)
+    regions = [_find_regions(domain) for domain in own_domains]
     known = [item for item in regions if item is not None]
-    if not known or len(known) < len(regions) or len({item.unit for item in known}) > 1:
+    has_ranges = any(isinstance(domain, IntegerDomain) for domain in own_domains)
+    if (
+        not any(map(regions_of, own_domains))
+        or len(known) < len(regions)
+        or len({item.unit for item in known}) > 1
+        or (has_ranges and not all(item.is_integral for item in known))
+    ):
         return None
     return make_region_domain(reduce(Regions.unite, known))
+
+
+def _find_regions(domain: Domain) -> Regions | None:
+    """Return the regions of a domain, or the Integers of a small range as regions."""
+    if not isinstance(domain, IntegerDomain) or domains.size(domain) > _MAX_RANGE:
+        return regions_of(domain)
+    cuts = (Cut(Fraction(number)) for number in range(domain.low, domain.high + 2))
+    return Regions(split_line(cuts)[1:-1], is_integral=True)
 
 
 def split_regions(contract: Contract, new_domains: Mapping[str, Domain]) -> Contract:
@@ -40,25 +68,31 @@ def split_regions(contract: Contract, new_domains: Mapping[str, Domain]) -> Cont
 
     A comparison with a literal becomes one with the regions within it. Two equal values become two
     values in the same one of the former regions, because nothing more is known about them. A
-    variable has those literals of its new domain that lie within its former regions.
+    variable has those literals of its new domain that lie within its former regions. Raises
+    TooManyValuesError for arithmetic with many numbers.
     """
     variables: list[Variable] = []
-    parts: dict[str, dict[str, tuple[str, ...]]] = {}
+    parts: dict[str, Parts] = {}
     for variable in contract.variables:
         domain = new_domains.get(variable.name, variable.domain)
-        old, new = regions_of(variable.domain), regions_of(domain)
+        old, new = _find_regions(variable.domain), regions_of(domain)
         if domain != variable.domain and old is not None and new is not None:
-            assert isinstance(variable.domain, EnumerationDomain)
             assert isinstance(domain, EnumerationDomain)
             finer = dict(zip(domain.literals, new.intervals, strict=True))
+            values = domains.values(variable.domain)
             parts[variable.name] = {
-                literal: tuple(name for name in finer if interval.includes(finer[name]))
-                for literal, interval in zip(variable.domain.literals, old.intervals, strict=True)
+                value: tuple(name for name in finer if interval.includes(finer[name]))
+                for value, interval in zip(values, old.intervals, strict=True)
             }
             inside = set().union(*parts[variable.name].values())
             own = replace(new, intervals=tuple(finer[name] for name in finer if name in inside))
             literals = tuple(name for name in finer if name in inside)
-            variable = replace(variable, domain=EnumerationDomain(literals, regions=own))
+            variable = replace(
+                variable,
+                domain=EnumerationDomain(literals, regions=own),
+                is_range_assumed=False,
+                term=variable.term or ((variable.name, Fraction(1)),),
+            )
         variables.append(variable)
     if not parts:
         return contract
@@ -66,16 +100,20 @@ def split_regions(contract: Contract, new_domains: Mapping[str, Domain]) -> Cont
     return rewrite_contract_atoms(contract, split, variables)
 
 
+Parts = Mapping[Literal, tuple[str, ...]]
+"""For each value of a former domain, the literals of the finer regions."""
+
+
 def _make_splitting(
-    variables: Mapping[str, Variable], parts: Mapping[str, Mapping[str, tuple[str, ...]]]
+    variables: Mapping[str, Variable], parts: Mapping[str, Parts]
 ) -> Callable[[Formula], Formula]:
     """Return a function that splits the comparisons of variables; *parts* are finer literals."""
 
-    def belongs(operand: Formula, literal: str) -> Formula:
+    def belongs(operand: Formula, value: Literal) -> Formula:
         if isinstance(operand, Const):
-            return Const(operand.value == literal)
+            return Const(operand.value == value)
         assert isinstance(operand, Var)
-        names = parts.get(operand.name, {}).get(literal, (literal,))
+        names: Iterable[Literal] = parts.get(operand.name, {}).get(value, (value,))
         return f.either(*(f.eq(operand, Const(name)) for name in names))
 
     def split(atom: Formula) -> Formula:
@@ -86,15 +124,25 @@ def _make_splitting(
                     return atom
                 if len(set(names)) < len(names) and _is_constant(variables[names[0]]):
                     return atom
-                domain = variables[names[0]].domain
-                assert isinstance(domain, EnumerationDomain)
                 is_same = f.either(
-                    *(f.both(belongs(left, name), belongs(right, name)) for name in domain.literals)
+                    *(
+                        f.both(belongs(left, value), belongs(right, value))
+                        for value in domains.values(variables[names[0]].domain)
+                    )
                 )
                 return is_same if op is Op.EQ else f.negate(is_same)
         return atom
 
-    return split
+    by_name = {name: variable.domain for name, variable in variables.items()}
+
+    def split_arithmetic(atom: Formula) -> Formula:
+        """Write arithmetic with ranges as cases before the values are split."""
+        names = f.variable_names(atom) & parts.keys()
+        if isinstance(atom, Apply) and any(isinstance(by_name[n], IntegerDomain) for n in names):
+            return rewrite_atoms(expand_comparison(atom, by_name), split)
+        return split(atom)
+
+    return split_arithmetic
 
 
 def _is_constant(variable: Variable) -> bool:

@@ -281,7 +281,7 @@ def has_single_type(wire: Wire) -> bool:
     """
     domains = [variable.domain for _, variable in wire.ends]
     if any(map(regions_of, domains)):
-        return unite_regions(domains) is not None
+        return all(map(regions_of, domains)) and unite_regions(domains) is not None
     has_texts = any(isinstance(domain, EnumerationDomain) and domain.texts for domain in domains)
     return len(set(domains) if has_texts else set(map(type, domains))) == 1
 

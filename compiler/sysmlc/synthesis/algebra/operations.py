@@ -33,6 +33,7 @@ from sysmlc.logic.contract import (
     Variable,
 )
 from sysmlc.logic.domains import regions_of
+from sysmlc.logic.formats.lowering import TooManyValuesError
 from sysmlc.logic.formula import Const
 from sysmlc.logic.identifiers import identifier
 from sysmlc.logic.printing import print_formula
@@ -53,7 +54,14 @@ class OwnerError(Exception):
     """Reports that two contracts disagree on the side that decides a variable."""
 
 
-OBSTACLES = (DomainError, OwnerError, OutsideGr1Error, NotReducibleError, LimitError)
+OBSTACLES = (
+    DomainError,
+    OwnerError,
+    OutsideGr1Error,
+    NotReducibleError,
+    LimitError,
+    TooManyValuesError,
+)
 """Errors that the functions of this module raise."""
 
 
@@ -78,7 +86,8 @@ def align_domains(first: Contract, second: Contract) -> tuple[Contract, Contract
     The common domain of integers is the smallest range that includes both ranges, that of
     enumerations has the literals of both, that of numbers has regions with the cuts of both. The
     smaller domain of a contract becomes a conjunct: a component assumes the values of its inputs,
-    and guarantees those of its outputs. Raises DomainError for domains of different kinds.
+    and guarantees those of its outputs. Raises DomainError for domains of different kinds, and
+    TooManyValuesError for arithmetic with many numbers.
     """
     domains = {variable.name: variable.domain for variable in first.variables}
     for variable in second.variables:
