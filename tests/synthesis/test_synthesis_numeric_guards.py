@@ -179,13 +179,14 @@ def check(path):
 def read_steps(machine, witness):
     """Return the steps of a run; an input without a number is one that nothing compares.
 
-    There are no steps if the run does not know the number of an attribute, or if a constraint
-    compares several features: the numbers that a run shows need not satisfy it.
+    There are no steps if the run does not know the number of an attribute or of a constrained
+    input, or if a constraint compares several features: the numbers need not satisfy it.
     """
     if any(len(literal.terms) > 1 for literal in machine.constraints):
         return []
     attributes = {item.name for item in machine.features if item.kind == "attribute"}
-    if not all(attributes <= numbers.keys() for numbers in witness["numbers"]):
+    shown = attributes | {name for literal in machine.constraints for name, _ in literal.terms}
+    if not all(shown <= numbers.keys() for numbers in witness["numbers"]):
         return []
     scale = RESOLUTION / machine.unit
     steps = []
