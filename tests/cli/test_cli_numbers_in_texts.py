@@ -85,3 +85,27 @@ def test_files_with_different_thresholds_are_compared(heater):
     )
     result = heater.sysmlc("contracts", "compose", strict, tolerant)
     assert '"from": "295.15",\n            "below": "298.15"' in result.stdout
+
+
+def test_the_summary_of_an_activity_shows_comparisons(heater):
+    heater.write(
+        "robot.sysml",
+        """package Hall {
+    private import ScalarValues::*;
+    part def Robot {
+        in attribute load : Real;
+        perform action work {
+            first start;
+            then decide;
+            if load >= 20.5 then slow;
+            if load < 20.5 then fast;
+            action slow;
+            action fast;
+        }
+    }
+}
+""",
+    )
+    assert heater.sysmlc("build", "robot.sysml", "-o", "out").exit_code == 0
+    page = heater.read("out/contracts/Hall.Robot.md")
+    assert "**Inputs.** It reads `load` (`load < 20.5`, `load >= 20.5`)." in page

@@ -22,6 +22,7 @@ from sysmlc.logic.domains import describe
 from sysmlc.logic.formula import TRUE, Const, variables
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import as_ltl
+from sysmlc.logic.region_formulas import describe_literals, print_worded
 from sysmlc.support.escapes import escape_code, escape_markdown
 
 _STEPS = (NodeKind.ACTION, NodeKind.STRUCTURED)
@@ -239,7 +240,7 @@ class ActivitySummary:
         if self._game.handshake is not None:
             own.add(self._game.handshake.running)
         texts = [
-            _quote(print_formula(conjunct.formula))
+            _quote(print_worded(conjunct.formula, self._contract.variables))
             for conjunct in (*self._contract.assumptions, *self._contract.guarantees)
             if conjunct.class_ is Class.INIT
             and own.isdisjoint(variable.name for variable in variables(conjunct.formula))
@@ -265,7 +266,7 @@ class ActivitySummary:
             yield f"Other behaviours may assign {names}, too."
         for conjunct in self._contract.guarantees:
             if not conjunct.is_derived:
-                formula = _quote(print_formula(as_ltl(conjunct)))
+                formula = _quote(print_worded(as_ltl(conjunct), self._contract.variables))
                 yield f"The author demands {formula}."
 
     def _is_sequential(self) -> bool:
@@ -341,8 +342,13 @@ def _join_sentences(sentences: Iterable[str]) -> str:
 def _list_variables(verb: str, listed: Sequence[Variable]) -> str:
     if not listed:
         return f"{verb} no feature."
-    names = [f"{_quote(v.name)} ({escape_markdown(describe(v.domain))})" for v in listed]
+    names = [f"{_quote(v.name)} ({_describe_values(v)})" for v in listed]
     return f"{verb} {_join(names)}."
+
+
+def _describe_values(variable: Variable) -> str:
+    conditions = [_quote(condition) for _, condition in describe_literals(variable)]
+    return ", ".join(conditions) or escape_markdown(describe(variable.domain))
 
 
 def _is_constant(write: Write) -> bool:

@@ -117,10 +117,11 @@ class _PageBuilder:
         self._labels: dict[str, tuple[str, str]] = {}
         self._wordings: dict[str, str] = {}
         """Names in formulas of the author, by variable."""
-        self._variables: tuple[Variable, ...] = ()
+        self._numbers: tuple[Variable, ...] = ()
 
     def build_page(self, contract: Contract) -> Page:
-        variables = self._variables = contract.variables
+        variables = contract.variables
+        self._numbers = tuple(item for item in variables if regions_of(item.domain) is not None)
         self._wordings = contract.wordings
         element, place = self._label_element(contract.origin)
         return Page(
@@ -185,7 +186,7 @@ class _PageBuilder:
         The text of a conjunct from a named constraint begins with the quoted name. The row shows
         the name as a sentence instead, and the requirement or owner of the constraint as element.
         """
-        worded = word_regions(conjunct.formula, self._variables)
+        worded = word_regions(conjunct.formula, self._numbers)
         named = conjunct.wording or rename_variables(worded, self._wordings)
         formula = escape_code(print_formula(named))
         element, place = self._label_element(conjunct.origin)

@@ -38,6 +38,7 @@ from sysmlc.logic.contract import (
 )
 from sysmlc.logic.formula import Const, Formula
 from sysmlc.logic.printing import print_formula, print_literal
+from sysmlc.logic.region_formulas import print_worded
 
 _CACHE_SIZE = 256
 """Cache size: a process that compiles again reuses contracts of activities without edits."""
@@ -382,13 +383,13 @@ def _derive_write(
     for condition, value in write.values:
         write_case = f.both(write_formula, condition)
         result = f.either(equals(store.variable, value, is_next=True), *simultaneous)
-        cause = f"{node.label} is done{_describe_condition(condition)}"
+        cause = f"{node.label} is done{_describe_condition(formulas.graph, condition)}"
         text = f"When {cause}, '{name}' becomes {_describe_value(write, value)}."
         yield Conjunct(f.implies(write_case, result), Class.SAFETY, node.origin, text)
 
 
-def _describe_condition(condition: Formula) -> str:
-    return "" if condition == f.TRUE else f" and {print_formula(condition)}"
+def _describe_condition(graph: TokenGraph, condition: Formula) -> str:
+    return "" if condition == f.TRUE else f" and {print_worded(condition, list_variables(graph))}"
 
 
 def _describe_value(write: Write, value: Formula) -> str:
