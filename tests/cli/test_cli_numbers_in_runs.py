@@ -57,14 +57,14 @@ MODEL = """package Plant {
         }
     }
     part def Tank {
-        attribute level : Real := 0.0;
+        attribute level : LengthValue := 0 [cm];
         exhibit state Control {
             entry; then Filling;
             state Filling;
             state Full;
-            transition first Filling if level < 10.0
-                do assign level := level + 2.5 then Filling;
-            transition first Filling if level >= 10.0 then Full;
+            transition first Filling if level < 1 [m]
+                do assign level := level + 25 [cm] then Filling;
+            transition first Filling if level >= 100 [cm] then Full;
         }
     }
     requirement def Rule {
@@ -123,12 +123,12 @@ def test_numbers_respect_constraints_between_features(check):
 
 
 def test_a_number_that_the_component_sets_is_the_one_that_it_sets(check):
-    steps = list_steps(check("Tank", "G level < 7.5"))
+    steps = list_steps(check("Tank", "G level < 75 [cm]"))
     assert steps[:4] == [
-        "step 1: level = 0, state=Filling",
-        "step 2: level = 2.5",
-        "step 3: level = 5",
-        "step 4: level = 7.5  <-- violated here",
+        "step 1: level = 0 cm, state=Filling",
+        "step 2: level = 25 cm",
+        "step 3: level = 50 cm",
+        "step 4: level = 75 cm  <-- violated here",
     ]
 
 

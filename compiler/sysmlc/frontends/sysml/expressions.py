@@ -118,7 +118,7 @@ def _read_operation(node: Node, ids: ElementIds) -> Expression:
     if len(arguments) == 3 and operator == "if":
         condition, then, otherwise = (_read(argument, ids) for argument in arguments)
         return Conditional(condition, then, otherwise)
-    if len(arguments) == 2 and operator in ("#", "index"):
+    if len(arguments) == 2 and operator in ("#", "index", "["):
         return Index(_read(arguments[0], ids), _read(arguments[1], ids))
     raise NotExpressibleError(operator)
 
