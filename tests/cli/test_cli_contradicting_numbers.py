@@ -78,6 +78,28 @@ def test_requirements_conflict_only_where_numbers_can(check):
     assert check(VALVE.replace("inner > 10", "inner > 4")) == ["Plant::Valve: unrealizable"]
 
 
+def test_constants_keep_their_order(check):
+    """A model with 'low < high' demands nothing of a number below low and above high."""
+    oven = """package Kitchen {
+        private import ScalarValues::*;
+        part def Oven {
+            constant attribute low : Real;
+            constant attribute high : Real;
+            in attribute temp : Real;
+            out attribute on : Boolean;
+            assert constraint { low < high }
+        }
+        requirement def Heats {
+            subject oven : Oven;
+            require constraint { language "ltl" /* G (temp < low -> X on) */ }
+            require constraint { language "ltl" /* G (temp > high -> X !on) */ }
+        }
+    }"""
+    assert check(oven) == ["Kitchen::Oven: realizable"]
+    unordered = oven.replace("assert constraint { low < high }", "")
+    assert check(unordered) == ["Kitchen::Oven: unrealizable"]
+
+
 def test_parts_that_compare_different_sums_share_the_numbers(check):
     """One part compares both with numbers, the other one with each other."""
     assert check(ROOM)[-1] == "Home::Room: its 2 parts together satisfy its contract"

@@ -46,6 +46,7 @@ VARIABLES = (
     ),
     make_number("a_minus_b", "<-0.5 >0", "a -b"),
     make_number("sum", "<2", "a b"),
+    make_number("low_minus_x", ">0 >2", "low -x", ("low",)),
 )
 DOMAINS = {variable.name: variable.domain for variable in VARIABLES}
 
@@ -75,6 +76,10 @@ DOMAINS = {variable.name: variable.domain for variable in VARIABLES}
         ("a_minus_b=below_minus_0_5", "a < b - 0.5"),
         ("a_minus_b=minus_0_5_to_0", "b - 0.5 <= a <= b"),
         ("sum=below_2", "a + b < 2"),
+        # A number is compared with a constant, not the other way round.
+        ("low_minus_x!=up_to_0", "x < low"),
+        ("low_minus_x=above_2", "x < low - 2"),
+        ("low_minus_x'=_0_to_2", "low - 2 <= x' < low"),
         # The rest of the formula stays.
         ("G (t'=below_18 -> t=below_18 | u=at_5 | t=_18_to_22)", "G (t' < 18 -> t < 22 | u == 5)"),
         ("t'=t", "t'=t"),

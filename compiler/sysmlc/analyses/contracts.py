@@ -38,7 +38,11 @@ from sysmlc.logic.feature_writes import WriterIndex
 from sysmlc.logic.formal_texts import describe_error, is_formal_constraint, read_formal
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines import derivation as statemachine
-from sysmlc.logic.machines.reader import MachineOptions, read_machine
+from sysmlc.logic.machines.reader import (
+    MachineOptions,
+    find_context_classifier,
+    read_machine,
+)
 from sysmlc.logic.reduction.contract_reduction import add_history_bits, is_reducible
 from sysmlc.logic.requirements import derivation as requirements
 from sysmlc.logic.requirements.derivation import add_features
@@ -100,13 +104,19 @@ class Contracts(Struct, frozen=True):
         )
         given = [entry.contract for entry in graph.derived(GivenContract)]
         names = {contract.component for contract in given}
-        contracts = [*given, *(_add_facts(c) for c in derived if c.component not in names)]
+        contracts = [*given, *(_add_facts(graph, c) for c in derived if c.component not in names)]
         graph.store(Contract, sorted(contracts, key=lambda contract: contract.component))
 
 
-def _add_facts(contract: Contract) -> Contract:
+def _add_facts(graph: Graph, contract: Contract) -> Contract:
     """Return the contract with the assumption that its numbers do not contradict one another."""
-    facts = state_facts(contract.variables, contract.origin)
+    if not any(variable.term for variable in contract.variables):
+        return contract
+    origin = query.definition_of(graph, graph[contract.origin])
+    if origin.kind in query.BEHAVIORS:
+        origin = find_context_classifier(graph, origin) or origin
+    stated = context_of(graph, origin).facts
+    facts = state_facts(contract.variables, stated, contract.origin)
     return replace(contract, assumptions=(*contract.assumptions, *facts))
 
 

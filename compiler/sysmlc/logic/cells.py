@@ -66,13 +66,15 @@ class Cells(Struct, frozen=True):
         return tuple(replace(fact, source=Source.DERIVED) for fact in facts)
 
 
-def state_facts(variables: Sequence[Variable], origin: str) -> Iterator[Conjunct]:
+def state_facts(
+    variables: Sequence[Variable], facts: Sequence[Fact], origin: str
+) -> Iterator[Conjunct]:
     """Yield what is true of numbers that the environment decides: initially, and in each step.
 
-    The facts about a next step have primes: no step of the environment leads to other numbers.
+    The conjuncts about a next step have primes: no step of the environment leads to other numbers.
     """
     names = {variable.name for variable in variables if variable.owner is Owner.ENVIRONMENT}
-    for fact in find_cells(variables, ()).describe(origin):
+    for fact in find_cells(variables, facts, has_orders=False).describe(origin):
         if not names.issuperset(f.variable_names(fact.formula)):
             continue
         if f.has_primes(fact.formula):
@@ -82,10 +84,15 @@ def state_facts(variables: Sequence[Variable], origin: str) -> Iterator[Conjunct
             yield replace(fact, formula=f.prime(fact.formula))
 
 
-def find_cells(variables: Iterable[Variable], facts: Sequence[Fact]) -> Cells:
-    """Return what the terms of the variables imply about their regions."""
+def find_cells(
+    variables: Iterable[Variable], facts: Sequence[Fact], *, has_orders: bool = True
+) -> Cells:
+    """Return what the terms of the variables imply about their regions.
+
+    Without *has_orders*, nothing relates the orders of constants in different steps.
+    """
     numeric = [variable for variable in variables if variable.term]
-    orders = list(_compare_constants(numeric))
+    orders = list(_compare_constants(numeric)) if has_orders else []
     numeric = orders + numeric
     possible: list[Formula] = []
     unrelated: list[Variable] = []

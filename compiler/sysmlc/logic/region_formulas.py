@@ -247,10 +247,11 @@ class _Wording:
 
     def _describe(self, variable: Var, indices: Set[int]) -> Formula:
         """Return the comparisons that are true in the regions with these indices."""
-        regions = regions_of(self._domain(variable.name))
-        assert regions is not None
-        sides = self.print_sides(variable)
-        rest = set(range(len(regions.intervals))) - indices
+        regions, sides = self.read_regions(variable)
+        count = len(regions.intervals)
+        if self.is_mirrored(variable.name):
+            indices = {count - 1 - index for index in indices}
+        rest = set(range(count)) - indices
         runs = [
             [i for _, i in group]
             for _, group in groupby(enumerate(sorted(indices)), lambda pair: pair[1] - pair[0])
@@ -262,16 +263,28 @@ class _Wording:
             return Var(regions.describe(excluded, *sides).replace("==", "!="))
         return f.either(*(Var(regions.describe_span(run[0], run[-1], *sides)) for run in runs))
 
-    def print_sides(self, variable: Var) -> tuple[str, str]:
-        """Return what is compared and, of a difference, what is subtracted: ``a - b`` by sides."""
+    def read_regions(self, variable: Var) -> tuple[Regions, tuple[str, str]]:
+        """Return the regions, what is compared and, of a difference, what is subtracted."""
         number = self._variables[variable.name]
+        regions = regions_of(number.domain)
+        assert regions is not None
         prime = "'" * variable.primed
         if len(number.term) < 2:
-            return (number.wording or number.name) + prime, ""
-        named = [(self._name(key) + prime, factor) for key, factor in number.term]
+            return regions, ((number.wording or number.name) + prime, "")
+        sign = -1 if self.is_mirrored(variable.name) else 1
+        named = [
+            (self._name(key) + ("" if key in number.constants else prime), sign * factor)
+            for key, factor in number.term
+        ]
         left = tuple((name, factor) for name, factor in named if factor > 0)
         right = tuple((name, -factor) for name, factor in named if factor < 0)
-        return print_term(left), print_term(right)
+        return regions.scale(Fraction(sign)), (print_term(left), print_term(right))
+
+    def is_mirrored(self, name: str) -> bool:
+        """Whether the text compares a number with a constant, and the term is the reverse."""
+        number = self._variables[name]
+        changing = [factor for key, factor in number.term if key not in number.constants]
+        return 0 < len(changing) < len(number.term) and all(factor < 0 for factor in changing)
 
     def _name(self, key: str) -> str:
         variable = self._variables.get(key)
@@ -284,9 +297,12 @@ def _merge(op: Op, left: Set[int], right: Set[int]) -> Set[int]:
 
 def describe_literals(variable: Variable) -> tuple[tuple[str, str], ...]:
     """Return the literals of a number with the conditions that they stand for."""
-    regions = regions_of(variable.domain)
-    if regions is None:
+    if regions_of(variable.domain) is None:
         return ()
-    sides = _Wording({variable.name: variable}).print_sides(Var(variable.name))
+    worded = _Wording({variable.name: variable})
+    regions, sides = worded.read_regions(Var(variable.name))
+    conditions = regions.list_conditions(*sides)
+    if worded.is_mirrored(variable.name):
+        conditions.reverse()
     literals = map(str, domains.values(variable.domain))
-    return tuple(zip(literals, regions.list_conditions(*sides), strict=True))
+    return tuple(zip(literals, conditions, strict=True))

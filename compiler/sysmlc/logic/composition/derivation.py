@@ -202,7 +202,7 @@ def _derive_facts(block: Block, parts: Sequence[Part]) -> Iterator[Conjunct]:
     for group in (*groups, together.values()):
         # Whoever decides the numbers, they do not contradict one another.
         given = [replace(variable, owner=Owner.ENVIRONMENT) for variable in group]
-        yield from state_facts(given, block.element.id)
+        yield from state_facts(given, (), block.element.id)
 
 
 def _add_own_contracts(block: Block) -> Member | None:
