@@ -62,9 +62,9 @@ MODEL = """package Plant {
             entry; then Filling;
             state Filling;
             state Full;
-            transition first Filling if level < 1 [m]
+            transition first Filling if level < 100 [cm]
                 do assign level := level + 25 [cm] then Filling;
-            transition first Filling if level >= 100 [cm] then Full;
+            transition first Filling if level >= 1 [m] then Full;
         }
     }
     requirement def Rule {
