@@ -1,7 +1,7 @@
 """Verdicts that rest on an assumption of the compiler name it.
 
-An Integer without a range is taken as 0..15 (SM410); a condition without formula is a free input
-(SM411). Neither is a fact of the model.
+An Integer without a range that is more than compared is taken as 0..15 (SM410); a condition without
+formula is a free input (SM411). Neither is a fact of the model.
 """
 
 import json
@@ -52,7 +52,7 @@ exhibit state M {
     entry; then B;
     state B;
     state A;
-    transition first B if level > 4 * 5 then A;
+    transition first B if level * level > level + 400 then A;
 }"""
 
 
@@ -103,6 +103,7 @@ def test_an_integer_that_does_not_matter_is_not_named(check):
 
 COUNTER = """
 attribute count : Integer := 0;
+assert constraint { count * count < 1000 }
 exhibit state M {
     entry; then A;
     state A;
@@ -134,7 +135,8 @@ def test_a_range_in_a_part_has_the_name_of_the_author(check):
     part tank {
         in attribute level : Integer;
         exhibit state M {
-            entry; then B; state B; state A; transition first B if level > 4 * 5 then A;
+            entry; then B; state B; state A;
+            transition first B if level * level > level + 400 then A;
         }
     }"""
     (line,) = check(block, "G tank.state=B")
@@ -310,7 +312,8 @@ def test_a_refinement_names_what_it_rests_on(workspace, all_passes):
 
 
 def test_contract_files_and_pages_mark_ranges_and_conditions(workspace, all_passes):
-    block = ROOM.replace("state C;", "state C; transition first C accept Stop if level < 3 then B;")
+    transition = "transition first C accept Stop if level * level < 9 then B;"
+    block = ROOM.replace("state C;", f"state C; {transition}")
     workspace.write("model.sysml", _require(f"in attribute level : Integer;{block}", ()))
     assert workspace.sysmlc("model.sysml", "-o", "out").exit_code == 0
     contract = json.loads(workspace.read("out/contracts/P.B.contract.json"))
@@ -377,6 +380,7 @@ COMPOSITION = """package P {
     part def Sensor {
         attribute temp : Real;
         attribute count : Integer := 0;
+        assert constraint { count * count < 1000 }
         out attribute hot : Boolean := false;
         exhibit state S {
             entry; then A; state A; state B;
@@ -438,6 +442,7 @@ def test_all_behaviours_of_a_component_extend_an_assumed_range_in_the_same_way(c
     """The machine knew values beyond 15 that the component did not know: nothing was decided."""
     block = """
 attribute n : Integer := 0;
+assert constraint { n * n < 1000 }
 exhibit state M {
     entry; then A; state A;
     transition first A accept Go if n < 20 do assign n := n + 1 then A;
@@ -468,7 +473,7 @@ exhibit state W {
 )
 def test_an_assumed_range_has_numbers_on_both_sides_of_each_threshold(check, guard, range_):
     """``level > 20`` was never true, because 0..20 was assumed."""
-    block = LEVEL.replace("level > 4 * 5", guard)
+    block = LEVEL.replace("level * level > level + 400", f"({guard}) and level * level >= 0")
     broken, proved = check(block, "G state=B", "G (state=A -> G state=A)")
     assert broken == "R0: broken: G (state=B)"
     assert proved == f"R1: holds within level in {range_} (assumed): G (state=A -> G state=A)"
@@ -485,6 +490,6 @@ def test_an_assumed_range_has_numbers_on_both_sides_of_each_threshold(check, gua
 )
 def test_a_declared_bound_is_a_fact(check, declared, range_):
     block = LEVEL.replace(";", f"; assert constraint {{ {declared} }}", 1)
-    block = block.replace("level > 4 * 5", "level == 2 * level + 500")
+    block = block.replace("level * level > level + 400", "level * level == level + 5000")
     (line,) = check(block, "G state=B")
     assert line == f"R0: holds within level in {range_} (assumed): G (state=B)"

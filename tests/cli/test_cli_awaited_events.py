@@ -170,7 +170,7 @@ def test_a_condition_outside_the_declared_range_never_becomes_true(workspace, st
 
 def test_a_condition_beyond_an_assumed_range_decides_nothing(workspace):
     """No proof relies on a condition that is false in all runs that the check sees."""
-    write_lamp(workspace, "then accept when n > k + 20;")
+    write_lamp(workspace, "then accept when n > k * k + 300;")
     inputs = "in attribute n : Integer; in attribute k : Integer; perform"
     workspace.write("lamp.sysml", workspace.read("lamp.sysml").replace("perform", inputs))
     reason = "it depends on n in 0..15 and k in 0..15 (assumed)"

@@ -17,7 +17,7 @@ package P {
         exhibit state life {
             entry; then low;
             state low;
-            transition first low if level > limit then high;
+            transition first low if level > limit * limit then high;
             state high;
         }
     }

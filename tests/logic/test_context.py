@@ -95,13 +95,14 @@ def test_ranges_come_from_constraints(body, low, high):
 
 
 def test_only_the_open_bound_of_a_constraint_is_assumed():
-    features = read_features(members='  Constraint k body="bay >= 3"\n')
+    features = read_features(members='  Constraint k body="bay >= 3 and bay * bay > 9"\n')
     assert features["bay"].domain == IntegerDomain(3, 15)
     assert features["bay"].is_assumed
 
 
 def test_zero_is_a_lower_bound_of_unsigned_types():
-    model = CLASS.replace("{members}", '  Constraint k body="bay <= 3"\n').replace("{default}", "")
+    constraint = '  Constraint k body="bay <= 3 and bay * bay < 9"\n'
+    model = CLASS.replace("{members}", constraint).replace("{default}", "")
     natural, integer = model.replace("Integer", "Natural"), model
     features = [
         context_of(graph, graph["c"]).features["bay"]
@@ -138,7 +139,10 @@ def test_an_assumed_range_contains_the_default_value():
     ],
 )
 def test_an_assumed_range_reaches_beyond_the_thresholds_of_guards(guard, low, high):
-    machine = f'  StateMachine s\n    Region r\n      Transition t guard="{guard}"\n'
+    machine = (
+        f'  StateMachine s\n    Region r\n      Transition t guard="{guard}"\n'
+        '  Constraint k body="bay * bay >= 0"\n'
+    )
     graph = parse_text(CLASS.replace("{members}", machine).replace("{default}", ""))
     pipeline.load("expressions").run(graph, Sink())
     features = context_of(graph, graph["c"], behaviour=graph["s"]).features
@@ -201,9 +205,15 @@ def print_guard(guard, scope=""):
         ("Near::Mode::slow == a and Far::Mode::slow == b", "slow=a & slow=b"),
         ("Mode::slow == a and Mode::slow == b", "slow=a & slow=b"),
         ("Mode::auto == b", "auto=b"),
-        ("(if n == 0 ? Far::Mode::off else Far::Mode::auto) == b", "n=0 & off=b | !n=0 & auto=b"),
+        (
+            "(if n == 0 ? Far::Mode::off else Far::Mode::auto) == b",
+            "n=at_0 & off=b | !n=at_0 & auto=b",
+        ),
         ("n == Near::Mode::slow and n != Far::Mode::slow", "n=2 & n!=5"),
-        ("n >= Near::LIMIT and n <= Far::LIMIT", "n>=3 & n<=5"),
+        (
+            "n >= Near::LIMIT and n <= Far::LIMIT",
+            "(n=LIMIT_to_6 | n=from_6) & (n=below_LIMIT | n=LIMIT_to_6)",
+        ),
     ],
 )
 def test_enumerations_and_constants_of_one_name_are_distinct(guard, formula):

@@ -13,6 +13,10 @@ Package p "Plant"
       -> typed-by d
     Property count "count"
       -> typed-by int
+    Constraint k body="count >= 0 and count <= 15"
+    Property total "total"
+      -> typed-by int
+    Constraint l body="total * total >= 0"
     Property weight "weight"
       -> typed-by real
     Property word "word"
@@ -72,7 +76,7 @@ def list_text_findings(
         ("key.open", "OCL", "'key.open' is a feature of 'Door'"),
         ("count < Door::MOST", "OCL", "'Door::MOST' is a feature of 'Door'"),
         ("amount > 3", "", "'amount' is a feature of 'fill'"),
-        ("count > 300", "OCL", "300 is outside 0..15, a range that is assumed"),
+        ("total > 300", "OCL", "300 is outside 0..15, a range that is assumed"),
         ("word = 'open'", "OCL", "'open' in single quotes is not a text here"),
         ("ready", "English", "'ready' is not known, and names in English are not checked"),
         ("count > LIMIT", "Java", "'LIMIT' is not known, and names in Java are not checked"),
@@ -186,7 +190,7 @@ def test_a_guard_that_names_nothing_is_an_error(guard):
     ("effect", "reason"),
     [
         ("count := amount", "'amount' is a feature of 'fill'"),
-        ("count := 300", "300 is outside 0..15, a range that is assumed"),
+        ("total := 300", "300 is outside 0..15, a range that is assumed"),
         ("weight := 3", "'weight' has no finite type"),
         ("key.open := true", "'key.open' is a feature of 'Door'"),
     ],

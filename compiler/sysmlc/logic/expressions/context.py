@@ -348,11 +348,11 @@ class _FeatureTable(Mapping[str, Feature]):
 
     def _infer_values(self, name: str, feature: Feature) -> Feature:
         """Return the feature with undeclared values inferred from those that the behaviour uses."""
-        if feature.is_assumed:
-            return self._widen_range(name, feature)
         number = self._thresholds.number_of(feature.element)
         if number is not None:
-            return self._restrict_number(feature, number)
+            feature = self._restrict_number(feature, number)
+        if feature.is_assumed:
+            return self._widen_range(name, feature)
         if self._behaviour.kind not in _BEHAVIOURS:
             return feature
         if is_string(self._graph, feature) and self._mentioned_values.texts:
@@ -364,18 +364,20 @@ class _FeatureTable(Mapping[str, Feature]):
         own = replace(number, key="" if number.is_constant else feature.variable)
         feature = replace(feature, number=own)
         domain = self._thresholds.domain_of(number)
+        if feature.is_assumed and self._thresholds.is_only_compared(number):
+            feature = replace(feature, domain=None, is_assumed=False)
         if feature.domain is not None or domain is None or domain.regions is None:
             return feature
         quantity = read_quantity(self._graph, feature.element, "default")
         index = None if quantity is None else domain.regions.find(quantity.number)
         default = None if index is None else domain.literals[index]
-        # Without an assignment, nothing but the environment can change the number.
-        is_assigned = self._thresholds.is_assigned(number)
+        # Without an assignment, nothing but the environment can change a quantity.
+        is_own = self._thresholds.is_assigned(number) or domain.regions.is_integral
         return replace(
             feature,
             domain=domain,
             default=default,
-            direction=feature.direction or ("" if is_assigned else "in"),
+            direction=feature.direction or ("" if is_own else "in"),
             invalid_default="",
             term=((feature.variable, Fraction(1)),),
             constants=(feature.variable,) if number.is_frozen else (),

@@ -93,7 +93,7 @@ class Symbol(Struct, frozen=True):
 
 Scope = Callable[[str, str], Symbol | None]
 """Looks up a name and the id of its element, which may be empty; None if they are unknown."""
-FINITE_ADVICE = "use Booleans, enumerations and Integers for a contract"
+FINITE_ADVICE = "compare Booleans, enumerations and sums of numbers for a contract"
 EMPTY_ADVICE = "write the condition as its text, or delete it if there is none"
 """Advice on a condition without text."""
 ELSEWHERE_ADVICE = (
@@ -475,6 +475,8 @@ def _equal_number(text: str, symbol: Symbol, value: Linear) -> Formula:
     """Return the formula that a feature has one of its values."""
     if symbol.quantity is not None and len(symbol.quantity.values) == 1:
         return f.TRUE
+    if isinstance(symbol.domain, IntegerDomain):
+        return f.eq(symbol.formula, Const(int(value.number)))
     assert isinstance(symbol.domain, EnumerationDomain)
     point = Interval(Cut(value.number), Cut(value.number, is_above=True))
     return f.eq(symbol.formula, _find_region(text, symbol.domain, point))

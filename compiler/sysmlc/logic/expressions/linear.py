@@ -174,6 +174,22 @@ def iter_comparisons(
             yield values, _normalise(expression.op, form)
 
 
+def list_comparisons(expression: Binary, find: Lookup) -> list[Comparison]:
+    """Return a comparison of numbers in canonical form; none if the units differ."""
+    try:
+        return [comparison for _, comparison in iter_comparisons(expression, find)]
+    except UnitError:
+        return []
+
+
+def read_form(expression: Expression, find: Lookup) -> Linear | None:
+    """Return the linear form of an expression; None without one or if its units differ."""
+    try:
+        return read_linear(expression, find)
+    except UnitError:
+        return None
+
+
 def _normalise(op: str, form: Linear) -> Comparison:
     """Return the comparison of a form with zero."""
     names = sorted(form.factors)

@@ -8,13 +8,11 @@ same ones for features that connectors join. Differences and sums that are compa
 
 import re
 from collections import Counter, defaultdict
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from fractions import Fraction
-from functools import cached_property, partial, reduce
+from functools import cached_property, partial
 from itertools import islice, product
-from math import ceil, floor, gcd
 
-from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.ir import Edge, Element, Graph, Kind, query
@@ -43,13 +41,14 @@ from sysmlc.logic.expressions.linear import (
     Linear,
     Lookup,
     Number,
-    UnitError,
-    iter_comparisons,
-    read_linear,
+    list_comparisons,
+    read_form,
     read_quantity,
 )
 from sysmlc.logic.expressions.named_elements import VALUE_KINDS
+from sysmlc.logic.expressions.number_uses import MAX_VALUES, Updates, find_other_uses
 from sysmlc.logic.expressions.parsing import parse_expression
+from sysmlc.logic.expressions.ranges import Bounds, find_bounds
 from sysmlc.logic.regions import (
     LINE,
     Cut,
@@ -69,10 +68,14 @@ COMPARISON = re.compile(rf"(?<![\w.]){_OPERAND}\s*(?:<=|>=|==|!=|=|<|>)\s*{_OPER
 """A comparison of sums in a formula or a sentence, without parentheses."""
 _PATH = "\0"
 """Separates the key of a feature from the path to it."""
+_CALCULATED = re.compile(
+    r"((?:\w|\.|::)*\w)[')\s]*[-+*/%<>=]|[-+*/%<>=][(\s]*([^\W\d](?:\w|\.|::)*)"
+)
+"""A name beside an operator, in the rest of a formula."""
 _MAX_MEANINGS = 64
 """Most combinations of equally named features that one formula may compare."""
-_MAX_VALUES = 64
-"""Most assigned constants of a feature that are told apart."""
+_MAX_ROUNDS = 3
+"""How often the cuts of an assigned feature are moved to those that it is computed from."""
 
 
 def parse_comparison(text: str) -> Expression | None:
@@ -81,40 +84,6 @@ def parse_comparison(text: str) -> Expression | None:
         return parse_expression(text)
     except ExpressionError:
         return None
-
-
-class _Updates(Struct, frozen=True):
-    """How the behaviours of a model change a feature: they assign numbers, or add numbers to it.
-
-    The initial value is one of the numbers.
-    """
-
-    values: tuple[Linear, ...]
-    steps: tuple[Fraction, ...] = ()
-
-    def list_points(self, cuts: Iterable[Cut]) -> tuple[Fraction, ...]:
-        """Return the values that are told apart; all between the outer cuts.
-
-        None are if nothing changes the feature, or if there are too many.
-        """
-        numbers = sorted({value.number for value in self.values})
-        if not self.steps:
-            return tuple(numbers) if len(numbers) > 1 else ()
-        differences = (number - numbers[0] for number in numbers[1:])
-        width = reduce(_find_common_measure, (*self.steps, *differences))
-        if not width:
-            return ()
-        ends = [*numbers, *(cut.number for cut in cuts)]
-        first = numbers[0] + width * floor((min(ends) - numbers[0]) / width)
-        last = numbers[0] + width * ceil((max(ends) - numbers[0]) / width)
-        count = int((last - first) / width) + 1
-        return tuple(first + width * i for i in range(count)) if count <= _MAX_VALUES else ()
-
-
-def _find_common_measure(left: Fraction, right: Fraction) -> Fraction:
-    """Return the greatest number of which both are multiples."""
-    scale = left.denominator * right.denominator
-    return Fraction(gcd(int(left * scale), int(right * scale)), scale)
 
 
 class Thresholds:
@@ -131,6 +100,8 @@ class Thresholds:
             self._add_condition(expression, self.find_number)
         for text in self._iter_formal_texts():
             self._add_formal_text(text)
+        for _ in range(_MAX_ROUNDS):
+            self._pull_cuts_back()
         self.limits = read_limits(graph, self.find_number, self.is_integral, self._joined_keys)
         for key, values in self._values.items():
             # Sums need a feature with several values, also if nothing compares it by itself.
@@ -151,7 +122,25 @@ class Thresholds:
         number = self._read_declared(element)
         if number is None or number.is_constant:
             return number
-        return replace(number, values=self._values.get(number.key, ()))
+        values = self._values.get(number.key, ())
+        return replace(number, values=values or self._list_range(element))
+
+    def _list_range(self, element: Element) -> tuple[Linear, ...]:
+        """Return the values of an Integer with a small declared range."""
+        low, high = self._find_bounds(element)
+        if low is None or high is None or high - low >= MAX_VALUES:
+            return ()
+        return tuple(
+            Linear(number=Fraction(n), unit="" if n else None) for n in range(low, high + 1)
+        )
+
+    def _find_bounds(self, element: Element) -> Bounds:
+        """Return the declared bounds of an Integer; none for other elements."""
+        if find_number_type(self._graph, element) != "integer":
+            return None, None
+        type_ = query.type_of(self._graph, element)
+        family = [] if type_ is None else [type_, *query.generals(self._graph, type_)]
+        return find_bounds(self._graph, element, family, {}, None)
 
     def _read_declared(self, element: Element) -> Number | None:
         """Return a constant with its value, or a feature without the values that it may have."""
@@ -180,7 +169,7 @@ class Thresholds:
         return {key: write.values for key, write in self._updates.items() if not write.steps}
 
     @cached_property
-    def _updates(self) -> dict[str, "_Updates"]:
+    def _updates(self) -> dict[str, Updates]:
         """The initial values and the assignments of the features that nothing else changes."""
         values: dict[str, list[Linear]] = defaultdict(list)
         steps: dict[str, list[Fraction]] = defaultdict(list)
@@ -196,7 +185,7 @@ class Thresholds:
                 decided.add(number.key)
         for key, value in self._iter_writes():
             self._written.add(key)
-            form = None if value is None else _read(value, self._find_declared)
+            form = None if value is None else read_form(value, self._find_declared)
             if form is not None and not form.factors:
                 values[key].append(form)
             elif form is not None and form.factors == {key: 1}:
@@ -204,10 +193,10 @@ class Thresholds:
             else:
                 open_keys.add(key)
         return {
-            key: _Updates(tuple(distinct.values()), tuple(steps[key]))
+            key: Updates(tuple(distinct.values()), tuple(steps[key]))
             for key, numbers in values.items()
             if key in decided - open_keys
-            and 0 < len(distinct := {(n.number, n.unit): n for n in numbers}) <= _MAX_VALUES
+            and 0 < len(distinct := {(n.number, n.unit): n for n in numbers}) <= MAX_VALUES
         }
 
     @cached_property
@@ -287,6 +276,17 @@ class Thresholds:
         if number is not None and not number.is_constant:
             yield number.key, value
 
+    @cached_property
+    def _other_uses(self) -> set[str]:
+        """The keys of the numbers that are used otherwise than in comparisons and own updates."""
+        used: set[str] = set()
+        for element in self._graph:
+            for key in _TEXT_ATTRIBUTES:
+                value = element.attrs.get(key)
+                if isinstance(value, ParsedText):
+                    used |= find_other_uses(value.tree, self._find_declared)
+        return used
+
     def _iter_formal_texts(self) -> Iterator[str]:
         for element in self._graph:
             body = element.attrs.get("body")
@@ -304,28 +304,36 @@ class Thresholds:
                 continue
             features = dict.fromkeys(map(_last_name, _list_features(expression)))
             # The subject in ``heater.temp < 22 [K]`` is no number.
-            names = [name for name in features if name in self._numbers_by_name]
-            candidates = [self._numbers_by_name[name] for name in names]
+            names = [name for name in features if self._find_numbers(name)]
+            candidates = [self._find_numbers(name) for name in names]
             for meaning in islice(product(*candidates), _MAX_MEANINGS):
                 numbers = dict(zip(names, meaning, strict=True))
-                self._add_condition(expression, partial(_find_by_name, numbers))
+                find = partial(_find_by_name, numbers)
+                self._add_condition(expression, find)
+                self._other_uses |= find_other_uses(expression, find)
+        for match in _CALCULATED.finditer(COMPARISON.sub(" ", text)):
+            name = last_name(match[1] or match[2])
+            self._other_uses |= {number.key for number in self._find_numbers(name)}
+
+    def _find_numbers(self, name: str) -> list[Number]:
+        """Return the different numbers that a name may denote."""
+        numbers = [(item.id, self.number_of(item)) for item in self._elements_by_name.get(name, ())]
+        distinct = {number.key or id: number for id, number in numbers if number is not None}
+        return list(distinct.values())
 
     @cached_property
-    def _numbers_by_name(self) -> Mapping[str, list[Number]]:
-        numbers: dict[str, dict[str, Number]] = defaultdict(dict)
-        for kind in (*VALUE_KINDS, Kind.INSTANCE):
-            for element in self._graph.of_kind(kind):
-                number = self.number_of(element)
-                if number is not None and element.name:
-                    numbers[element.name][number.key or element.id] = number
-        return {name: list(items.values()) for name, items in numbers.items()}
+    def _elements_by_name(self) -> Mapping[str, list[Element]]:
+        elements: dict[str, list[Element]] = defaultdict(list)
+        for element in self._graph.of_kind(*VALUE_KINDS, Kind.INSTANCE):
+            elements[element.name].append(element)
+        return elements
 
     # -- cuts --------------------------------------------------------------------------------------
 
     def _add_condition(self, expression: Expression, find: Lookup) -> None:
         if not isinstance(expression, Binary):
             return
-        for comparison in _list_comparisons(expression, _distinguish_paths(expression, find)):
+        for comparison in list_comparisons(expression, _distinguish_paths(expression, find)):
             term, number = _merge_paths(comparison.term), comparison.number
             if not term:
                 continue
@@ -347,6 +355,25 @@ class Thresholds:
                 if text:
                     self._labels[comparison.term].setdefault(comparison.number, text)
 
+    def _pull_cuts_back(self) -> None:
+        """Cut a feature where the value that an assignment computes from it meets a cut.
+
+        The cut b of ``x := 2*y + c`` is the cut (b - c)/2 of y.
+        """
+        for key, value in list(self._iter_writes()):
+            form = None if value is None else read_form(value, self._find_declared)
+            if form is None or len(form.factors) != 1 or form.factors == {key: 1}:
+                continue
+            ((source, factor),) = form.factors.items()
+            target, term = ((key, Fraction(1)),), ((source, Fraction(1)),)
+            for cut in list(self._cuts.get(target, ())):
+                interval = Interval(cut).move(1 / factor, -form.number / factor)
+                interval = interval.round_up() if self.is_integral(term) else interval
+                for end in (interval.low, interval.high):
+                    if end is not None:
+                        self._cuts[term][end] = None
+                        self._units.setdefault(term, (form.unit or "", form.symbol))
+
     def is_integral(self, term: Term) -> bool:
         """Whether a term has only Integers as values."""
         return all(
@@ -363,6 +390,8 @@ class Thresholds:
 
     def _make_domain(self, term: Term) -> EnumerationDomain:
         cuts, limits = list(self._cuts[term]), self.limits.everywhere.get(term, LINE)
+        if len(term) == 1:
+            limits = limits.intersect(self._find_range(term[0][0])) or limits
         updates = self._updates.get(term[0][0]) if len(term) == 1 else None
         points = () if updates is None else updates.list_points(cuts)
         is_integral = self.is_integral(term)
@@ -381,6 +410,16 @@ class Thresholds:
         unit, symbol = self._units.get(term, ("", ""))
         return make_region_domain(Regions(intervals, unit, is_integral, labels, symbol))
 
+    def _find_range(self, key: str) -> Interval:
+        """Return the numbers in a declared range of a feature, or of one that is joined to it."""
+        bounds = [self._find_bounds(member) for member in self._members[key]]
+        lows = [low for low, _ in bounds if low is not None]
+        highs = [high for _, high in bounds if high is not None]
+        return Interval(
+            Cut(Fraction(min(lows))) if len(lows) == len(bounds) else None,
+            Cut(Fraction(max(highs) + 1)) if len(highs) == len(bounds) else None,
+        )
+
     def is_assigned(self, number: Number) -> bool:
         """Whether a behaviour assigns the feature."""
         return number.key in self._written
@@ -393,6 +432,63 @@ class Thresholds:
     def domain_of(self, number: Number) -> EnumerationDomain | None:
         """Return the regions of a feature; None if nothing compares it."""
         return self.domains.get(((number.key, Fraction(1)),))
+
+    def is_only_compared(self, number: Number) -> bool:
+        """Whether regions describe all that the model does with an Integer."""
+        return number.key in self._only_compared
+
+    @cached_property
+    def _only_compared(self) -> set[str]:
+        """The keys of the Integers of which the regions describe all that the model does."""
+        keys = {key for key, members in self._members.items() if self._is_regional(key, members)}
+        sums = [{key for key, _ in term} for term in self._cuts if len(term) > 1]
+        while True:
+            # A sum has regions only if none of its Integers has a range.
+            mixed = [names & keys for names in sums if any(map(self._is_ranged, names - keys))]
+            if not any(mixed):
+                return keys
+            keys -= set().union(*mixed)
+
+    def _is_ranged(self, key: str) -> bool:
+        return find_number_type(self._graph, self._graph[key]) == "integer"
+
+    @cached_property
+    def _members(self) -> Mapping[str, list[Element]]:
+        """The features that have one value, by their key."""
+        members: dict[str, list[Element]] = defaultdict(list)
+        for element in self._graph.of_kind(*VALUE_KINDS):
+            number = self._read_declared(element)
+            if number is not None and number.key:
+                members[number.key].append(element)
+        return members
+
+    def _is_regional(self, key: str, members: list[Element]) -> bool:
+        """Whether a feature is compared and changed only in ways that regions describe."""
+        updates, is_assigned = self._updates.get(key), key in self._written
+        if key in self._other_uses or (is_assigned and updates is None):
+            return False
+        if any(None not in self._find_bounds(member) for member in members):
+            return False
+        terms = [term for term in self._cuts if any(key == name for name, _ in term)]
+        if not terms or any(member.kind is not Kind.PROPERTY for member in members):
+            return False
+        if updates is None or not updates.steps:
+            return True
+        term = ((key, Fraction(1)),)
+        return terms == [term] and self._has_regions_for_steps(term, updates)
+
+    def _has_regions_for_steps(self, term: Term, updates: Updates) -> bool:
+        """Whether each step leads from a region into a single one."""
+        regions = self.domains[term].regions
+        return (
+            regions is not None
+            and bool(updates.list_points(self._cuts[term]))
+            and all(
+                any(target.includes(source.move(Fraction(1), step)) for target in regions.intervals)
+                for source in regions.intervals
+                for step in updates.steps
+            )
+        )
 
     def list_terms(
         self, variables: Mapping[str, list[str]]
@@ -484,20 +580,6 @@ def _is_antisymmetric(term: Term) -> bool:
     """Whether a term is the difference of one feature in two objects."""
     (first, _), (second, factor) = term if len(term) == 2 else (("", 1), (" ", 1))
     return first == second and factor == -1
-
-
-def _list_comparisons(expression: Binary, find: Lookup) -> list[Comparison]:
-    try:
-        return [comparison for _, comparison in iter_comparisons(expression, find)]
-    except UnitError:
-        return []
-
-
-def _read(expression: Expression, find: Lookup) -> Linear | None:
-    try:
-        return read_linear(expression, find)
-    except UnitError:
-        return None
 
 
 def _write_side(side: Expression) -> str:

@@ -11,11 +11,19 @@ from sysmlc.ir.expressions import Binary
 from sysmlc.logic.components.names import ComponentNames, Meaning
 from sysmlc.logic.components.objects import ComponentError
 from sysmlc.logic.composition.free_outputs import find_owner
-from sysmlc.logic.contract import BooleanDomain, Contract, Domain, Owner, Variable
+from sysmlc.logic.contract import (
+    BooleanDomain,
+    Contract,
+    Domain,
+    EnumerationDomain,
+    Owner,
+    Variable,
+)
 from sysmlc.logic.domains import contains
 from sysmlc.logic.expressions.context import Context, context_of, find_literal
 from sysmlc.logic.expressions.elaboration import ElaborationError, Symbol, compare_regions
 from sysmlc.logic.expressions.features import Feature
+from sysmlc.logic.expressions.linear import Number
 from sysmlc.logic.expressions.thresholds import COMPARISON, parse_comparison
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Var, prime, var, variable_names
 from sysmlc.logic.requirements.statements import (
@@ -74,6 +82,9 @@ class Scope(Struct, frozen=True):
         meaning, feature = self._find_meaning(name), self.find_feature(name)
         quantity = None if feature is None else feature.number
         if meaning is not None:
+            is_number = isinstance(meaning.domain, EnumerationDomain) and meaning.domain.regions
+            if quantity is None and is_number and isinstance(meaning.formula, Var):
+                quantity = Number(meaning.formula.name)
             return Symbol(meaning.formula, meaning.domain, quantity=quantity)
         if feature is not None:
             constant = self.constants.get(feature.variable)
