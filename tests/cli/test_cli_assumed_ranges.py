@@ -143,6 +143,58 @@ def test_a_range_in_a_part_has_the_name_of_the_author(check):
     assert line.startswith("R0: holds within tank.level in 0..15 (assumed): ")
 
 
+# -- regions -------------------------------------------------------------------------------------
+
+
+def make_counter(initial, *transitions):
+    """Return a block with an Integer ``n``, which starts with a value, and transitions from A."""
+    ways = " ".join(f"transition first A accept Go {transition};" for transition in transitions)
+    states = f"exhibit state M {{ entry; then A; state A; state C; {ways} }}"
+    return f"attribute n : Integer := {initial}; {states}"
+
+
+@pytest.mark.parametrize(
+    ("block", "true", "false"),
+    [
+        (make_counter(0, "do assign n := n + 1 then A", "if n >= 3 then C"), "n >= 0", "n <= 40"),
+        (make_counter(0, "if n < 4 do assign n := n + 1 then A"), "n <= 4", "n <= 3"),
+        (make_counter(0, "if n < 4 do assign n := n + 3 then A"), "n <= 6", "n != 6"),
+        (make_counter(3, "do assign n := n - 2 then A", "if n < 0 then C"), "n != 2", "n > 0"),
+        (make_counter(1, "if n < 5 do assign n := 90 then A"), "n <= 90", "n < 90"),
+        (make_counter(0, "then A", "if n > 20 then C"), "state=A", "n > 0"),
+    ],
+)
+def test_an_integer_that_is_only_compared_needs_no_range(check, block, true, false):
+    assert [line[:10] for line in check(block, f"G ({true})", f"G ({false})")] == [
+        "R0: holds:",
+        "R1: broken",
+    ]
+
+
+def test_a_natural_that_is_only_compared_is_not_negative(check):
+    block = LEVEL.replace("Integer", "Natural").replace("level * level > level + 400", "level < 0")
+    assert check(block, "G state=B", "G (level >= 0)") == [
+        "R0: holds: G (state=B)",
+        "R1: holds: G level >= 0",
+    ]
+
+
+@pytest.mark.parametrize("used", ["a * b < 3", "(a + b) * 2 < 6"])
+def test_numbers_that_a_formula_multiplies_have_ranges(check, used):
+    block = make_counter(0, "if a > 2 and b > 2 then C")
+    block = f"in attribute a : Integer; in attribute b : Integer; {block}"
+    (line,) = check(block, f"G (state=A & {used} -> X state=A)")
+    assert "in 0..15" in line
+
+
+def test_a_number_in_a_requirement_is_no_constraint_of_the_block(check, workspace):
+    check(make_counter(0, "if n < 3 do assign n := 5 then C"), "n < 4")
+    text = workspace.read("model.sysml").replace('language "ltl" /* n < 4 */', "b.n < 4")
+    workspace.write("model.sysml", text)
+    result = workspace.sysmlc("contracts", "check", "-v", "model.sysml")
+    assert "R0: broken: G n < 4" in result.stdout
+
+
 # -- conditions ----------------------------------------------------------------------------------
 
 ROOM = """

@@ -4,7 +4,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 
 from msgspec import Struct
 
-from sysmlc.ir import Edge, Element, Graph, Kind
+from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.ir.expressions import (
     Binary,
     Expression,
@@ -74,6 +74,9 @@ def _iter_parts(graph: Graph) -> Iterator[tuple[Element, Expression]]:
     for constraint in graph.of_kind(Kind.CONSTRAINT):
         body, block = constraint.attrs.get("body"), graph.owner(constraint)
         if block is None or block.kind not in (Kind.CLASS, Kind.COMPONENT, Kind.DATA_TYPE):
+            continue
+        # What a requirement demands, or assumes, is no fact.
+        if query.is_requirement(block):
             continue
         is_lasting = constraint.subkind not in _MOMENTARY
         if is_lasting and isinstance(body, ParsedText) and not isinstance(body.tree, tuple):

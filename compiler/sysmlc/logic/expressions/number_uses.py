@@ -33,7 +33,7 @@ class Updates(Struct, frozen=True):
         if not self.steps:
             return tuple(numbers) if len(numbers) > 1 else ()
         differences = (number - numbers[0] for number in numbers[1:])
-        width = reduce(_find_common_measure, (*self.steps, *differences))
+        width = reduce(_find_common_measure, (*self.steps, *differences), Fraction(0))
         if not width:
             return ()
         ends = [*numbers, *(cut.number for cut in cuts)]
