@@ -110,10 +110,10 @@ package Plant {
         attribute level : Integer default = 0;
         perform action act {
             attribute count : Integer default = 0;
-            constraint limit { language "LTL" /* G (count <= 4) */ }
+            constraint limit { language "LTL" /* G (count * count <= 16) */ }
             first start;
             then decide;
-                if level > 3 then a;
+                if level * level > 9 then a;
                 else b;
             action a;
             action b;
