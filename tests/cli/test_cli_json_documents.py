@@ -17,9 +17,10 @@ from sysmlc.driver import registry
 MODELS = [folder for folder in sorted(EXAMPLES.iterdir()) if folder.name != "robots"]
 MODELS += sorted(EXAMPLES.glob("robots/hall.*"))
 FORMATS = {
-    schema["properties"]["format"]["const"]: name
+    version: name
     for name, schema in SCHEMAS.items()
-    if "format" in schema.get("properties", {})
+    if (form := schema.get("properties", {}).get("format")) is not None
+    for version in form.get("enum") or [form["const"]]
 }
 
 
