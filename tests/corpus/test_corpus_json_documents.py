@@ -31,6 +31,26 @@ machine-service = "RecipePrimitives::MachineService"
 machine-function = "RecipePrimitives::MachineFunction"
 """
 """The ICE laboratory has recipes, but not the names of the profile."""
+NUMBERS = """package Home {
+    private import ScalarValues::*;
+    private import SI::*;
+    part def Heater {
+        constant attribute low : ISQ::ThermodynamicTemperatureValue = 18 ['°C_abs'];
+        constant attribute goal : Real;
+        in attribute temp : ISQ::ThermodynamicTemperatureValue;
+        in attribute load : Real;
+        in attribute count : Integer;
+        exhibit state modes {
+            entry; then Off;
+            state Off;
+            state On;
+            transition first Off if temp < low and load < goal then On;
+            transition first On if temp >= 22 ['°C_abs'] or count > 3 then Off;
+        }
+    }
+}
+"""
+"""A model whose contract has all members about numbers."""
 READ_ONLY = {
     "neutral-contract",
     "sysmlc-config",
@@ -103,6 +123,9 @@ def find_documents(corpus: Path, folder: Path) -> Iterator[Document]:
     yield from compile_documents(laboratory, folder / "ice", "--config", config)
     (folder / "commands").mkdir()
     yield from command_documents(folder / "commands")
+    heater = folder / "numbers.sysml"
+    heater.write_text(NUMBERS, encoding="utf-8")
+    yield from compile_documents(heater, folder / "numbers")
     rules = load_full_catalogue()
     # A machine with an id of a plant, whose elements no recipe uses.
     texts = [rich_recipe(), *read_graphs(rules["SM628"])]
