@@ -110,9 +110,10 @@ class Contracts(Struct, frozen=True):
 
 def _add_facts(graph: Graph, contract: Contract) -> Contract:
     """Return the contract with the assumption that its numbers do not contradict one another."""
-    if not any(variable.term for variable in contract.variables):
+    element = graph.get(contract.origin)
+    if element is None or not any(variable.term for variable in contract.variables):
         return contract
-    origin = query.definition_of(graph, graph[contract.origin])
+    origin = query.definition_of(graph, element)
     if origin.kind in query.BEHAVIORS:
         origin = find_context_classifier(graph, origin) or origin
     stated = context_of(graph, origin).facts
