@@ -38,15 +38,24 @@ Fact = tuple[Term, Interval]
 class Cells(Struct, frozen=True):
     """What is known about the regions of numbers in each step.
 
-    ``orders`` are variables for differences of constants, ``possible`` is true in each step,
-    ``constant`` are the variables that never change, ``unrelated`` those of groups that are too
-    large, or whose numbers the system decides.
+    ``orders`` are variables for differences of constants, ``possible`` is true in each step, and
+    ``constant`` are the variables that never change. ``unrelated`` are the inputs of groups that
+    are too large, or of which the system decides a number: their values may contradict each other.
     """
 
     orders: tuple[Variable, ...] = ()
     possible: tuple[Formula, ...] = ()
     constant: tuple[Variable, ...] = ()
-    unrelated: tuple[Variable, ...] = ()
+    unrelated: frozenset[str] = frozenset()
+
+    def mark_unrelated(self, variables: tuple[Variable, ...]) -> tuple[Variable, ...]:
+        """Return the variables; unrelated ones are doubtful, as conditions without formula are."""
+        return tuple(
+            replace(variable, condition=variable.wording or variable.name)
+            if variable.name in self.unrelated
+            else variable
+            for variable in variables
+        )
 
     def describe(self, origin: str) -> tuple[Conjunct, ...]:
         """Return the facts about each step, with *origin* for those about several numbers."""
@@ -95,7 +104,7 @@ def find_cells(
     orders = list(_compare_constants(numeric)) if has_orders else []
     numeric = orders + numeric
     possible: list[Formula] = []
-    unrelated: list[Variable] = []
+    unrelated: set[str] = set()
     keys = {variable.name: {key for key, _ in variable.term} for variable in numeric}
     relations = [
         [name for name in keys if key in keys[name]] for key in sorted(set().union(*keys.values()))
@@ -112,11 +121,11 @@ def find_cells(
         excluded = _exclude(members, own_facts)
         is_decided = any(member.owner is Owner.SYSTEM for member in members)
         if excluded is None or (is_decided and excluded):
-            unrelated += members
+            unrelated |= {item.name for item in members if item.owner is Owner.ENVIRONMENT}
         else:
             possible += (f.negate(combination) for combination in excluded)
     constant = (v for v in numeric if {key for key, _ in v.term} <= set(v.constants))
-    return Cells(tuple(orders), tuple(possible), tuple(constant), tuple(unrelated))
+    return Cells(tuple(orders), tuple(possible), tuple(constant), frozenset(unrelated))
 
 
 def _exclude(members: list[Variable], facts: list[Fact]) -> list[Formula] | None:

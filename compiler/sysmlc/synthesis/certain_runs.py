@@ -5,11 +5,12 @@ run is certain if its steps are possible whatever the values of such conditions 
 is stopped.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from msgspec import Struct
 from msgspec.structs import replace
 
+from sysmlc.logic import domains
 from sysmlc.logic import formula as f
 from sysmlc.logic.basis import find_cone
 from sysmlc.logic.components.derivation import ComponentBehaviour
@@ -18,6 +19,7 @@ from sysmlc.logic.contract import (
     Class,
     Conjunct,
     Contract,
+    Domain,
     IntegerDomain,
     Owner,
     Source,
@@ -45,6 +47,8 @@ class CertainRuns(Struct, frozen=True):
 
     conditions: tuple[tuple[str, ...], ...] = ()
     clamps: tuple[tuple[str, Formula], ...] = ()
+    domains: Mapping[str, Domain] = {}
+    """The values of the inputs; a Boolean that remembers one is not listed."""
 
     @property
     def doubts(self) -> tuple[str, ...]:
@@ -57,9 +61,10 @@ class CertainRuns(Struct, frozen=True):
 
     def ignore(self, name: str) -> "CertainRuns":
         """Return the restriction that ignores a variable."""
-        return CertainRuns(
-            tuple(condition for condition in self.conditions if condition[0] != name),
-            tuple(clamp for clamp in self.clamps if clamp[0] != name),
+        return replace(
+            self,
+            conditions=tuple(item for item in self.conditions if item[0] != name),
+            clamps=tuple(clamp for clamp in self.clamps if clamp[0] != name),
         )
 
     @property
@@ -102,7 +107,10 @@ class CertainRuns(Struct, frozen=True):
                 return None
             formula = fact.formula
             for name in names:
-                cases = (substitute(formula, {name: value}) for value in (f.TRUE, f.FALSE))
+                domain = self.domains.get(name, BooleanDomain())
+                cases = (
+                    substitute(formula, {name: Const(value)}) for value in domains.values(domain)
+                )
                 formula = f.both(*cases)
             guard = ends_here if primed else is_violated
             is_step = fact.class_ is Class.SAFETY
@@ -131,10 +139,11 @@ def find_certain_runs(
     variables = (*contract.variables, *requirements.variables)
     named = f.variable_names(*(conjunct.formula for conjunct in about))
     cone = find_cone(named, (contract, requirements), behaviour.list_reads())
-    conditions = dict.fromkeys(v.name for v in variables if v.condition and v.name in cone)
+    conditions = {v.name: v.domain for v in variables if v.condition and v.name in cone}
     return CertainRuns(
         tuple((name, *_iter_memories(contract, name)) for name in conditions),
         tuple(clamp for clamp in _iter_clamps(behaviour) if clamp[0] in cone),
+        conditions,
     )
 
 

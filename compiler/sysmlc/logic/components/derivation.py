@@ -17,7 +17,7 @@ from sysmlc.logic.activities.derivation import derive_run_update, derive_token_u
 from sysmlc.logic.activities.step_formulas import PerformanceFormulas
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.basis import Reads
-from sysmlc.logic.cells import Fact, find_cells
+from sysmlc.logic.cells import Cells, Fact, find_cells
 from sysmlc.logic.components.component import Component
 from sysmlc.logic.components.machines import MachineWrite, PlacedMachine, find_unread_features
 from sysmlc.logic.components.names import Atom, finish_name, iter_atoms
@@ -125,7 +125,8 @@ class _Description:
         formulas = self._make_formulas(name)
         first = self._find_first_conditions(formulas.graph)
         self._derive_performances(formulas, first)
-        orders, facts = self._derive_cells()
+        cells = self._find_cells()
+        facts = cells.describe(self.component.subject.id)
         self._conjuncts += facts
         for machine in self.machines:
             self._conjuncts += machine.iter_steps()
@@ -147,10 +148,12 @@ class _Description:
         contract = Contract(
             name,
             self.component.subject.id,
-            (
-                *self._list_variables(formulas, wiring.variables).values(),
-                *late.variables,
-                *orders,
+            cells.mark_unrelated(
+                (
+                    *self._list_variables(formulas, wiring.variables).values(),
+                    *late.variables,
+                    *cells.orders,
+                )
             ),
             tuple(
                 replace(assumption, source=Source.DERIVED)
@@ -190,19 +193,15 @@ class _Description:
             limits=tuple(self.tree.iter_facts()),
         )
 
-    def _derive_cells(self) -> tuple[tuple[Variable, ...], tuple[Conjunct, ...]]:
-        """Return which regions numbers can be in at once, and that constants never change.
-
-        The first result has the variables for the order of constants.
-        """
-        variables = [
-            replace(feature.variable, owner=Owner.SYSTEM)
-            if self._is_decided(slot)
-            else replace(feature.variable, owner=Owner.ENVIRONMENT)
-            for slot, feature in self.tree.used_slots.items()
-        ]
-        cells = find_cells(variables, list(self.tree.iter_facts()))
-        return cells.orders, cells.describe(self.component.subject.id)
+    def _find_cells(self) -> Cells:
+        """Return which regions the numbers of the component can be in at once."""
+        slots = self.tree.used_slots.items()
+        inputs = (item.variable for slot, item in slots if not self._is_decided(slot))
+        decided = (item.variable for slot, item in slots if self._is_decided(slot))
+        return find_cells(
+            [*(replace(item, owner=Owner.ENVIRONMENT) for item in inputs), *decided],
+            list(self.tree.iter_facts()),
+        )
 
     def _list_shared_writers(
         self, writers: Mapping[Slot, list[Writer]], ends: Mapping[str, Formula]
