@@ -21,7 +21,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.activities import derivation as activity_contract
 from sysmlc.logic.activities.action_names import name_actions
 from sysmlc.logic.activities.token_graph import TokenGraph
-from sysmlc.logic.cells import state_facts
+from sysmlc.logic.cells import add_facts_about_numbers
 from sysmlc.logic.classification import classify
 from sysmlc.logic.components.derivation import ComponentBehaviour
 from sysmlc.logic.contract import (
@@ -38,11 +38,7 @@ from sysmlc.logic.feature_writes import WriterIndex
 from sysmlc.logic.formal_texts import describe_error, is_formal_constraint, read_formal
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines import derivation as statemachine
-from sysmlc.logic.machines.reader import (
-    MachineOptions,
-    find_context_classifier,
-    read_machine,
-)
+from sysmlc.logic.machines.reader import MachineOptions, find_context_classifier, read_machine
 from sysmlc.logic.reduction.contract_reduction import add_history_bits, is_reducible
 from sysmlc.logic.requirements import derivation as requirements
 from sysmlc.logic.requirements.derivation import add_features
@@ -109,16 +105,14 @@ class Contracts(Struct, frozen=True):
 
 
 def _add_facts(graph: Graph, contract: Contract) -> Contract:
-    """Return the contract with the assumption that its numbers do not contradict one another."""
+    """Return a contract with what arithmetic and constraints say about the numbers in it."""
     element = graph.get(contract.origin)
     if element is None or not any(variable.term for variable in contract.variables):
         return contract
     origin = query.definition_of(graph, element)
     if origin.kind in query.BEHAVIORS:
         origin = find_context_classifier(graph, origin) or origin
-    stated = context_of(graph, origin).facts
-    facts = state_facts(contract.variables, stated, contract.origin)
-    return replace(contract, assumptions=(*contract.assumptions, *facts))
+    return add_facts_about_numbers(contract, context_of(graph, origin).facts)
 
 
 def _derive_machines(graph: Graph, options: MachineOptions, sink: Sink) -> Iterator[Contract]:

@@ -15,6 +15,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.contract import (
     Class,
     Conjunct,
+    Contract,
     EnumerationDomain,
     Owner,
     Source,
@@ -40,7 +41,7 @@ class Cells(Struct, frozen=True):
 
     ``orders`` are variables for differences of constants, ``possible`` is true in each step, and
     ``constant`` are the variables that never change. ``unrelated`` are the inputs of groups that
-    are too large, or of which the system decides a number: their values may contradict each other.
+    are too large, or of which the system keeps a number: their values may contradict each other.
     """
 
     orders: tuple[Variable, ...] = ()
@@ -78,13 +79,36 @@ class Cells(Struct, frozen=True):
 def state_facts(
     variables: Sequence[Variable], facts: Sequence[Fact], origin: str
 ) -> Iterator[Conjunct]:
-    """Yield what is true of numbers that the environment decides: initially, and in each step.
+    """Yield what is true of numbers that the environment decides: initially, and in each step."""
+    cells = find_cells(variables, facts, has_orders=False)
+    return _iter_assumptions(cells, variables, origin)
+
+
+def add_facts_about_numbers(contract: Contract, facts: Sequence[Fact]) -> Contract:
+    """Return the contract with the assumption that the inputs are possible numbers.
+
+    *facts* are what constraints state about them.
+    """
+    cells = find_cells(contract.variables, facts)
+    variables = (*contract.variables, *cells.orders)
+    assumptions = _iter_assumptions(cells, variables, contract.origin)
+    return replace(
+        contract,
+        variables=cells.mark_unrelated(variables),
+        assumptions=(*contract.assumptions, *assumptions),
+    )
+
+
+def _iter_assumptions(
+    cells: Cells, variables: Sequence[Variable], origin: str
+) -> Iterator[Conjunct]:
+    """Yield the facts about inputs alone: no environment can promise what the system decides.
 
     The conjuncts about a next step have primes: no step of the environment leads to other numbers.
     """
-    names = {variable.name for variable in variables if variable.owner is Owner.ENVIRONMENT}
-    for fact in find_cells(variables, facts, has_orders=False).describe(origin):
-        if not names.issuperset(f.variable_names(fact.formula)):
+    inputs = {variable.name for variable in variables if variable.owner is Owner.ENVIRONMENT}
+    for fact in cells.describe(origin):
+        if not inputs.issuperset(f.variable_names(fact.formula)):
             continue
         if f.has_primes(fact.formula):
             yield fact
@@ -119,13 +143,19 @@ def find_cells(
         if len(members) == 1 and not own_facts:
             continue
         excluded = _exclude(members, own_facts)
-        is_decided = any(member.owner is Owner.SYSTEM for member in members)
-        if excluded is None or (is_decided and excluded):
+        possible += (f.negate(combination) for combination in excluded or ())
+        # A number that the system keeps has one value in the region, not another in each step.
+        is_kept = any(not _has_only_points(m) for m in members if m.owner is Owner.SYSTEM)
+        if excluded is None or (is_kept and excluded):
             unrelated |= {item.name for item in members if item.owner is Owner.ENVIRONMENT}
-        else:
-            possible += (f.negate(combination) for combination in excluded)
     constant = (v for v in numeric if {key for key, _ in v.term} <= set(v.constants))
     return Cells(tuple(orders), tuple(possible), tuple(constant), frozenset(unrelated))
+
+
+def _has_only_points(variable: Variable) -> bool:
+    """Whether each region of a variable is a single number."""
+    regions = variable.domain.regions if isinstance(variable.domain, EnumerationDomain) else None
+    return regions is not None and all(map(regions.is_point, range(len(regions.intervals))))
 
 
 def _exclude(members: list[Variable], facts: list[Fact]) -> list[Formula] | None:

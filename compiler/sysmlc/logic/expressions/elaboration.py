@@ -94,6 +94,13 @@ class Symbol(Struct, frozen=True):
 Scope = Callable[[str, str], Symbol | None]
 """Looks up a name and the id of its element, which may be empty; None if they are unknown."""
 FINITE_ADVICE = "compare Booleans, enumerations and sums of numbers for a contract"
+CHOICE = "the lower region of "
+"""What precedes the text of an assigned sum in the name of the input that decides its region.
+
+The region of ``x + 1`` is not known if x is anywhere below a threshold.
+"""
+_SEVERAL = 2
+"""Regions between which such an input decides."""
 EMPTY_ADVICE = "write the condition as its text, or delete it if there is none"
 """Advice on a condition without text."""
 ELSEWHERE_ADVICE = (
@@ -532,14 +539,25 @@ def _elaborate_region(
     source = symbol.domain
     if not isinstance(source, EnumerationDomain) or source.regions is None:
         raise ElaborationError(Fault.UNSUPPORTED, f"'{text}' has no regions", text)
-    cases = [
-        Case(
-            f.eq(symbol.formula, Const(literal)),
-            _find_region(text, expected, interval.move(factor, form.number)),
-        )
-        for literal, interval in zip(source.literals, source.regions.intervals, strict=True)
-    ]
+    cases: list[Case] = []
+    for literal, interval in zip(source.literals, source.regions.intervals, strict=True):
+        is_source = f.eq(symbol.formula, Const(literal))
+        values = interval.move(factor, form.number)
+        targets = _list_regions(expected, values)
+        choice = scope(f"{CHOICE}{text}", "") if len(targets) == _SEVERAL else None
+        if choice is None:
+            cases.append(Case(is_source, _find_region(text, expected, values)))
+        else:
+            lower, upper = (Const(expected.literals[index]) for index in targets)
+            cases.append(Case(f.both(is_source, choice.formula), lower))
+            cases.append(Case(f.both(is_source, f.negate(choice.formula)), upper))
     return GuardedValue(tuple(cases), expected)
+
+
+def _list_regions(domain: EnumerationDomain, values: Interval) -> list[int]:
+    """Return the indices of the regions in which *values* can be."""
+    intervals = () if domain.regions is None else domain.regions.intervals
+    return [index for index, item in enumerate(intervals) if item.intersect(values) is not None]
 
 
 def _find_region(text: str, domain: EnumerationDomain, values: Interval) -> Formula:

@@ -8,6 +8,7 @@ from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.ir.expressions import (
     Binary,
     Expression,
+    Index,
     Member,
     Name,
     ParsedText,
@@ -125,9 +126,9 @@ def split_conjunction(expression: Expression) -> Iterator[Expression]:
 
 
 def iter_paths(node: object) -> Iterator[Name | Member]:
-    """Yield the names and the chains of features in an expression."""
+    """Yield the names and the chains of features in an expression; units are none."""
     if isinstance(node, Name | Member):
         yield node
         return
-    for child in list_children(node):
+    for child in [node.base] if isinstance(node, Index) else list_children(node):
         yield from iter_paths(child)

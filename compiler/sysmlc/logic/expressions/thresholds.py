@@ -302,7 +302,7 @@ class Thresholds:
             expression = parse_comparison(match[0])
             if expression is None:
                 continue
-            features = dict.fromkeys(map(_last_name, _list_features(expression)))
+            features = dict.fromkeys(map(_last_name, iter_paths(expression)))
             # The subject in ``heater.temp < 22 [K]`` is no number.
             names = [name for name in features if self._find_numbers(name)]
             candidates = [self._find_numbers(name) for name in names]
@@ -542,15 +542,7 @@ def thresholds_of(graph: Graph) -> Thresholds:
 
 def _is_resolved(text: ParsedText[Expression | tuple[Statement, ...]]) -> bool:
     """Whether all names have elements: not in ``G (x < 3)``, which may be read as a call of G."""
-    nodes = (node for node in walk_tree(text.tree) if isinstance(node, Name | Member))
-    return all(node.element for node in nodes)
-
-
-def _list_features(expression: Expression) -> list[Name | Member]:
-    """Return the names in an expression except those of units."""
-    nodes = list(walk_tree(expression))
-    units = [unit for node in nodes if isinstance(node, Index) for unit in walk_tree(node.index)]
-    return [node for node in nodes if isinstance(node, Name | Member) and node not in units]
+    return all(path.element for path in iter_paths(text.tree))
 
 
 def _distinguish_paths(expression: Expression, find: Lookup) -> Lookup:

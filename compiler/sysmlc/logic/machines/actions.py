@@ -27,6 +27,7 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Domain, Owner, Variable
 from sysmlc.logic.expressions.context import Context, find_symbol, report_range
 from sysmlc.logic.expressions.elaboration import (
+    CHOICE,
     ELSEWHERE_ADVICE,
     EMPTY_ADVICE,
     FINITE_ADVICE,
@@ -138,6 +139,8 @@ class ReadingContext:
 
     def find_symbol(self, name: str, element: str = "") -> Symbol | None:
         """Return the symbol for *name*: a property, an auxiliary variable or a literal."""
+        if name.startswith(CHOICE):
+            return Symbol(f.var(self._choice_for(name.removeprefix(CHOICE))), BooleanDomain())
         # A condition without meaning is replaced by the name of an input, which is resolved here.
         for variable in self.auxiliary.values():
             if variable.name == name:
@@ -184,6 +187,15 @@ class ReadingContext:
             variable = self.auxiliary[key]
             self.auxiliary[key] = replace(variable, condition=shown_text, reason=reason)
         return Unary("not", Name((name,))) if is_negated else Name((name,))
+
+    def _choice_for(self, text: str) -> str:
+        """Return the input that decides in which of two regions an assigned sum is."""
+        key = f"region of {text}"
+        name = self.input_for(key, f"{text} stays below", self.sharing.machine.id)
+        reason = "the regions of its features do not tell in which of two regions it is"
+        condition = f"the value of {text}"
+        self.auxiliary[key] = replace(self.auxiliary[key], condition=condition, reason=reason)
+        return name
 
     def output_for(self, key: str, name: str, origin: str) -> str:
         """Return the name of the Boolean output with this key; create the output on first use."""
