@@ -125,6 +125,8 @@ def find_cells(
     Without *has_orders*, nothing relates the orders of constants in different steps.
     """
     numeric = [variable for variable in variables if variable.term]
+    if not numeric:
+        return Cells()
     orders = list(_compare_constants(numeric)) if has_orders else []
     numeric = orders + numeric
     possible: list[Formula] = []

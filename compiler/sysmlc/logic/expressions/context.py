@@ -68,6 +68,16 @@ DEFAULT_OUTSIDE = rule(
 )
 
 
+BOUND_NUMBER = rule(
+    "SM435",
+    "bound-number-compared",
+    Severity.WARNING,
+    "'{name}' is {value} for ever, so that no comparison with it changes; the contract treats "
+    "'{name}' as an input that starts with this value",
+    help="write ':=' if that is its initial value, or 'constant' if it never changes",
+)
+
+
 class Context(Struct, frozen=True):
     """What the names of expressions mean inside one classifier."""
 
@@ -134,6 +144,7 @@ def find_symbol(context: Context, name: str, element: str = "") -> Symbol | None
         feature.domain,
         has_several_values=is_several,
         quantity=feature.number,
+        term=feature.term,
     )
 
 
@@ -173,6 +184,9 @@ def report_range(graph: Graph, feature: Feature, sink: Sink) -> None:
         sink.report(
             DEFAULT_OUTSIDE, subject, default=feature.invalid_default, name=name, domain=values
         )
+    if feature.is_bound:
+        name, value = feature.element.name, feature.element.attrs["default"]
+        sink.report(BOUND_NUMBER, graph.subject(feature.element), name=name, value=value)
     if feature.is_assumed and isinstance(domain, IntegerDomain):
         report_assumed_range(graph, feature.element, domain, sink)
 
@@ -379,6 +393,9 @@ class _FeatureTable(Mapping[str, Feature]):
             default=default,
             direction=feature.direction or ("" if is_own else "in"),
             invalid_default="",
+            is_bound=quantity is not None
+            and not is_assigned
+            and feature.element.attrs.get("default_kind") == "bound",
             term=((feature.variable, Fraction(1)),),
             constants=(feature.variable,) if number.is_frozen else (),
             restriction=self._find_restriction(number),

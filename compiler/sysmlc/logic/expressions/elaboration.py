@@ -89,6 +89,8 @@ class Symbol(Struct, frozen=True):
     has_several_values: bool = False
     quantity: Number | None = None
     """The number that the name stands for in sums and comparisons, if any."""
+    term: Term = ()
+    """The sum of variables whose region the name stands for, if any."""
 
 
 Scope = Callable[[str, str], Symbol | None]

@@ -71,6 +71,8 @@ class Feature(Struct, frozen=True):
     """Whether the multiplicity allows other than one value; such a feature has no domain."""
     wording: str = ""
     """The dotted name by which expressions reach a feature of a part; empty for others."""
+    is_bound: bool = False
+    """Whether ``=`` binds a number that conditions compare, as if it could change."""
     term: Term = ()
     """The variables of the numbers in a compared sum, or of the number; empty for others."""
     constants: tuple[str, ...] = ()

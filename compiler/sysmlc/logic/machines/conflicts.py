@@ -8,7 +8,7 @@ satisfy both guards. There are three kinds of conflict:
 - a transition is nested in the source of the other, so that it preempts the other.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations
 
 from sysmlc.diagnostics import Severity, Sink, rule
@@ -16,7 +16,8 @@ from sysmlc.ir import Graph
 from sysmlc.ir.expressions import Expression
 from sysmlc.logic import domains
 from sysmlc.logic import formula as f
-from sysmlc.logic.contract import Domain
+from sysmlc.logic.cells import Fact, find_cells
+from sysmlc.logic.contract import Owner, Variable
 from sysmlc.logic.evaluate import compile_evaluation
 from sysmlc.logic.expressions.elaboration import Scope, elaborate_condition, list_read
 from sysmlc.logic.expressions.parsing import GuardTerms
@@ -49,10 +50,12 @@ class TooManyValuationsError(Exception):
 class GuardComparison:
     """Compares guards of the transitions of one machine, with a bound on the total work."""
 
-    def __init__(self, scope: Scope) -> None:
+    def __init__(self, scope: Scope, facts: Sequence[Fact] = ()) -> None:
+        """Compare guards with names in *scope*; *facts* are what constraints say about numbers."""
         self._scope = scope
+        self._facts = facts
         self._remaining = MAX_VALUATIONS
-        self._guards: dict[str, tuple[Formula, dict[str, Domain]]] = {}
+        self._guards: dict[str, tuple[Formula, dict[str, Variable]]] = {}
         """The guard and change conditions of each transition, by its id, and their variables."""
 
     def are_compatible(self, left: Transition, right: Transition) -> bool:
@@ -61,22 +64,25 @@ class GuardComparison:
         The answer is yes if the comparison has more than ``_MAX_VALUATIONS_OF_PAIR`` valuations.
         Raises TooManyValuationsError beyond the bound for the machine.
         """
-        left_guard, left_domains = self._read_guard(left)
-        right_guard, right_domains = self._read_guard(right)
+        left_guard, left_variables = self._read_guard(left)
+        right_guard, right_variables = self._read_guard(right)
         formula = f.both(left_guard, right_guard)
         if formula == f.FALSE:
             return False
-        variables = left_domains | right_domains
-        count = domains.count(variables)
+        variables = left_variables | right_variables
+        cells = find_cells(variables.values(), self._facts)
+        formula = f.both(formula, *cells.possible)
+        values_by_name = {v.name: v.domain for v in (*variables.values(), *cells.orders)}
+        count = domains.count(values_by_name)
         if count > _MAX_VALUATIONS_OF_PAIR:
             return True
         self._remaining -= count
         if self._remaining < 0:
             raise TooManyValuationsError
         is_true = compile_evaluation(formula)
-        return any(is_true(values, None) for values in domains.valuations(variables))
+        return any(is_true(values, None) for values in domains.valuations(values_by_name))
 
-    def _read_guard(self, transition: Transition) -> tuple[Formula, dict[str, Domain]]:
+    def _read_guard(self, transition: Transition) -> tuple[Formula, dict[str, Variable]]:
         if transition.id not in self._guards:
             guards = [] if transition.guard is None else [transition.guard]
             changes = [o.condition for o in transition.occurrences if isinstance(o, OnChange)]
@@ -87,9 +93,9 @@ class GuardComparison:
             if changes:
                 holds = (elaborate_condition(change, self._scope) for change in changes)
                 formula = f.both(f.either(*holds), formula)
-            variables: dict[str, Domain] = {}
+            variables: dict[str, Variable] = {}
             for condition in (*guards, *changes):
-                variables |= _find_domains(condition, self._scope)
+                variables |= {v.name: v for v in _find_variables(condition, self._scope)}
             self._guards[transition.id] = formula, variables
         return self._guards[transition.id]
 
@@ -174,11 +180,12 @@ def can_be_simultaneous(left: Transition, right: Transition) -> bool:
     return bool(other_occurrences) or _can_coincide(left, right)
 
 
-def _find_domains(source: Expression, scope: Scope) -> Iterator[tuple[str, Domain]]:
-    """Yield the variables in the expression with their domains."""
+def _find_variables(source: Expression, scope: Scope) -> Iterator[Variable]:
+    """Yield the variables in the expression."""
     for _, symbol in list_read(source, scope):
         if symbol is not None and symbol.domain is not None:
-            yield from ((v.name, symbol.domain) for v in f.variables(symbol.formula))
+            for variable in f.variables(symbol.formula):
+                yield Variable(variable.name, Owner.ENVIRONMENT, symbol.domain, term=symbol.term)
 
 
 RACE = rule(

@@ -111,7 +111,7 @@ def read_machine(
         has_valid_targets(graph, raw_machine, sink) and combine_joins(graph, raw_machine, sink)
     ):
         return None
-    comparison = GuardComparison(raw_machine.scope)
+    comparison = GuardComparison(raw_machine.scope, draft.reading.context.facts)
     try:
         _add_state_variables(draft, raw_machine, completion_sources, comparison)
         # Assembled again, because competing transitions, which need choice variables, can only be
