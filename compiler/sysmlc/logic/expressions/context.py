@@ -385,17 +385,18 @@ class _FeatureTable(Mapping[str, Feature]):
         quantity = read_quantity(self._graph, feature.element, "default")
         index = None if quantity is None else domain.regions.find(quantity.number)
         default = None if index is None else domain.literals[index]
+        is_inside = quantity is None or index is not None
+        is_assigned = self._thresholds.is_assigned(number)
+        is_bound = quantity is not None and feature.element.attrs.get("default_kind") == "bound"
         # Without an assignment, nothing but the environment can change a quantity.
-        is_own = self._thresholds.is_assigned(number) or domain.regions.is_integral
+        is_own = is_assigned or (domain.regions.is_integral and not is_bound)
         return replace(
             feature,
             domain=domain,
             default=default,
             direction=feature.direction or ("" if is_own else "in"),
-            invalid_default="",
-            is_bound=quantity is not None
-            and not is_assigned
-            and feature.element.attrs.get("default_kind") == "bound",
+            invalid_default="" if is_inside else str(feature.element.attrs.get("default", "")),
+            is_bound=is_bound and not is_assigned,
             term=((feature.variable, Fraction(1)),),
             constants=(feature.variable,) if number.is_frozen else (),
             restriction=self._find_restriction(number),

@@ -38,7 +38,7 @@ from sysmlc.logic.expressions.linear import (
     read_linear,
 )
 from sysmlc.logic.formula import Const, Formula, Op
-from sysmlc.logic.regions import Cut, Interval, Regions, Term, is_true
+from sysmlc.logic.regions import Cut, Interval, Regions, Term, is_true, select_interval
 
 
 class Fault(StrEnum):
@@ -463,7 +463,8 @@ def compare_regions(expression: Binary, scope: Scope) -> Formula | None:
     Raises ElaborationError if no regions are known or if the units differ.
     """
     symbols = _list_symbols(expression, scope)
-    if all(isinstance(symbol.domain, IntegerDomain) for symbol in symbols.values()):
+    is_finite = all(isinstance(symbol.domain, IntegerDomain) for symbol in symbols.values())
+    if is_finite and not (len(symbols) == 1 and _has_fraction(expression)):
         return None
     text = print_expression(expression)
     try:
@@ -501,6 +502,8 @@ def _select_regions(
     term = print_term(comparison.term)
     symbol = symbols.get(term) or scope(term, "")
     domain = None if symbol is None else symbol.domain
+    if symbol is not None and isinstance(domain, IntegerDomain):
+        return _compare_integer(symbol.formula, op, number)
     if symbol is None or not isinstance(domain, EnumerationDomain) or domain.regions is None:
         reason = f"'{text}' compares numbers that have no regions"
         raise ElaborationError(Fault.UNSUPPORTED, reason, text)
@@ -510,6 +513,22 @@ def _select_regions(
         reason = f"'{text}' compares with a number between two thresholds"
         raise ElaborationError(Fault.UNSUPPORTED, reason, text)
     return f.either(*(f.eq(symbol.formula, Const(domain.literals[index])) for index in selected))
+
+
+def _has_fraction(expression: Expression) -> bool:
+    """Whether a number in an expression is no Integer."""
+    values = (node.value for node in walk_tree(expression) if isinstance(node, Literal))
+    return any(isinstance(value, float) for value in values)
+
+
+def _compare_integer(formula: Formula, op: str, number: Fraction) -> Formula:
+    """Return the comparison of a finite Integer with any number."""
+    wanted = select_interval("==" if op == "!=" else op, number, is_integral=True)
+    bounds = ((Op.GE, wanted.low), (Op.LT, wanted.high))
+    inside = f.both(
+        *(f.compare(op, formula, Const(int(cut.number))) for op, cut in bounds if cut is not None)
+    )
+    return f.negate(inside) if op == "!=" else inside
 
 
 def _check_unit(text: str, unit: str | None, regions: Regions | None) -> None:

@@ -28,6 +28,7 @@ from sysmlc.ir.expressions import (
     Statement,
     dotted_name,
     last_name,
+    list_names,
     print_expression,
     walk_tree,
 )
@@ -103,27 +104,47 @@ class Thresholds:
         for _ in range(_MAX_ROUNDS):
             self._pull_cuts_back()
         self.limits = read_limits(graph, self.find_number, self.is_integral, self._joined_keys)
-        for key, values in self._values.items():
+        for key, updates in self._updates.items():
             # Sums need a feature with several values, also if nothing compares it by itself.
-            term = ((key, Fraction(1)),)
-            if len(values) > 1 or term in self._cuts:
+            term, value = ((key, Fraction(1)),), updates.values[0]
+            is_assigned = key in self._written and not updates.steps
+            if term in self._cuts or (is_assigned and len(updates.values) > 1):
                 self._cuts[term].update({})
-                self._units.setdefault(term, (values[0].unit or "", values[0].symbol))
+                self._units.setdefault(term, (value.unit or "", value.symbol))
 
     # -- numbers -----------------------------------------------------------------------------------
 
     def find_number(self, name: Name | Member) -> Number | None:
-        """Return what a name with an element stands for, if that is a number."""
+        """Return what a name with an element stands for, if that is a number.
+
+        Its values are those of all features that redefine it, which inherit the condition.
+        """
         element = self._graph.get(name.element)
-        return None if element is None else self.number_of(element)
+        number = None if element is None else self.number_of(element)
+        updates = None if number is None else self._updates.get(number.key)
+        if number is None or updates is None or len(number.values) != 1:
+            return number
+        return replace(number, values=updates.values)
 
     def number_of(self, element: Element) -> Number | None:
         """Return the number that an element is or has; None if its values are no numbers."""
         number = self._read_declared(element)
         if number is None or number.is_constant:
             return number
-        values = self._values.get(number.key, ())
-        return replace(number, values=values or self._list_range(element))
+        return replace(number, values=self._list_values(element, number.key))
+
+    def _list_values(self, element: Element, key: str) -> tuple[Linear, ...]:
+        """Return all numbers that a feature can have; none if they are not known or too many."""
+        updates = self._updates.get(key)
+        if element.attrs.get("direction") not in ("in", "inout"):
+            if updates is not None and not updates.steps and key in self._written:
+                return updates.values
+            if updates is not None and key not in self._written:
+                # Each type that redefines a feature has its own value.
+                family = (element, *query.redefined_features(self._graph, element))
+                values = (read_quantity(self._graph, item, "default") for item in family)
+                return next(((value,) for value in values if value is not None), ())
+        return self._list_range(element)
 
     def _list_range(self, element: Element) -> tuple[Linear, ...]:
         """Return the values of an Integer with a small declared range."""
@@ -159,14 +180,6 @@ class Thresholds:
     def _find_declared(self, name: Name | Member) -> Number | None:
         element = self._graph.get(name.element)
         return None if element is None else self._read_declared(element)
-
-    @cached_property
-    def _values(self) -> dict[str, tuple[Linear, ...]]:
-        """The numbers that features can have which only constants are assigned to, by their keys.
-
-        A feature whose initial value is not known, and one that something else may set, has none.
-        """
-        return {key: write.values for key, write in self._updates.items() if not write.steps}
 
     @cached_property
     def _updates(self) -> dict[str, Updates]:
@@ -268,6 +281,13 @@ class Thresholds:
         for action in self._graph.of_kind(Kind.ACTION):
             if action.subkind == "write":
                 yield from self._name_written(self._graph.target(action, Edge.CALLS), None)
+        for behaviour in self._graph.of_kind(Kind.ACTION, *query.BEHAVIORS):
+            body = behaviour.attrs.get("body")
+            # A text in a language that is not read may assign whatever it names.
+            if isinstance(body, str) and not isinstance(body, ParsedText):
+                for name in dict.fromkeys(list_names(body)):
+                    for element in self._elements_by_name.get(name, ()):
+                        yield from self._name_written(element, None)
 
     def _name_written(
         self, feature: Element | None, value: Expression | None
@@ -373,6 +393,15 @@ class Thresholds:
                     if end is not None:
                         self._cuts[term][end] = None
                         self._units.setdefault(term, (form.unit or "", form.symbol))
+
+    def _is_own(self, feature: Element, owner: Element | None) -> bool:
+        """Whether a feature is a constant, or one of *owner* that no other type redefines."""
+        number = self._read_declared(feature)
+        is_constant = number is not None and number.is_constant
+        is_redefined = any(True for _ in self._graph.sources(feature, Edge.REDEFINES))
+        is_redefining = any(True for _ in self._graph.targets(feature, Edge.REDEFINES))
+        is_single = not (is_redefined or is_redefining)
+        return is_constant or (self._graph.owner(feature) is owner and is_single)
 
     def is_integral(self, term: Term) -> bool:
         """Whether a term has only Integers as values."""
