@@ -549,6 +549,8 @@ def _elaborate_region(
         form = read_linear(expression, partial(_find_quantity, scope))
     except UnitError as error:
         raise ElaborationError(Fault.UNSUPPORTED, f"'{text}': {error}", text) from None
+    if form is None:
+        _check_numbers(expression, scope)
     if form is None or len(form.factors) > 1:
         raise ElaborationError(Fault.UNSUPPORTED, f"'{text}' is no sum with one feature", text)
     _check_unit(text, form.unit, expected.regions)
@@ -573,6 +575,18 @@ def _elaborate_region(
             cases.append(Case(f.both(is_source, choice.formula), lower))
             cases.append(Case(f.both(is_source, f.negate(choice.formula)), upper))
     return GuardedValue(tuple(cases), expected)
+
+
+def _check_numbers(expression: Expression, scope: Scope) -> None:
+    """Raise ElaborationError if a name is unknown or denotes no number."""
+    for node in walk_tree(expression):
+        symbol, name = find_symbol(node, scope), name_of(node)
+        if name and symbol is None and isinstance(node, Name):
+            raise ElaborationError(Fault.UNKNOWN, f"'{name}' is not known", name, node.element)
+        domain = None if symbol is None else symbol.domain
+        is_number = isinstance(domain, IntegerDomain) or getattr(domain, "regions", None)
+        if isinstance(node, Name) and domain is not None and not is_number:
+            raise _mismatch(node, "a number", domain)
 
 
 def _list_regions(domain: EnumerationDomain, values: Interval) -> list[int]:
@@ -616,5 +630,8 @@ def check_enumeration(expression: Expression, actual: Domain, expected: Domain) 
 
 def _mismatch(expression: Expression, expected: str, actual: Domain) -> ElaborationError:
     text = print_expression(expression)
+    if isinstance(actual, EnumerationDomain) and actual.regions is not None:
+        reason = f"'{text}' is a number, and only comparisons of sums of numbers have a formula"
+        return ElaborationError(Fault.UNSUPPORTED, reason, text)
     message = f"'{text}' is {_describe_kind(actual)}, not {expected}"
     return ElaborationError(Fault.TYPE, message, text)
