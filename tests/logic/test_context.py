@@ -9,13 +9,9 @@ from sysmlc.ir.text import parse_text
 from sysmlc.logic.contract import BooleanDomain, EnumerationDomain, IntegerDomain
 from sysmlc.logic.expressions.context import context_of
 from sysmlc.logic.expressions.context import find_symbol as context_symbol
-from sysmlc.logic.expressions.elaboration import (
-    ElaborationError,
-    Fault,
-    Symbol,
-    elaborate_condition,
-)
+from sysmlc.logic.expressions.elaboration import elaborate_condition
 from sysmlc.logic.expressions.parsing import parse_expression
+from sysmlc.logic.expressions.symbols import ElaborationError, Fault, Symbol
 from sysmlc.logic.formula import Const, Var
 from sysmlc.logic.printing import print_formula
 from sysmlc.passes import pipeline

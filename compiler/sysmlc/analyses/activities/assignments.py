@@ -15,9 +15,9 @@ from sysmlc.ir.expressions import Expression
 from sysmlc.logic.activities.saturation import Possibility, find_saturating_writes
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.expressions.context import describe_missing_range
-from sysmlc.logic.expressions.elaboration import ElaborationError, Fault
 from sysmlc.logic.expressions.features import Feature, check_assignable
 from sysmlc.logic.expressions.named_elements import find_named_values
+from sysmlc.logic.expressions.symbols import ElaborationError, Fault
 from sysmlc.logic.feature_writes import FeatureWrite, find_label, iter_writes
 from sysmlc.logic.machines.actions import (
     IS_CONSTANT,

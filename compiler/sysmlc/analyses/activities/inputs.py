@@ -33,10 +33,6 @@ from sysmlc.logic.expressions.elaboration import (
     ELSEWHERE_ADVICE,
     EMPTY_ADVICE,
     FINITE_ADVICE,
-    ElaborationError,
-    Fault,
-    GuardedValue,
-    Symbol,
     elaborate_condition,
     elaborate_value,
 )
@@ -47,6 +43,7 @@ from sysmlc.logic.expressions.parsing import (
     explain_fault,
     tree_of,
 )
+from sysmlc.logic.expressions.symbols import ElaborationError, Fault, GuardedValue, Symbol
 from sysmlc.logic.formula import Formula, var, variables
 from sysmlc.logic.identifiers import Names, identifier, make_unique
 from sysmlc.logic.machines.actions import OUT_OF_DOMAIN

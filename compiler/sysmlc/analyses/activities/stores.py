@@ -26,8 +26,8 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.activities.token_graph import TokenGraph
 from sysmlc.logic.activities.token_nodes import Store, Write
 from sysmlc.logic.contract import Domain, IntegerDomain, Owner, Variable
-from sysmlc.logic.expressions.elaboration import ElaborationError
 from sysmlc.logic.expressions.features import Feature
+from sysmlc.logic.expressions.symbols import ElaborationError
 from sysmlc.logic.feature_writes import FeatureWrite, WriterIndex, find_label
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines.paths import split_by_range

@@ -32,8 +32,9 @@ from sysmlc.logic.contract import (
     equals,
 )
 from sysmlc.logic.expressions.context import find_literal
-from sysmlc.logic.expressions.elaboration import ElaborationError, Symbol, elaborate_value
+from sysmlc.logic.expressions.elaboration import elaborate_value
 from sysmlc.logic.expressions.parsing import tree_of
+from sysmlc.logic.expressions.symbols import ElaborationError, Symbol
 from sysmlc.logic.feature_writes import WriterIndex, find_bound_name
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines.paths import split_by_range

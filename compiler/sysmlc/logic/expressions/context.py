@@ -27,7 +27,6 @@ from sysmlc.ir.expressions import Literal as LiteralExpression
 from sysmlc.logic.cells import Fact
 from sysmlc.logic.contract import EnumerationDomain, IntegerDomain
 from sysmlc.logic.domains import describe
-from sysmlc.logic.expressions.elaboration import Symbol
 from sysmlc.logic.expressions.features import (
     Feature,
     default_text,
@@ -47,6 +46,7 @@ from sysmlc.logic.expressions.named_elements import (
     find_port_values,
 )
 from sysmlc.logic.expressions.ranges import MIRROR, Access, evaluate_integer
+from sysmlc.logic.expressions.symbols import Symbol
 from sysmlc.logic.expressions.thresholds import thresholds_of
 from sysmlc.logic.formula import const, var
 from sysmlc.logic.identifiers import Names, make_unique

@@ -25,7 +25,7 @@ from sysmlc.logic.contract import (
     Variable,
 )
 from sysmlc.logic.domains import contains, describe
-from sysmlc.logic.expressions.elaboration import ElaborationError, Fault, check_enumeration
+from sysmlc.logic.expressions.elaboration import check_enumeration
 from sysmlc.logic.expressions.linear import Number
 from sysmlc.logic.expressions.named_elements import (
     constant_value,
@@ -41,6 +41,7 @@ from sysmlc.logic.expressions.ranges import (
     list_type_names,
     parse_integer,
 )
+from sysmlc.logic.expressions.symbols import ElaborationError, Fault
 from sysmlc.logic.formula import Literal
 from sysmlc.logic.regions import Term
 

@@ -11,8 +11,8 @@ from msgspec.structs import replace
 
 from sysmlc.ir import AttrValue, Edge, Element, Graph, Kind, query
 from sysmlc.logic.contract import BooleanDomain, EnumerationDomain, IntegerDomain
-from sysmlc.logic.expressions.elaboration import Symbol
 from sysmlc.logic.expressions.linear import Number, read_quantity
+from sysmlc.logic.expressions.symbols import Symbol
 from sysmlc.logic.formula import const
 from sysmlc.logic.identifiers import make_unique
 

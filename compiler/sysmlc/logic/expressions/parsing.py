@@ -29,7 +29,7 @@ from sysmlc.ir.expressions import (
     name_of,
     print_expression,
 )
-from sysmlc.logic.expressions.elaboration import ElaborationError, Fault
+from sysmlc.logic.expressions.symbols import ElaborationError, Fault
 from sysmlc.support import resources
 
 if TYPE_CHECKING:

@@ -27,25 +27,23 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.contract import BooleanDomain, Domain, Owner, Variable
 from sysmlc.logic.expressions.context import Context, find_symbol, report_range
 from sysmlc.logic.expressions.elaboration import (
-    CHOICE,
     ELSEWHERE_ADVICE,
     EMPTY_ADVICE,
     FINITE_ADVICE,
-    ElaborationError,
-    Fault,
-    Symbol,
     elaborate_condition,
     elaborate_value,
     list_read,
 )
 from sysmlc.logic.expressions.features import Feature, check_assignable
 from sysmlc.logic.expressions.named_elements import describe_feature_elsewhere
+from sysmlc.logic.expressions.number_formulas import CHOICE
 from sysmlc.logic.expressions.parsing import (
     CanonicalCondition,
     explain_fault,
     statements_of,
     tree_of,
 )
+from sysmlc.logic.expressions.symbols import ElaborationError, Fault, Symbol
 from sysmlc.logic.feature_writes import SHARED, Sharing, find_label, read_assignments
 from sysmlc.logic.identifiers import Names
 from sysmlc.logic.machines.instant_activities import find_instant_steps, find_target

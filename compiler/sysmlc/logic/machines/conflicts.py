@@ -19,8 +19,9 @@ from sysmlc.logic import formula as f
 from sysmlc.logic.cells import Fact, find_cells
 from sysmlc.logic.contract import Owner, Variable
 from sysmlc.logic.evaluate import compile_evaluation
-from sysmlc.logic.expressions.elaboration import Scope, elaborate_condition, list_read
+from sysmlc.logic.expressions.elaboration import elaborate_condition, list_read
 from sysmlc.logic.expressions.parsing import GuardTerms
+from sysmlc.logic.expressions.symbols import Scope
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.machines.machine import (
     Action,

@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from sysmlc.ir.expressions import Expression, Name, dotted_name, print_expression, walk_tree
-from sysmlc.logic.expressions.elaboration import Scope, find_symbol
+from sysmlc.logic.expressions.symbols import Scope, find_symbol
 from sysmlc.logic.formula import TRUE, Const, Formula, const, rename_variables
 from sysmlc.logic.identifiers import identifier
 from sysmlc.logic.machines.machine import (

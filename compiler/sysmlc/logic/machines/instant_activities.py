@@ -19,10 +19,11 @@ from sysmlc.ir.expressions import (
     walk_tree,
 )
 from sysmlc.logic.expressions.context import Context, find_symbol
-from sysmlc.logic.expressions.elaboration import ElaborationError, elaborate_value
+from sysmlc.logic.expressions.elaboration import elaborate_value
 from sysmlc.logic.expressions.features import check_assignable
 from sysmlc.logic.expressions.named_elements import VALUE_KINDS
 from sysmlc.logic.expressions.parsing import performed_name
+from sysmlc.logic.expressions.symbols import ElaborationError
 from sysmlc.logic.feature_writes import takes_one_step
 
 _INSTANT = (Edge.ENTRY, Edge.EXIT, Edge.EFFECT)

@@ -12,7 +12,7 @@ from msgspec.structs import replace
 from sysmlc.ir.expressions import Expression
 from sysmlc.ir.expressions import Literal as LiteralExpression
 from sysmlc.logic.contract import BooleanDomain, Owner, Variable
-from sysmlc.logic.expressions.elaboration import Scope
+from sysmlc.logic.expressions.symbols import Scope
 from sysmlc.logic.formula import Literal
 
 NO_EVENT = "none"

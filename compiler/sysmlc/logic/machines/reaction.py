@@ -24,8 +24,10 @@ from sysmlc.ir.expressions import Literal as LiteralExpression
 from sysmlc.logic.contract import IntegerDomain
 from sysmlc.logic.domains import regions_of
 from sysmlc.logic.evaluate import is_true, value_of
-from sysmlc.logic.expressions.elaboration import compare_regions, elaborate_value, find_symbol
+from sysmlc.logic.expressions.elaboration import elaborate_value
 from sysmlc.logic.expressions.linear import COMPARISONS
+from sysmlc.logic.expressions.number_formulas import compare_regions
+from sysmlc.logic.expressions.symbols import find_symbol
 from sysmlc.logic.formula import Const, Literal, Var
 from sysmlc.logic.machines.machine import (
     HISTORIES,

@@ -21,8 +21,9 @@ from sysmlc.logic.components.names import ComponentNames, Meaning
 from sysmlc.logic.components.objects import ComponentError
 from sysmlc.logic.contract import Class, Conjunct, Contract, Domain, Source, name_variables
 from sysmlc.logic.expressions.context import report_range
-from sysmlc.logic.expressions.elaboration import ElaborationError, Fault, elaborate_condition
+from sysmlc.logic.expressions.elaboration import elaborate_condition
 from sysmlc.logic.expressions.parsing import explain_fault, tree_of
+from sysmlc.logic.expressions.symbols import ElaborationError, Fault
 from sysmlc.logic.feature_writes import WriterIndex
 from sysmlc.logic.formal_texts import describe_error, has_pattern_word, read_formal
 from sysmlc.logic.formula import Formula

@@ -29,13 +29,10 @@ from sysmlc.logic.expressions.context import (
     find_symbol,
     report_range,
 )
-from sysmlc.logic.expressions.elaboration import (
-    ElaborationError,
-    Fault,
-    elaborate_condition,
-)
+from sysmlc.logic.expressions.elaboration import elaborate_condition
 from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.expressions.parsing import ORDERS, explain_fault, split_chains, tree_of
+from sysmlc.logic.expressions.symbols import ElaborationError, Fault
 from sysmlc.logic.formal_texts import is_formal_constraint
 from sysmlc.logic.formula import Formula
 from sysmlc.logic.identifiers import Names
