@@ -35,6 +35,7 @@ from sysmlc.ir.expressions import (
 from sysmlc.logic.contract import EnumerationDomain
 from sysmlc.logic.domains import make_region_domain
 from sysmlc.logic.expressions.features import find_number_type
+from sysmlc.logic.expressions.joined_features import join_features
 from sysmlc.logic.expressions.limits import iter_paths, read_limits
 from sysmlc.logic.expressions.linear import (
     COMPARISONS,
@@ -59,7 +60,6 @@ from sysmlc.logic.regions import (
     list_cuts,
     split_line,
 )
-from sysmlc.support.disjoint_sets import DisjointSets
 
 _TEXT_ATTRIBUTES = ("guard", "body", "condition", "value")
 _OPERAND = r"(?:-\s*)?{atom}(?:\s*[-+*/]\s*{atom})*".format(
@@ -92,6 +92,7 @@ class Thresholds:
 
     def __init__(self, graph: Graph) -> None:
         self._graph = graph
+        self._groups = join_features(graph)
         self.revision = graph.revision
         self._cuts: dict[Term, dict[Cut, None]] = defaultdict(dict)
         self._labels: dict[Term, dict[Fraction, str]] = defaultdict(dict)
@@ -213,44 +214,11 @@ class Thresholds:
         }
 
     @cached_property
-    def _groups(self) -> DisjointSets[str]:
-        """The features that have one value: those that connectors join, and redefinitions."""
-        joined: DisjointSets[str] = DisjointSets()
-        graph = self._graph
-        for feature in graph.of_kind(Kind.PROPERTY):
-            for redefined in graph.targets(feature, Edge.REDEFINES):
-                joined.union(redefined.id, feature.id)
-        for connector in graph.of_kind(Kind.CONNECTOR):
-            roles = [
-                role
-                for end in query.ends(graph, connector)
-                for role in graph.targets(end, Edge.ROLE)
-            ]
-            self._join(joined, roles)
-        for flow in graph.of_kind(Kind.ITEM_FLOW):
-            edges = Edge.FLOW_SOURCE, Edge.FLOW_TARGET
-            ends = [graph.target(flow, edge) for edge in edges]
-            self._join(joined, [end for end in ends if end is not None])
-        return joined
-
-    @cached_property
     def _joined_keys(self) -> frozenset[str]:
         """The keys that several features share."""
         features = self._graph.of_kind(*VALUE_KINDS)
         counts = Counter(self._groups.find(feature.id) for feature in features)
         return frozenset(key for key, count in counts.items() if count > 1)
-
-    def _join(self, joined: DisjointSets[str], features: list[Element]) -> None:
-        """Join features, or the equally named features of the types of ports."""
-        for feature in features[1:]:
-            joined.union(features[0].id, feature.id)
-        types = [query.type_of(self._graph, feature) for feature in features]
-        members: dict[str, Element] = {}
-        for type_ in filter(None, types):
-            for member in query.features(self._graph, type_):
-                first = members.setdefault(member.name, member)
-                if first is not member and member.name:
-                    joined.union(first.id, member.id)
 
     # -- texts of the model ------------------------------------------------------------------------
 
