@@ -247,7 +247,7 @@ def test_operations_of_a_stereotype_are_no_services():
         ("let low : Integer = 2 in level > low", "unexpected 'low'"),
         ("level >", "the text ends too early"),
         ("grade(level) > 2", "calls such as 'grade(level)' are not evaluated"),
-        ("level > 2.5", "2.5 is not an Integer"),
+        ("level + 2.5 > level * level", "2.5 is not an Integer"),
     ],
 )
 def test_the_reason_names_the_token_that_is_not_read(body, reason):
