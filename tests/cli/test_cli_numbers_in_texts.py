@@ -109,3 +109,52 @@ def test_the_summary_of_an_activity_shows_comparisons(heater):
     assert heater.sysmlc("build", "robot.sysml", "-o", "out").exit_code == 0
     page = heater.read("out/contracts/Hall.Robot.md")
     assert "**Inputs.** It reads `load` (`load < 20.5`, `load >= 20.5`)." in page
+
+
+def test_an_equal_name_of_another_quantity_is_no_threshold(heater):
+    """In the formula about the tank, 'low' could be a temperature."""
+    tank = """
+    part def Tank {
+        in attribute level : LengthValue;
+        constant attribute low : LengthValue = 40 [cm];
+        exhibit state modes {
+            entry; then Waiting;
+            state Waiting;
+            transition first Waiting if level < 2 [m] then Filling;
+            state Filling;
+        }
+    }
+    requirement def Filled {
+        subject tank : Tank;
+        require constraint { language "ltl" /* G (level < low -> X state=Filling) */ }
+    }
+}
+"""
+    heater.write("home.sysml", MODEL.rstrip().removesuffix("}") + tank)
+    heater.sysmlc("build", "home.sysml", "-o", "out")
+    lines = heater.read("out/contracts/Home.Tank.md").splitlines()
+    assert [line for line in lines if line.startswith("| `level`")] == [
+        "| `level` | `below_low`: `level < low`, `low_to_2_m`: `low <= level < 2 m`, "
+        "`from_2_m`: `level >= 2 m`; `low` = 0.4 m | property 'level' of 'Tank' |",
+    ]
+
+
+def test_the_output_of_an_action_is_a_number(workspace, all_passes):
+    action = """package Car {
+    private import ScalarValues::*;
+    action def Charge {
+        first start;
+        then merge again;
+        then action monitor { out charge : Real; }
+        then decide;
+            if monitor.charge < 99.5 then fill;
+            if monitor.charge >= 99.5 then done;
+        action fill;
+        then again;
+    }
+}
+"""
+    workspace.write("car.sysml", action)
+    assert workspace.sysmlc("build", "car.sysml", "-o", "out").stderr == ""
+    page = workspace.read("out/contracts/Car.Charge.md")
+    assert "'monitor' comes 'fill' if `monitor.charge < 99.5`, the end if `monitor" in page

@@ -28,6 +28,7 @@ from sysmlc.logic.domains import contains, describe
 from sysmlc.logic.expressions.elaboration import check_enumeration
 from sysmlc.logic.expressions.linear import Number
 from sysmlc.logic.expressions.named_elements import (
+    VALUE_KINDS,
     constant_value,
     find_enumeration_domain,
     literals_of,
@@ -50,6 +51,8 @@ _INTEGER = frozenset(
     ["integer", "int", "natural", "positive", "unlimitednatural", "eint", "short", "long", "byte"]
 )
 _STRING = frozenset(["string", "estring", "java.lang.string"])
+NUMBER_KINDS = (*VALUE_KINDS, Kind.PIN)
+"""Kinds of the elements that may have a number: features, and the outputs of actions."""
 
 
 class Feature(Struct, frozen=True):

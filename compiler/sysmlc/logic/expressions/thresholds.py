@@ -34,7 +34,7 @@ from sysmlc.ir.expressions import (
 )
 from sysmlc.logic.contract import EnumerationDomain
 from sysmlc.logic.domains import make_region_domain
-from sysmlc.logic.expressions.features import find_number_type
+from sysmlc.logic.expressions.features import NUMBER_KINDS, find_number_type
 from sysmlc.logic.expressions.joined_features import join_features
 from sysmlc.logic.expressions.limits import iter_paths, read_limits
 from sysmlc.logic.expressions.linear import (
@@ -170,7 +170,7 @@ class Thresholds:
             value = read_quantity(self._graph, element, "value")
             is_fixed = element.attrs.get("value_kind", "bound") == "bound"
             return Number("", (value,), is_constant=True) if value and is_fixed else None
-        if element.kind not in VALUE_KINDS or not find_number_type(self._graph, element):
+        if element.kind not in NUMBER_KINDS or not find_number_type(self._graph, element):
             return None
         value = read_quantity(self._graph, element, "default")
         is_frozen = element.attrs.get("readonly") is True
@@ -322,15 +322,16 @@ class Thresholds:
         if not isinstance(expression, Binary):
             return
         for comparison in list_comparisons(expression, _distinguish_paths(expression, find)):
-            term, number = _merge_paths(comparison.term), comparison.number
-            if not term:
+            term, number, unit = _merge_paths(comparison.term), comparison.number, comparison.unit
+            if not term or unit not in (None, self._units.get(term, (unit,))[0]):
+                # In a formula, the threshold 'low' of a level may have the name of a temperature.
                 continue
             for cut in list_cuts(comparison.op, number, is_integral=self.is_integral(term)):
                 self._cuts[term][cut] = None
                 if _is_antisymmetric(term):  # The difference of two parts may be meant either way.
                     self._cuts[term][Cut(-cut.number, not cut.is_above)] = None
-            if comparison.unit is not None:
-                self._units.setdefault(term, (comparison.unit, comparison.symbol))
+            if unit is not None:
+                self._units.setdefault(term, (unit, comparison.symbol))
             self._add_label(expression, find, comparison)
 
     def _add_label(self, expression: Binary, find: Lookup, comparison: Comparison) -> None:
@@ -453,7 +454,7 @@ class Thresholds:
     def _members(self) -> Mapping[str, list[Element]]:
         """The features that have one value, by their key."""
         members: dict[str, list[Element]] = defaultdict(list)
-        for element in self._graph.of_kind(*VALUE_KINDS):
+        for element in self._graph.of_kind(*NUMBER_KINDS):
             number = self._read_declared(element)
             if number is not None and number.key:
                 members[number.key].append(element)
