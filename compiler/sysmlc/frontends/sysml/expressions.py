@@ -118,9 +118,19 @@ def _read_operation(node: Node, ids: ElementIds) -> Expression:
     if len(arguments) == 3 and operator == "if":
         condition, then, otherwise = (_read(argument, ids) for argument in arguments)
         return Conditional(condition, then, otherwise)
-    if len(arguments) == 2 and operator in ("#", "index", "["):
+    if len(arguments) == 2 and operator in ("#", "index"):
+        return Index(_read(arguments[0], ids), _read(arguments[1], ids))
+    if len(arguments) == 2 and operator == "[" and _is_in_assignment(node):
         return Index(_read(arguments[0], ids), _read(arguments[1], ids))
     raise NotExpressibleError(operator)
+
+
+def _is_in_assignment(node: Node) -> bool:
+    """Whether a quantity is part of an assigned value; conditions with units are read as texts."""
+    owner = node.owner
+    while owner is not None and owner.kind != "AssignmentActionUsage":
+        owner = owner.owner
+    return owner is not None
 
 
 def _read_index(node: Node, ids: ElementIds) -> Expression:
