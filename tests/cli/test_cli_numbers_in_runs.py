@@ -144,3 +144,45 @@ def test_diagrams_have_the_same_numbers(check, workspace):
     check("Switch", "G !(state=On & x > most)", "-o", "out")
     (diagram,) = workspace.folder.glob("out/**/*.run1.puml")
     assert "p0 -> p1 : x = 1 (from least, above most)\n" in diagram.read_text(encoding="utf-8")
+
+
+EQUAL_NAMES = """package Plant {
+    private import ScalarValues::*;
+    private import SI::*;
+    private import ISQ::*;
+    part def Thermostat {
+        in attribute temp : TemperatureValue;
+        attribute low : TemperatureValue = 18 ['°C_abs'];
+        exhibit state Control {
+            entry; then Idle;
+            state Idle;
+            state Heating;
+            transition first Idle if temp < low then Heating;
+        }
+    }
+    part def Switch {
+        in attribute x : Real;
+        constant attribute low : Real;
+        exhibit state Control {
+            entry; then Off;
+            state Off;
+            state On;
+            transition first Off if x < low then On;
+        }
+    }
+    requirement def Above {
+        subject s : Switch;
+        require constraint { language "ltl" /* G (x > low -> state=Off) */ }
+    }
+    requirement def Five {
+        subject s : Switch;
+        require constraint { language "ltl" /* G (x > 5 -> state=Off) */ }
+    }
+}
+"""
+
+
+def test_a_feature_of_another_component_gives_no_unit_and_no_name(workspace, all_passes):
+    workspace.write("plant.sysml", EQUAL_NAMES)
+    steps = list_steps(workspace.sysmlc("contracts", "check", "plant.sysml"))
+    assert steps[0] == "step 1: x = -2 (up to 5, below low), low = -1, state=Off"

@@ -284,7 +284,8 @@ class Thresholds:
     def _add_formal_text(self, text: str) -> None:
         """Add the comparisons in a formula, of all features with the names in it.
 
-        The subject of a formula is not looked up: cuts of other features change no meaning.
+        The subject of a formula is not looked up: cuts of other features change no meaning. Their
+        units and words do, so that features of one owner state these if there are any.
         """
         for match in COMPARISON.finditer(text):
             expression = parse_comparison(match[0])
@@ -294,10 +295,11 @@ class Thresholds:
             # The subject in ``heater.temp < 22 [K]`` is no number.
             names = [name for name in features if self._find_numbers(name)]
             candidates = [self._find_numbers(name) for name in names]
-            for meaning in islice(product(*candidates), _MAX_MEANINGS):
-                numbers = dict(zip(names, meaning, strict=True))
-                find = partial(_find_by_name, numbers)
-                self._add_condition(expression, find)
+            meanings = list(islice(product(*candidates), _MAX_MEANINGS))
+            own = [meaning for meaning in meanings if self._has_one_owner(meaning)]
+            for meaning in meanings:
+                find = partial(_find_by_name, dict(zip(names, meaning, strict=True)))
+                self._add_condition(expression, find, is_meant=not own or meaning in own)
                 self._other_uses |= find_other_uses(expression, find)
         for match in _CALCULATED.finditer(COMPARISON.sub(" ", text)):
             name = last_name(match[1] or match[2])
@@ -309,6 +311,11 @@ class Thresholds:
         distinct = {number.key or id: number for id, number in numbers if number is not None}
         return list(distinct.values())
 
+    def _has_one_owner(self, numbers: Collection[Number]) -> bool:
+        keys = (number.key for number in numbers if number.key)
+        owners = (self._graph.owner(self._graph[key]) for key in keys)
+        return len({owner.id for owner in owners if owner is not None}) <= 1
+
     @cached_property
     def _elements_by_name(self) -> Mapping[str, list[Element]]:
         elements: dict[str, list[Element]] = defaultdict(list)
@@ -318,7 +325,10 @@ class Thresholds:
 
     # -- cuts --------------------------------------------------------------------------------------
 
-    def _add_condition(self, expression: Expression, find: Lookup) -> None:
+    def _add_condition(
+        self, expression: Expression, find: Lookup, *, is_meant: bool = True
+    ) -> None:
+        """Add the cuts of a comparison; one that *is_meant* states their unit and words, too."""
         if not isinstance(expression, Binary):
             return
         for comparison in list_comparisons(expression, _distinguish_paths(expression, find)):
@@ -330,9 +340,10 @@ class Thresholds:
                 self._cuts[term][cut] = None
                 if _is_antisymmetric(term):  # The difference of two parts may be meant either way.
                     self._cuts[term][Cut(-cut.number, not cut.is_above)] = None
-            if unit is not None:
+            if unit is not None and is_meant:
                 self._units.setdefault(term, (unit, comparison.symbol))
-            self._add_label(expression, find, comparison)
+            if is_meant:
+                self._add_label(expression, find, comparison)
 
     def _add_label(self, expression: Binary, find: Lookup, comparison: Comparison) -> None:
         """Record how the author writes the number with which a feature is compared."""
