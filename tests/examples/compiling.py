@@ -20,6 +20,9 @@ PLANT = ROOT / "examples" / "baygate" / "baygate.aml"
 TEXT = ROOT / "examples" / "lego-recipe-v2" / "lego-recipe.sysml"
 """The lego recipe in SysML v2."""
 
+TANKS = ROOT / "examples" / "two-tanks" / "two-tanks.sysml"
+"""Conditions over lengths, volumes and temperatures."""
+
 
 def compile_example(model: Path, *emit: str) -> Compilation:
     """Compile with the default back ends, or with those that *emit* selects like ``--emit``."""

@@ -12,20 +12,21 @@ from examples.compiling import (
     EXAMPLES,
     PLANT,
     ROOT,
+    TANKS,
     TEXT,
     compile_example,
     format_diagnostics,
     outputs,
 )
 
-MODELS = [*EXAMPLES, PLANT, TEXT]
+MODELS = [*EXAMPLES, PLANT, TANKS, TEXT]
 
 _GOLDEN_OUTPUTS = re.compile(
     r"recipes/.*|diagrams/.*|contracts/.*\.md|contracts/.*(Stopper|Gripper)\..*"
 )
 
 
-@pytest.mark.parametrize("model", [*EXAMPLES, PLANT], ids=lambda path: path.parent.name)
+@pytest.mark.parametrize("model", [*EXAMPLES, PLANT, TANKS], ids=lambda path: path.parent.name)
 def test_an_example_has_its_golden_outputs(model, golden):
     compilation = compile_example(model)
     texts = outputs(compilation)
@@ -64,7 +65,7 @@ def test_a_missing_line_in_the_overlay_of_four_tasks_is_reported(tmp_path, remov
 def test_the_examples_are_those_in_the_folder():
     names = [path.parent.name for path in (PLANT, *EXAMPLES, TEXT)]
     assert names == ["baygate", "baygate-behaviour", "four-tasks", "lego-recipe", "lego-recipe-v2"]
-    assert {path.name for path in (ROOT / "examples").iterdir()} == {*names, "robots"}
+    assert {path.name for path in (ROOT / "examples").iterdir()} == {*names, "robots", "two-tanks"}
 
 
 @pytest.mark.parametrize("model", MODELS, ids=lambda path: path.parent.name)

@@ -10,6 +10,7 @@ from examples.compiling import (
     EXAMPLES,
     PLANT,
     ROOT,
+    TANKS,
     TEXT,
     compile_example,
     list_silent_contracts,
@@ -92,6 +93,31 @@ def test_contracts_are_realizable_and_requirements_have_these_verdicts(model, ve
     # Three requirements on times are decided by the recipe; the others that hold are formulas.
     texts = [entry for entry in entries if "only text" in (entry["reason"] or "")]
     assert all("the recipe decides it" in e["reason"] for e in texts if e["verdict"] == "holds")
+
+
+TANK_VERDICTS = [
+    ("RefillsInTime", "Pump", "holds"),
+    ("DoesNotChatter", "Pump", "holds"),
+    ("StopsBeforeOverflow", "Station", "broken"),
+    ("StopsBeforeOverflowIfSlow", "Station", "holds"),
+    ("OverflowStopsFilling", "Station", "holds"),
+    ("NeverTooFull", "Mixer", "holds"),
+    ("FullMeansFourDoses", "Mixer", "holds"),
+    ("LeavesRoom", "Mixer", "broken"),
+    ("FindsScale", "Heater", "holds"),
+    ("HeatsUpTo60", "Heater", "broken"),
+]
+
+
+def test_three_requirements_on_the_tanks_are_refuted_with_numbers():
+    result, document = check(TANKS)
+    assert result.exit_code == 1
+    assert {item["code"] for item in document["diagnostics"]} == {"SM560"}
+    entries = {last_name(entry["requirement"]): entry for entry in document["requirements"]}
+    assert list_verdicts(entries.values()) == TANK_VERDICTS
+    assert not any(entry["vacuous"] for entry in entries.values())
+    fifth = entries["LeavesRoom"]["witness"]["numbers"][4]
+    assert fifth == {"volume": {"number": 10, "unit": "L"}}
 
 
 FAULTS = [

@@ -11,7 +11,7 @@ SCENARIOS = sorted((ROOT / "examples").glob("*/scenarios/*.yaml"))
 
 
 def run_scenario(path, change=("", "")):
-    (model,) = path.parents[1].glob("*.uml")
+    (model,) = (p for p in path.parents[1].iterdir() if p.suffix in (".uml", ".sysml"))
     sink = Sink()
     text = path.read_text(encoding="utf-8")
     assert change[0] in text

@@ -69,7 +69,8 @@ package P {
     }
 }
 """
-EXAMPLES = sorted((ROOT / "examples").rglob("*.sysml"))
+# The types of ISQ that two-tanks uses are not in these texts.
+EXAMPLES = sorted(path for path in (ROOT / "examples").rglob("*.sysml") if path.stem != "two-tanks")
 
 
 def list_contracts(reading):
