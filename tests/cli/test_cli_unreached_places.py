@@ -281,3 +281,45 @@ def test_a_submachine_is_reached_if_one_of_the_states_that_use_it_is(find_unreac
         "6: SM517 no run of 'Plant::Line' takes transition 'Slow to Fast [false]', although runs "
         "reach its source",
     ]
+
+
+# -- numbers ---------------------------------------------------------------------------------------
+
+COUNTER = """package Plant {
+    private import ScalarValues::*;
+    private import SI::*;
+    private import ISQ::*;
+    part def Counter {
+        attribute x : LengthValue := 5 [m];
+        exhibit state Control {
+            entry; then Run;
+            state Run;
+            state Far;
+            transition first Run if x <= 6 [m] do assign x := VALUE then Run;
+            transition first Run if x > 6 [m] then Far;
+        }
+    }
+    requirement def Rule {
+        subject counter : Counter; require constraint { language "ltl" /* FORMULA */ }
+    }
+}
+"""
+
+
+def find_unreached_by_counter(find_unreached, value, formula="F state=Far"):
+    return find_unreached(COUNTER.replace("VALUE", value).replace("FORMULA", formula))
+
+
+def test_a_number_that_changes_inside_its_region_changes(find_unreached):
+    never_far = [
+        "10: SM559 no run of 'Plant::Counter' reaches 'Far'",
+        "12: SM517 no run of 'Plant::Counter' takes transition 'Run to Far [x > 6 [m]]', although "
+        "runs reach its source",
+    ]
+    assert find_unreached_by_counter(find_unreached, "-x", "G x >= -6 [m]") == never_far
+
+
+def test_an_assigned_quantity_is_no_input(find_unreached):
+    # A requirement about the steps is no truism, although the steps never miss a point.
+    assert find_unreached_by_counter(find_unreached, "x + 20 [cm]", "G x >= 5 [m]") == []
+    assert find_unreached_by_counter(find_unreached, "x + 20 [cm]") == []

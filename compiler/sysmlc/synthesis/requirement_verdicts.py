@@ -23,15 +23,19 @@ from sysmlc.logic.contract import (
     Class,
     Conjunct,
     Contract,
+    Domain,
+    EnumerationDomain,
     IntegerDomain,
     Owner,
     Variable,
     equal_values,
 )
+from sysmlc.logic.domains import regions_of
 from sysmlc.logic.formula import Apply, Formula, Op
 from sysmlc.logic.printing import print_formula
 from sysmlc.logic.reduction.contract_reduction import as_ltl
 from sysmlc.logic.reduction.formula_reduction import NotReducibleError
+from sysmlc.logic.regions import LINE
 from sysmlc.synthesis import rules
 from sysmlc.synthesis.algebra.fair_systems import DomainError, Trace
 from sysmlc.synthesis.algebra.refinement import RunSearch
@@ -126,6 +130,7 @@ UNREACHABLE_RULES = {
     PlaceKind.GUARD: rules.GUARD_NEVER_HOLDS,
     PlaceKind.FEATURE: rules.NEVER_CHANGED,
 }
+_OTHER_NUMBERS = "numbers in no region"
 _UNDECIDED_PROBLEMS = (OutsideGr1Error, DomainError, LimitError, NotReducibleError)
 
 
@@ -493,10 +498,18 @@ def _names_of(conjuncts: Iterable[Conjunct]) -> set[str]:
 
 
 def _widen(variable: Variable) -> Variable:
-    """Return the variable with one more number below and above its range."""
-    if not isinstance(variable.domain, IntegerDomain):
-        return variable
-    domain = IntegerDomain(variable.domain.low - 1, variable.domain.high + 1)
+    """Return the variable with one more number below and above its range.
+
+    Regions that a behaviour never reaches are missing: they are one more value together.
+    """
+    domain: Domain = variable.domain
+    if isinstance(domain, IntegerDomain):
+        domain = IntegerDomain(domain.low - 1, domain.high + 1)
+    regions = regions_of(domain)
+    if regions is not None and variable.owner is Owner.SYSTEM:
+        assert isinstance(domain, EnumerationDomain)
+        if regions.join_neighbours().intervals != (LINE,):
+            domain = EnumerationDomain((*domain.literals, _OTHER_NUMBERS))
     return replace(variable, domain=domain)
 
 

@@ -13,7 +13,8 @@ from sysmlc.logic.activities.step_formulas import StepFormulas
 from sysmlc.logic.components.machines import PlacedMachine
 from sysmlc.logic.composition.structure import join_path
 from sysmlc.logic.contract import Variable, equals
-from sysmlc.logic.formula import Formula
+from sysmlc.logic.domains import regions_of, values
+from sysmlc.logic.formula import Const, Formula
 from sysmlc.logic.machines.descriptions import name_occurrence, name_transition
 from sysmlc.logic.machines.machine import Transition, element_id
 from sysmlc.logic.machines.moves import Move, trigger_condition
@@ -85,9 +86,21 @@ def iter_places(
             yield PlaceInBehaviour(text, node.origin, accepts, PlaceKind.EVENT, running)
     yield from _merge_copies(_iter_guard_places(formulas))
     for name, variable in assigned:
-        value = f.var(variable.name)
-        stays = equals(variable, value, is_next=True)
-        yield PlaceInBehaviour(name, variable.origin, f.negate(stays), PlaceKind.FEATURE)
+        yield PlaceInBehaviour(name, variable.origin, _may_change(variable), PlaceKind.FEATURE)
+
+
+def _may_change(variable: Variable) -> Formula:
+    """Return the formula that a value changes; a number may do so inside its region."""
+    value = f.var(variable.name)
+    changes = f.negate(equals(variable, value, is_next=True))
+    regions = regions_of(variable.domain)
+    literals = values(variable.domain) if regions is not None else ()
+    is_inside = (
+        f.eq(value, Const(literal))
+        for index, literal in enumerate(literals)
+        if regions is not None and not regions.is_point(index)
+    )
+    return f.either(changes, *is_inside)
 
 
 def _iter_guard_places(formulas: StepFormulas) -> Iterator[PlaceInBehaviour]:
