@@ -40,14 +40,14 @@ def require(formula):
 def test_strict_refuses_formulas_that_are_not_decided(
     workspace, all_passes, demand, code, strict_code
 ):
-    guard = "if heat < 3.5"
+    guard = "if heat * heat < 3.5"
     assert run_check(workspace, demand, guard=guard).exit_code == code
     result = run_check(workspace, demand, "--strict", "--ignore", "SM", guard=guard)
     assert result.exit_code == strict_code
 
 
 def test_texts_are_counted_apart_from_undecided_formulas(workspace, all_passes):
-    result = run_check(workspace, require("G !on"), guard="if heat < 3.5")
+    result = run_check(workspace, require("G !on"), guard="if heat * heat < 3.5")
     lines = result.stdout.splitlines()
     assert lines[0] == "Shop::Lamp: realizable, 1 of 1 requirement not decided"
     assert lines[-1] == "1 requirement not formalised: Bright"

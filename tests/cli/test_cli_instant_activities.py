@@ -165,7 +165,7 @@ def test_an_activity_of_the_owner_is_not_described_for_a_part(check):
         "action x assign a := true; action y assign a := false;",
         "first start; then fork f; then action x assign a := true; first f then y; "
         "action y assign a := false;",
-        "first start; then assign a := true; then assign b := r > 1.5; then done;",
+        "first start; then assign a := true; then assign b := r * r > 1.5; then done;",
     ],
 )
 def test_another_activity_is_not_described(check, steps):
@@ -201,7 +201,7 @@ def test_an_activity_of_the_machine_is_not_described(check):
 
 
 def test_a_text_with_an_undescribed_assignment_is_not_decided(check):
-    text = "entry action { assign a := true; then assign b := r > 1.5; }"
+    text = "entry action { assign a := true; then assign b := r * r > 1.5; }"
     block = "attribute r : Real;" + MACHINE % (text, "")
     assert check(block, "G !b")[0] == ["not-decided"]
 
