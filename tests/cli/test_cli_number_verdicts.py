@@ -240,6 +240,43 @@ MODELS = {
             "G (state=B -> G state=B)": True,
         },
     ),
+    "an assignment that breaks a constraint": (
+        "",
+        """attribute x : Real := 3.0;
+            assert constraint { x < 5 }
+            exhibit state S { entry; then A;
+            state A;
+            state B;
+            state D;
+            transition first A do assign x := 7 then B;
+            transition first B if x > 6 then D;
+            }""",
+        {"G !(state=D)": False, "G (x < 5)": False},
+    ),
+    "a value type with limits": (
+        "attribute def Percent :> Real { assert constraint { self >= 0 and self <= 100 } }",
+        """in attribute p : Percent;
+            exhibit state S { entry; then A;
+            state A;
+            state B;
+            transition first A if p > 100 then B;
+            transition first A if p < 0 then B;
+            }""",
+        {"G state=A": True},
+    ),
+    "a sum of limited numbers": (
+        "",
+        """in attribute p : Natural;
+            in attribute q : Real;
+            assert constraint { 0 <= q and q <= 10 }
+            exhibit state S { entry; then A;
+            state A;
+            state B;
+            transition first A if p + q < 0 then B;
+            transition first A if q - p > 10 then B;
+            }""",
+        {"G state=A": True},
+    ),
 }
 
 

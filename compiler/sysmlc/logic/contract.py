@@ -47,7 +47,8 @@ class EnumerationDomain:
 
     literals: tuple[str, ...]
     texts: tuple[str, ...] = ()
-    regions: Regions | None = None
+    # The literals tell domains apart well enough, and fractions are slow to hash.
+    regions: Regions | None = field(default=None, hash=False)
     type_name: str = field(default="", compare=False)
 
     def is_comparable(self, domain: "EnumerationDomain") -> bool:

@@ -375,7 +375,8 @@ class ObjectTree:
             ),
             next(defaults, None),
             tuple(feature.element for _, feature in joined),
-            all(self._is_input(feature) for _, feature in joined)
+            " " in name  # No behaviour assigns a sum itself.
+            or all(self._is_input(feature) for _, feature in joined)
             or (len(joined) == 1 and self._is_open(name, first)),
             any(_is_computed(feature) for _, feature in joined),
         )

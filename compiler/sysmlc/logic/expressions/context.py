@@ -312,11 +312,12 @@ class _FeatureTable(Mapping[str, Feature]):
             variable = self.variables[text] = unique.new(spelled)
             members = {key: elements[names[key]] for key, _ in term}
             numbers = {key: self._thresholds.number_of(member) for key, member in members.items()}
+            is_output = any(m.attrs.get("direction") == "out" for m in members.values())
             self._features[text] = Feature(
                 members[term[0][0]],
                 variable,
                 domain,
-                direction="in",
+                direction="out" if is_output else "in",
                 wording=text,
                 term=term,
                 constants=tuple(key for key, n in numbers.items() if n is not None and n.is_frozen),

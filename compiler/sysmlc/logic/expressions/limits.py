@@ -16,7 +16,13 @@ from sysmlc.ir.expressions import (
     list_children,
     print_expression,
 )
-from sysmlc.logic.expressions.linear import COMPARISONS, Lookup, UnitError, iter_comparisons
+from sysmlc.logic.expressions.linear import (
+    COMPARISONS,
+    Lookup,
+    Number,
+    UnitError,
+    iter_comparisons,
+)
 from sysmlc.logic.regions import LINE, Interval, Term, select_interval
 
 _MOMENTARY = frozenset(["precondition", "postcondition", "body"])
@@ -56,6 +62,11 @@ def read_limits(
     local: list[tuple[str, Term, Interval]] = []
     unread: dict[str, str] = {}
     for block, part in _iter_parts(graph):
+        if block.kind is Kind.DATA_TYPE:
+            for term, interval in _limit_values(graph, block, part, find, is_integral):
+                narrowed = everywhere.get(term, LINE).intersect(interval)
+                everywhere[term] = interval if narrowed is None else narrowed
+            continue
         numbers = {path: find(path) for path in iter_paths(part)}
         keys = {path: n.key for path, n in numbers.items() if n is not None and not n.is_constant}
         term, interval = _read_part(part, find, is_integral)
@@ -68,6 +79,27 @@ def read_limits(
         else:
             local.append((block.id, term, interval))
     return Limits(everywhere, tuple(local), unread)
+
+
+def _limit_values(
+    graph: Graph,
+    type_: Element,
+    part: Expression,
+    find: Lookup,
+    is_integral: Callable[[Term], bool],
+) -> Iterator[tuple[Term, Interval]]:
+    """Yield the interval of each feature of a value type that states one about ``self``."""
+    special = (t for t in graph.of_kind(Kind.DATA_TYPE) if type_ in query.generals(graph, t))
+    for feature in (f for t in (type_, *special) for f in graph.sources(t, Edge.TYPED_BY)):
+        value = find(Name((feature.name,), feature.id))
+
+        def find_value(path: Name | Member, value: Number | None = value) -> Number | None:
+            is_value = dotted_name(path) in (*_SELF, "value", type_.name)
+            return value if is_value else find(path)
+
+        term, interval = _read_part(part, find_value, is_integral)
+        if value is not None and [key for key, _ in term] == [value.key]:
+            yield term, interval
 
 
 def _iter_parts(graph: Graph) -> Iterator[tuple[Element, Expression]]:

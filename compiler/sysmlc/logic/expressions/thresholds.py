@@ -401,6 +401,8 @@ class Thresholds:
         cuts, limits = list(self._cuts[term]), self.limits.everywhere.get(term, LINE)
         if len(term) == 1:
             limits = limits.intersect(self._find_range(term[0][0])) or limits
+        if self._written & {key for key, _ in term}:
+            limits = LINE  # Behaviours may break what a constraint states.
         updates = self._updates.get(term[0][0]) if len(term) == 1 else None
         points = () if updates is None else updates.list_points(cuts)
         is_integral = self.is_integral(term)
@@ -521,9 +523,23 @@ class Thresholds:
 
         The variables belong to one object, which is one of each of the *blocks*.
         """
-        for term, limits in self.limits.list_facts(blocks):
-            for own, scale in _iter_meanings(term, variables):
-                yield own, limits.move(scale, Fraction(0))
+        facts = [*self.limits.list_facts(blocks), *self._summand_limits]
+        for term, limits in facts:
+            if not self._written & {key for key, _ in term}:
+                for own, scale in _iter_meanings(term, variables):
+                    yield own, limits.move(scale, Fraction(0))
+
+    @cached_property
+    def _summand_limits(self) -> list[tuple[Term, Interval]]:
+        """The intervals of the single features in sums, by constraints and declared ranges."""
+        keys = {key for term in self._cuts if len(term) > 1 for key, _ in term}
+        limits: list[tuple[Term, Interval]] = []
+        for key in sorted(keys):
+            term = ((key, Fraction(1)),)
+            interval = self.limits.everywhere.get(term, LINE).intersect(self._find_range(key))
+            if interval not in (None, LINE):
+                limits.append((term, interval))
+        return limits
 
 
 def _iter_meanings(
