@@ -186,11 +186,13 @@ def read_steps(machine, witness):
         return []
     attributes = {item.name for item in machine.features if item.kind == "attribute"}
     shown = attributes | {name for literal in machine.constraints for name, _ in literal.terms}
-    if not all(shown <= numbers.keys() for numbers in witness["numbers"]):
+    # A run without any known number has no member ``numbers``.
+    known_numbers = witness.get("numbers", [{}])
+    if not all(shown <= numbers.keys() for numbers in known_numbers):
         return []
     scale = RESOLUTION / machine.unit
     steps = []
-    for step, numbers in zip(witness["steps"], witness["numbers"], strict=True):
+    for step, numbers in zip(witness["steps"], known_numbers, strict=True):
         values = {item.name: Fraction((item.value or 0) * RESOLUTION) for item in machine.features}
         for name, entry in numbers.items():
             values[name] = Fraction(str(entry["number"])) * scale

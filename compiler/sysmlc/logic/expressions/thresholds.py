@@ -6,7 +6,6 @@ same ones for features that connectors join. Differences and sums that are compa
 ``a - b``, have regions of their own.
 """
 
-import re
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterator, Mapping
 from fractions import Fraction
@@ -20,7 +19,6 @@ from sysmlc.ir.expressions import (
     Assignment,
     Binary,
     Expression,
-    ExpressionError,
     Index,
     Member,
     Name,
@@ -34,6 +32,11 @@ from sysmlc.ir.expressions import (
 )
 from sysmlc.logic.contract import EnumerationDomain
 from sysmlc.logic.domains import make_region_domain
+from sysmlc.logic.expressions.compared_texts import (
+    COMPARISON,
+    iter_calculated_names,
+    parse_comparison,
+)
 from sysmlc.logic.expressions.features import NUMBER_KINDS, find_number_type
 from sysmlc.logic.expressions.joined_features import join_features
 from sysmlc.logic.expressions.limits import iter_paths, read_limits
@@ -49,7 +52,6 @@ from sysmlc.logic.expressions.linear import (
 )
 from sysmlc.logic.expressions.named_elements import VALUE_KINDS
 from sysmlc.logic.expressions.number_uses import MAX_VALUES, Updates, find_other_uses
-from sysmlc.logic.expressions.parsing import parse_expression
 from sysmlc.logic.expressions.ranges import Bounds, find_bounds
 from sysmlc.logic.regions import (
     LINE,
@@ -61,30 +63,13 @@ from sysmlc.logic.regions import (
     split_line,
 )
 
-_TEXT_ATTRIBUTES = ("guard", "body", "condition", "value")
-_OPERAND = r"(?:-\s*)?{atom}(?:\s*[-+*/]\s*{atom})*".format(
-    atom=r"(?:\d+(?:\.\d+)?(?:[eE][-+]?\d+)?(?:\s*\[[^\]\n]+\])?|[^\W\d]\w*(?:(?:\.|::)[^\W\d]\w*)*)"
-)
-COMPARISON = re.compile(rf"(?<![\w.]){_OPERAND}\s*(?:<=|>=|==|!=|=|<|>)\s*{_OPERAND}(?![\w.(])")
-"""A comparison of sums in a formula or a sentence, without parentheses."""
 _PATH = "\0"
 """Separates the key of a feature from the path to it."""
-_CALCULATED = re.compile(
-    r"((?:\w|\.|::)*\w)[')\s]*[-+*/%<>=]|[-+*/%<>=][(\s]*([^\W\d](?:\w|\.|::)*)"
-)
-"""A name beside an operator, in the rest of a formula."""
+_TEXT_ATTRIBUTES = ("guard", "body", "condition", "value")
 _MAX_MEANINGS = 64
 """Most combinations of equally named features that one formula may compare."""
 _MAX_ROUNDS = 3
 """How often the cuts of an assigned feature are moved to those that it is computed from."""
-
-
-def parse_comparison(text: str) -> Expression | None:
-    """Return the comparison in a formula, in which ``=`` and ``==`` are the same; None if none."""
-    try:
-        return parse_expression(text)
-    except ExpressionError:
-        return None
 
 
 class Thresholds:
@@ -301,8 +286,7 @@ class Thresholds:
                 find = partial(_find_by_name, dict(zip(names, meaning, strict=True)))
                 self._add_condition(expression, find, is_meant=not own or meaning in own)
                 self._other_uses |= find_other_uses(expression, find)
-        for match in _CALCULATED.finditer(COMPARISON.sub(" ", text)):
-            name = last_name(match[1] or match[2])
+        for name in map(last_name, iter_calculated_names(text)):
             self._other_uses |= {number.key for number in self._find_numbers(name)}
 
     def _find_numbers(self, name: str) -> list[Number]:

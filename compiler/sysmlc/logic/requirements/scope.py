@@ -20,12 +20,12 @@ from sysmlc.logic.contract import (
     Variable,
 )
 from sysmlc.logic.domains import contains
+from sysmlc.logic.expressions.compared_texts import COMPARISON, parse_comparison
 from sysmlc.logic.expressions.context import Context, context_of, find_literal
 from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.expressions.linear import Number
 from sysmlc.logic.expressions.number_formulas import compare_regions
 from sysmlc.logic.expressions.symbols import ElaborationError, Symbol
-from sysmlc.logic.expressions.thresholds import COMPARISON, parse_comparison
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Var, prime, var, variable_names
 from sysmlc.logic.requirements.statements import (
     find_redefining_operation,
