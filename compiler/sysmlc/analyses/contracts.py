@@ -110,9 +110,12 @@ def _add_facts(graph: Graph, contract: Contract) -> Contract:
     if element is None or not any(variable.term for variable in contract.variables):
         return contract
     origin = query.definition_of(graph, element)
-    if origin.kind in query.BEHAVIORS:
+    is_behaviour = origin.kind in query.BEHAVIORS
+    if is_behaviour:
         origin = find_context_classifier(graph, origin) or origin
-    return add_facts_about_numbers(contract, context_of(graph, origin).facts)
+    # Requirements are compared with a behaviour, which may order other constants.
+    facts = context_of(graph, origin).facts
+    return add_facts_about_numbers(contract, facts, has_orders=is_behaviour)
 
 
 def _derive_machines(graph: Graph, options: MachineOptions, sink: Sink) -> Iterator[Contract]:

@@ -84,12 +84,14 @@ def state_facts(
     return _iter_assumptions(cells, variables, origin)
 
 
-def add_facts_about_numbers(contract: Contract, facts: Sequence[Fact]) -> Contract:
+def add_facts_about_numbers(
+    contract: Contract, facts: Sequence[Fact], *, has_orders: bool
+) -> Contract:
     """Return the contract with the assumption that the inputs are possible numbers.
 
-    *facts* are what constraints state about them.
+    *facts* are what constraints state about them; *has_orders* is that of ``find_cells``.
     """
-    cells = find_cells(contract.variables, facts)
+    cells = find_cells(contract.variables, facts, has_orders=has_orders)
     variables = (*contract.variables, *cells.orders)
     assumptions = _iter_assumptions(cells, variables, contract.origin)
     return replace(
