@@ -85,7 +85,7 @@ class Thresholds:
         self._written: set[str] = set()
         for expression in self._iter_conditions():
             self._add_condition(expression, self.find_number)
-        for text in self._iter_formal_texts():
+        for text in dict.fromkeys(self._iter_formal_texts()):
             self._add_formal_text(text)
         for _ in range(_MAX_ROUNDS):
             self._pull_cuts_back()
@@ -261,8 +261,9 @@ class Thresholds:
         return used
 
     def _iter_formal_texts(self) -> Iterator[str]:
-        for element in self._graph:
-            body = element.attrs.get("body")
+        """Yield the texts of constraints in which not all names are resolved."""
+        for constraint in self._graph.of_kind(Kind.CONSTRAINT):
+            body = constraint.attrs.get("body")
             if isinstance(body, str) and not (isinstance(body, ParsedText) and _is_resolved(body)):
                 yield body
 
@@ -507,8 +508,7 @@ class Thresholds:
 
         The variables belong to one object, which is one of each of the *blocks*.
         """
-        facts = [*self.limits.list_facts(blocks), *self._summand_limits]
-        for term, limits in facts:
+        for term, limits in (*self.limits.list_facts(blocks), *self._summand_limits):
             if not self._written & {key for key, _ in term}:
                 for own, scale in _iter_meanings(term, variables):
                     yield own, limits.move(scale, Fraction(0))
