@@ -450,8 +450,10 @@ def test_constants_give_defaults_bounds_and_thresholds():
     (contract,) = reading.graph.derived(Contract)
     assert [d.rule.code for d in reading.sink if d.severity != "info"] == []
     texts = [print_formula(g.formula) for g in contract.guarantees]
-    assert {"level=20", "valve", "tank=0"} <= set(texts)
-    assert "state=x & event=Go & level>=10 & valve -> state'=x & level'=0 & tank'=20" in texts
+    assert {"level=at_20", "valve", "tank=0"} <= set(texts)
+    at_least_10 = "(level=half_way_to_20 | level=at_20 | level=from_21)"
+    taken = f"state=x & event=Go & {at_least_10} & valve"
+    assert f"{taken} -> state'=x & level'=at_0 & tank'=20" in texts
     assert {v.name: describe(v.domain) for v in contract.variables}["tank"] == "0..20"
     assert any("('half way' = 10)" in g.text for g in contract.guarantees)
 

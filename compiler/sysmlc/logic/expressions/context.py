@@ -35,7 +35,7 @@ from sysmlc.logic.expressions.features import (
     read_constant,
     restrict_string,
 )
-from sysmlc.logic.expressions.linear import Number, print_term, read_quantity
+from sysmlc.logic.expressions.linear import Number, print_term
 from sysmlc.logic.expressions.named_elements import (
     Enumerations,
     enumerations_of,
@@ -383,7 +383,7 @@ class _FeatureTable(Mapping[str, Feature]):
             feature = replace(feature, domain=None, is_assumed=False)
         if feature.domain is not None or domain is None or domain.regions is None:
             return feature
-        quantity = read_quantity(self._graph, feature.element, "default")
+        quantity = self._thresholds.read_initial(feature.element)
         index = None if quantity is None else domain.regions.find(quantity.number)
         default = None if index is None else domain.literals[index]
         is_inside = quantity is None or index is not None

@@ -8,14 +8,13 @@ from sysmlc.ir import Edge, Element, Graph, Kind, query
 from sysmlc.ir.expressions import (
     Binary,
     Expression,
-    Index,
     Member,
     Name,
     ParsedText,
     dotted_name,
-    list_children,
     print_expression,
 )
+from sysmlc.logic.expressions.feature_paths import iter_paths
 from sysmlc.logic.expressions.linear import (
     COMPARISONS,
     Lookup,
@@ -155,12 +154,3 @@ def split_conjunction(expression: Expression) -> Iterator[Expression]:
             yield Binary(op, middle, right)
         case _:
             yield expression
-
-
-def iter_paths(node: object) -> Iterator[Name | Member]:
-    """Yield the names and the chains of features in an expression; units are none."""
-    if isinstance(node, Name | Member):
-        yield node
-        return
-    for child in [node.base] if isinstance(node, Index) else list_children(node):
-        yield from iter_paths(child)

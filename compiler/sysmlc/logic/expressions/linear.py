@@ -209,16 +209,25 @@ def print_term(term: Term) -> str:
     return text
 
 
-def read_quantity(graph: Graph, element: Element, key: str) -> Linear | None:
-    """Return the number in an attribute of an element (``default``, ``value``) with its unit."""
+def read_quantity(
+    graph: Graph, element: Element, key: str, find: Lookup = lambda _: None
+) -> Linear | None:
+    """Return the number in an attribute of an element (``default``, ``value``) with its unit.
+
+    *find* returns the constants that the value may name.
+    """
     value = element.attrs.get(key)
     if isinstance(value, ParsedText):
-        try:
-            return read_linear(value.tree, lambda _: None)
-        except UnitError:
-            return None
+        form = read_form(value.tree, find)
+        return None if form is None or form.factors else form
     if isinstance(value, bool) or not isinstance(value, int | float):
         return None
     unit = name_value_unit(graph, element, key)
     number, base = measure(Fraction(str(value)), unit) if unit else (Fraction(str(value)), "")
     return Linear(number=number, unit=base if value or unit else None, symbol=unit)
+
+
+def is_antisymmetric(term: Term) -> bool:
+    """Whether a term is the difference of one feature in two objects."""
+    (first, _), (second, factor) = term if len(term) == 2 else (("", 1), (" ", 1))
+    return first == second and factor == -1

@@ -37,15 +37,17 @@ from sysmlc.logic.expressions.compared_texts import (
     iter_calculated_names,
     parse_comparison,
 )
+from sysmlc.logic.expressions.feature_paths import distinguish_paths, iter_paths, merge_paths
 from sysmlc.logic.expressions.features import NUMBER_KINDS, find_number_type
 from sysmlc.logic.expressions.joined_features import join_features
-from sysmlc.logic.expressions.limits import iter_paths, read_limits
+from sysmlc.logic.expressions.limits import read_limits
 from sysmlc.logic.expressions.linear import (
     COMPARISONS,
     Comparison,
     Linear,
     Lookup,
     Number,
+    is_antisymmetric,
     list_comparisons,
     read_form,
     read_quantity,
@@ -63,8 +65,6 @@ from sysmlc.logic.regions import (
     split_line,
 )
 
-_PATH = "\0"
-"""Separates the key of a feature from the path to it."""
 _TEXT_ATTRIBUTES = ("guard", "body", "condition", "value")
 _MAX_MEANINGS = 64
 """Most combinations of equally named features that one formula may compare."""
@@ -128,7 +128,7 @@ class Thresholds:
             if updates is not None and key not in self._written:
                 # Each type that redefines a feature has its own value.
                 family = (element, *query.redefined_features(self._graph, element))
-                values = (read_quantity(self._graph, item, "default") for item in family)
+                values = (self.read_initial(item) for item in family)
                 return next(((value,) for value in values if value is not None), ())
         return self._list_range(element)
 
@@ -163,7 +163,16 @@ class Thresholds:
             return Number("", (value,), is_constant=True)
         return Number(self._groups.find(element.id), is_frozen=is_frozen)
 
-    def _find_declared(self, name: Name | Member) -> Number | None:
+    def read_initial(self, feature: Element) -> Linear | None:
+        """Return the initial value of a feature, which may name a constant."""
+        instance = self._graph.get(str(feature.attrs.get("default_instance")))
+        constant = None if instance is None else self._read_declared(instance)
+        if constant is not None and constant.is_constant:
+            return constant.values[0]
+        return read_quantity(self._graph, feature, "default", self.find_declared)
+
+    def find_declared(self, name: Name | Member) -> Number | None:
+        """Return a constant, or a feature without the values that it may have."""
         element = self._graph.get(name.element)
         return None if element is None else self._read_declared(element)
 
@@ -178,13 +187,13 @@ class Thresholds:
             number = self._read_declared(feature)
             if number is None or number.is_constant:
                 continue
-            initial = read_quantity(self._graph, feature, "default")
+            initial = self.read_initial(feature)
             values[number.key] += [initial] if initial is not None else []
             if feature.attrs.get("direction") not in ("in", "inout"):
                 decided.add(number.key)
         for key, value in self._iter_writes():
             self._written.add(key)
-            form = None if value is None else read_form(value, self._find_declared)
+            form = None if value is None else read_form(value, self.find_declared)
             if form is not None and not form.factors:
                 values[key].append(form)
             elif form is not None and form.factors == {key: 1}:
@@ -257,7 +266,7 @@ class Thresholds:
             for key in _TEXT_ATTRIBUTES:
                 value = element.attrs.get(key)
                 if isinstance(value, ParsedText):
-                    used |= find_other_uses(value.tree, self._find_declared)
+                    used |= find_other_uses(value.tree, self.find_declared)
         return used
 
     def _iter_formal_texts(self) -> Iterator[str]:
@@ -316,14 +325,14 @@ class Thresholds:
         """Add the cuts of a comparison; one that *is_meant* states their unit and words, too."""
         if not isinstance(expression, Binary):
             return
-        for comparison in list_comparisons(expression, _distinguish_paths(expression, find)):
-            term, number, unit = _merge_paths(comparison.term), comparison.number, comparison.unit
+        for comparison in list_comparisons(expression, distinguish_paths(expression, find)):
+            term, number, unit = merge_paths(comparison.term), comparison.number, comparison.unit
             if not term or unit not in (None, self._units.get(term, (unit,))[0]):
                 # In a formula, the threshold 'low' of a level may have the name of a temperature.
                 continue
             for cut in list_cuts(comparison.op, number, is_integral=self.is_integral(term)):
                 self._cuts[term][cut] = None
-                if _is_antisymmetric(term):  # The difference of two parts may be meant either way.
+                if is_antisymmetric(term):  # The difference of two parts may be meant either way.
                     self._cuts[term][Cut(-cut.number, not cut.is_above)] = None
             if unit is not None and is_meant:
                 self._units.setdefault(term, (unit, comparison.symbol))
@@ -346,7 +355,7 @@ class Thresholds:
         The cut b of ``x := 2*y + c`` is the cut (b - c)/2 of y.
         """
         for key, value in list(self._iter_writes()):
-            form = None if value is None else read_form(value, self._find_declared)
+            form = None if value is None else read_form(value, self.find_declared)
             if form is None or len(form.factors) != 1 or form.factors == {key: 1}:
                 continue
             ((source, factor),) = form.factors.items()
@@ -384,10 +393,10 @@ class Thresholds:
 
     def _make_domain(self, term: Term) -> EnumerationDomain:
         cuts, limits = list(self._cuts[term]), self.limits.everywhere.get(term, LINE)
-        if len(term) == 1:
-            limits = limits.intersect(self._find_range(term[0][0])) or limits
         if self._written & {key for key, _ in term}:
             limits = LINE  # Behaviours may break what a constraint states.
+        if len(term) == 1:
+            limits = limits.intersect(self._find_range(term[0][0])) or limits
         updates = self._updates.get(term[0][0]) if len(term) == 1 else None
         points = () if updates is None else updates.list_points(cuts)
         is_integral = self.is_integral(term)
@@ -552,35 +561,6 @@ def thresholds_of(graph: Graph) -> Thresholds:
 def _is_resolved(text: ParsedText[Expression | tuple[Statement, ...]]) -> bool:
     """Whether all names have elements: not in ``G (x < 3)``, which may be read as a call of G."""
     return all(path.element for path in iter_paths(text.tree))
-
-
-def _distinguish_paths(expression: Expression, find: Lookup) -> Lookup:
-    """Return a lookup with a key for each path to a feature if several lead to the same one.
-
-    ``left.level - right.level`` is not zero if both parts have the same type.
-    """
-    numbers = {dotted_name(path): find(path) for path in iter_paths(expression)}
-    keys = [number.key for number in numbers.values() if number is not None and number.key]
-    if len(set(keys)) == len(keys):
-        return find
-
-    def find_path(path: Name | Member) -> Number | None:
-        number = find(path)
-        if number is None or not number.key:
-            return number
-        return replace(number, key=f"{number.key}{_PATH}{dotted_name(path)}")
-
-    return find_path
-
-
-def _merge_paths(term: Term) -> Term:
-    return tuple((key.partition(_PATH)[0], factor) for key, factor in term)
-
-
-def _is_antisymmetric(term: Term) -> bool:
-    """Whether a term is the difference of one feature in two objects."""
-    (first, _), (second, factor) = term if len(term) == 2 else (("", 1), (" ", 1))
-    return first == second and factor == -1
 
 
 def _write_side(side: Expression) -> str:
