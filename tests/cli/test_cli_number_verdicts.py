@@ -299,3 +299,15 @@ def test_properties_with_known_answers(workspace, all_passes, name):
         for entry in json.loads(result.stdout)["requirements"]
     }
     assert list(verdicts.values()) == list(properties.values())
+
+
+def test_a_function_in_an_assigned_value_is_no_unknown_name(workspace, all_passes):
+    workspace.write(
+        "model.sysml",
+        """package M { private import ScalarValues::*; private import NumericalFunctions::*;
+            part def P { attribute x : Real := 0.0; exhibit state S { entry; then A; state A;
+                transition first A if x < 5 do assign x := min(x + 1.0, 3.0) then A; } } }""",
+    )
+    result = workspace.sysmlc("check", "--min-severity", "info", "model.sysml")
+    assert "SM412" not in result.output
+    assert "calls such as 'min(x + 1.0, 3.0)' are not evaluated" in result.output

@@ -6,10 +6,12 @@ from functools import partial
 
 from sysmlc.ir.expressions import (
     Binary,
+    Call,
     Expression,
     Literal,
     Member,
     Name,
+    describe_unsupported,
     name_of,
     print_expression,
     walk_tree,
@@ -195,8 +197,11 @@ def elaborate_region(
 
 
 def _check_numbers(expression: Expression, scope: Scope) -> None:
-    """Raise ElaborationError if a name is unknown or denotes no number."""
+    """Raise ElaborationError for a call, and if a name is unknown or denotes no number."""
     for node in walk_tree(expression):
+        if isinstance(node, Call):
+            text = print_expression(node)
+            raise ElaborationError(Fault.UNSUPPORTED, describe_unsupported(node), text)
         symbol, name = find_symbol(node, scope), name_of(node)
         if name and symbol is None and isinstance(node, Name):
             raise ElaborationError(Fault.UNKNOWN, f"'{name}' is not known", name, node.element)
