@@ -129,13 +129,13 @@ TYPOS = {
         "first d then",
     ),
     "'then' before steps": (
-        "action c { attribute m = 1; if m > 3 then { action d; } }",
-        "2:38 unexpected 'then'; expected '{'",
+        "action c { attribute m := 1; if m > 3 then { action d; } }",
+        "2:39 unexpected 'then'; expected '{'",
         "without 'then'",
     ),
     "'do' before steps": (
-        "action c { attribute m = 1; while m > 3 do { action d; } }",
-        "2:41 unexpected 'do'; expected '{'",
+        "action c { attribute m := 1; while m > 3 do { action d; } }",
+        "2:42 unexpected 'do'; expected '{'",
         "without 'do'",
     ),
     "loop of another language": (
