@@ -60,7 +60,7 @@ NOT_FORMAL = rule(
     "requirement-not-formal",
     Severity.INFO,
     "{constraint} of requirement '{requirement}' is in no contract: {reason}{further}",
-    help="compare Booleans, enumerations and Integers of the subject for a contract about it",
+    help="compare Booleans, enumerations and sums of numbers of the subject for a contract",
 )
 _EXPRESSION_LANGUAGES = ("", "kerml", "sysml", "ocl", "alf")
 

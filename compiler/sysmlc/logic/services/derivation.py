@@ -44,7 +44,7 @@ NOT_FORMAL = rule(
     "condition-not-formal",
     Severity.INFO,
     "the {condition} of '{service}' is in no contract: {reason}{further}",
-    help="compare Booleans, enumerations and Integers for a contract about it",
+    help="compare Booleans, enumerations and sums of numbers for a contract about it",
 )
 _KINDS = ("", "precondition", "postcondition", "body")
 _KIND_WORDS = {"": "constraint", "body": "body condition"}
