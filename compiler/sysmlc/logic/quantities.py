@@ -157,8 +157,8 @@ class FeatureGroup(Struct, frozen=True, dict=True):
 
         None if a region is not known, or if the component decides a number which it leaves open.
         """
-        known = {key: number for key, number in given.items() if key in self.features}
-        rows = [row for key, number in known.items() for row in _equate(key, number)]
+        own_numbers = {key: number for key, number in given.items() if key in self.features}
+        rows = [row for key, number in own_numbers.items() for row in _equate(key, number)]
         rows += (row for limit in self.limits for row in list_inequalities(*limit))
         for variable in self.variables:
             index = _find_index(variable, step)
@@ -269,8 +269,8 @@ def find_groups(variables: Iterable[Variable], limits: Sequence[Fact] = ()) -> l
     relations = ([name for name in keys if keys[name] & features] for features in related)
     groups = []
     for names in group_related(keys, relations):
-        known = set[str]().union(*(keys[name] for name in names))
-        own = (limit for limit in limits if known.issuperset(key for key, _ in limit[0]))
+        features = set[str]().union(*(keys[name] for name in names))
+        own = (limit for limit in limits if features.issuperset(key for key, _ in limit[0]))
         members = (variable for variable in numeric if variable.name in names)
         groups.append(FeatureGroup(tuple(members), tuple(own)))
     return groups

@@ -43,16 +43,16 @@ def unite_regions(own_domains: Iterable[Domain]) -> EnumerationDomain | None:
     """
     own_domains = list(own_domains)
     regions = [_find_regions(domain) for domain in own_domains]
-    known = [item for item in regions if item is not None]
+    numeric = [item for item in regions if item is not None]
     has_ranges = any(isinstance(domain, IntegerDomain) for domain in own_domains)
     if (
         not any(map(regions_of, own_domains))
-        or len(known) < len(regions)
-        or len({item.unit for item in known}) > 1
-        or (has_ranges and not all(item.is_integral for item in known))
+        or len(numeric) < len(regions)
+        or len({item.unit for item in numeric}) > 1
+        or (has_ranges and not all(item.is_integral for item in numeric))
     ):
         return None
-    return make_region_domain(reduce(Regions.unite, known))
+    return make_region_domain(reduce(Regions.unite, numeric))
 
 
 def _find_regions(domain: Domain) -> Regions | None:

@@ -205,10 +205,10 @@ class Regions(Struct, frozen=True):
 
     def unite(self, regions: "Regions") -> "Regions":
         """Return the regions that the cuts of both tell apart, without numbers outside of both."""
-        known = (*self.intervals, *regions.intervals)
-        cuts = (cut for item in known for cut in (item.low, item.high) if cut is not None)
+        parts = (*self.intervals, *regions.intervals)
+        cuts = (cut for item in parts for cut in (item.low, item.high) if cut is not None)
         intervals = (
-            item for item in split_line(cuts) if any(part.includes(item) for part in known)
+            item for item in split_line(cuts) if any(part.includes(item) for part in parts)
         )
         is_integral = self.is_integral and regions.is_integral
         labels = dict(regions.labels) | dict(self.labels)

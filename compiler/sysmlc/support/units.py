@@ -227,8 +227,8 @@ def measure(number: Fraction, unit: str) -> tuple[Fraction, str]:
 
 def find_scale(unit: str) -> tuple[Fraction, Fraction]:
     """Return the size and the zero of a unit: ``measure`` returns ``size * number + zero``."""
-    zero, one = (measure(Fraction(value), unit)[0] for value in (0, 1))
-    return one - zero, zero
+    zero, unit_value = (measure(Fraction(value), unit)[0] for value in (0, 1))
+    return unit_value - zero, zero
 
 
 def express(number: Fraction, unit: str) -> Fraction:
@@ -239,8 +239,8 @@ def express(number: Fraction, unit: str) -> Fraction:
 
 def show_symbol(unit: str) -> str:
     """Return the symbol of a unit for people: ``°C`` for the scale ``°C_abs``."""
-    known = find_unit(unit)
-    return unit.removesuffix("_abs") if known is None else known.symbol
+    usual_unit = find_unit(unit)
+    return unit.removesuffix("_abs") if usual_unit is None else usual_unit.symbol
 
 
 def read_number(text: str, unit: str) -> Fraction | None:
