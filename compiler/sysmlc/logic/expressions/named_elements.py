@@ -272,12 +272,13 @@ class Enumerations:
             enumeration = self._graph.owner(literal)
             assert enumeration is not None
             assert isinstance(symbol.domain, EnumerationDomain)
-            # The name may be that of several enumerations with the same literals.
-            by_name = replace(symbol, domain=EnumerationDomain(symbol.domain.literals))
+            untyped = replace(symbol, domain=EnumerationDomain(symbol.domain.literals))
             for separator in ("::", "."):
                 name = f"{enumeration.name}{separator}{literal.name}"
-                if literals.setdefault(name, by_name) != symbol:
-                    literals[name] = Symbol(symbol.formula, None)
+                first = literals.setdefault(name, symbol)
+                if first is not symbol:
+                    # Several enumerations have the name: with the same literals, or others.
+                    literals[name] = untyped if first == symbol else Symbol(symbol.formula, None)
         return literals
 
     @cached_property

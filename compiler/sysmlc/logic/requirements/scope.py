@@ -7,7 +7,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from sysmlc.ir import Element, Graph, query
-from sysmlc.ir.expressions import Binary
+from sysmlc.ir.expressions import Binary, dotted_name
 from sysmlc.logic.components.names import ComponentNames, Meaning
 from sysmlc.logic.components.objects import ComponentError
 from sysmlc.logic.composition.free_outputs import find_owner
@@ -22,10 +22,11 @@ from sysmlc.logic.contract import (
 from sysmlc.logic.domains import contains
 from sysmlc.logic.expressions.compared_texts import COMPARISON, parse_comparison
 from sysmlc.logic.expressions.context import Context, context_of, find_literal
+from sysmlc.logic.expressions.elaboration import check_enumeration
 from sysmlc.logic.expressions.features import Feature
 from sysmlc.logic.expressions.linear import Number
 from sysmlc.logic.expressions.number_formulas import compare_regions
-from sysmlc.logic.expressions.symbols import ElaborationError, Symbol
+from sysmlc.logic.expressions.symbols import ElaborationError, Symbol, find_symbol
 from sysmlc.logic.formula import Apply, Const, Formula, Literal, Var, prime, var, variable_names
 from sysmlc.logic.requirements.statements import (
     find_redefining_operation,
@@ -179,6 +180,7 @@ class Scope(Struct, frozen=True):
             return match[0]
         try:
             formula = compare_regions(expression, self.find_symbol)
+            self._check_types(expression)
         except (ComponentError, ElaborationError) as error:
             raise FormulaError(str(error), match.start()) from None
         if formula is None:
@@ -186,6 +188,18 @@ class Scope(Struct, frozen=True):
         variable = f"__{len(meanings)}"
         meanings[variable] = Meaning(formula, BooleanDomain(), match[0].strip())
         return variable.ljust(len(match[0]))
+
+    def _check_types(self, expression: Binary) -> None:
+        """Raise ElaborationError if a comparison is about values of two enumerations."""
+        domains: list[Domain | None] = []
+        for side in (expression.left, expression.right):
+            literal = find_literal(self.context, dotted_name(side) or "")
+            symbol = literal or find_symbol(side, self.find_symbol)
+            domains.append(None if symbol is None else symbol.domain)
+        left, right = domains
+        # Literals such as ``Door::open`` have the type; those that stand alone take any.
+        if left is not None and right is not None and left == right:
+            check_enumeration(expression.right, right, left)
 
     def _replace_name(self, match: re.Match[str], meanings: dict[str, Meaning]) -> str:
         name = match[0]
