@@ -177,11 +177,11 @@ def _exclude(members: list[Variable], facts: list[Fact]) -> list[Formula] | None
                 member.domain.literals, member.domain.regions.intervals, strict=True
             ):
                 combination = f.both(formula, f.eq(f.var(member.name), Const(literal)))
-                more = [*rows, *list_inequalities(member.term, interval)]
-                if find_solution(more) is None:
+                extended_rows = [*rows, *list_inequalities(member.term, interval)]
+                if find_solution(extended_rows) is None:
                     excluded.append(combination)
                 else:
-                    extended.append((combination, more))
+                    extended.append((combination, extended_rows))
         cells = extended
         if len(cells) > MAX_CELLS:
             return None

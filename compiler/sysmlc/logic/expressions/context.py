@@ -376,8 +376,8 @@ class _FeatureTable(Mapping[str, Feature]):
 
     def _restrict_number(self, feature: Feature, number: Number) -> Feature:
         """Return a numeric feature with the regions that the model tells apart as its values."""
-        own = replace(number, key="" if number.is_constant else feature.variable)
-        feature = replace(feature, number=own)
+        own_number = replace(number, key="" if number.is_constant else feature.variable)
+        feature = replace(feature, number=own_number)
         domain = self._thresholds.domain_of(number)
         if feature.is_assumed and self._thresholds.is_only_compared(number):
             feature = replace(feature, domain=None, is_assumed=False)

@@ -543,9 +543,9 @@ def _iter_meanings(
         if len(set(names)) < len(names):
             continue
         factors = (factor for _, factor in term)
-        own = sorted(zip(names, factors, strict=True))
-        scale = 1 / own[0][1]
-        yield tuple((name, factor * scale) for name, factor in own), scale
+        sum_of_variables = sorted(zip(names, factors, strict=True))
+        scale = 1 / sum_of_variables[0][1]
+        yield tuple((name, factor * scale) for name, factor in sum_of_variables), scale
 
 
 def thresholds_of(graph: Graph) -> Thresholds:
