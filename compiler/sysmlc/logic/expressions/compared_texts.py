@@ -12,9 +12,11 @@ _OPERAND = r"(?:-\s*)?{atom}(?:\s*[-+*/]\s*{atom})*".format(
 COMPARISON = re.compile(rf"(?<![\w.]){_OPERAND}\s*(?:<=|>=|==|!=|=|<|>)\s*{_OPERAND}(?![\w.(])")
 """A comparison of sums in a formula or a sentence, without parentheses."""
 _CALCULATED = re.compile(
-    r"((?:\w|\.|::)*\w)[')\s]*[-+*/%<>=]|[-+*/%<>=][(\s]*([^\W\d](?:\w|\.|::)*)"
+    r"(?<![\w.:])((?:\w|\.|::)*\w)[')\s]*[-+*/%<>=]|[-+*/%<>=][(\s]*([^\W\d](?:\w|\.|::)*)"
 )
 """A name beside an operator, in the rest of a formula."""
+MAX_LENGTH = 4_000
+"""Longest text whose comparisons of numbers are read: the search takes quadratic time."""
 
 
 def parse_comparison(text: str) -> Expression | None:

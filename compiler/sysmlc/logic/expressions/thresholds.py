@@ -34,6 +34,7 @@ from sysmlc.logic.contract import EnumerationDomain
 from sysmlc.logic.domains import make_region_domain
 from sysmlc.logic.expressions.compared_texts import (
     COMPARISON,
+    MAX_LENGTH,
     iter_calculated_names,
     parse_comparison,
 )
@@ -86,7 +87,8 @@ class Thresholds:
         for expression in self._iter_conditions():
             self._add_condition(expression, self.find_number)
         for text in dict.fromkeys(self._iter_formal_texts()):
-            self._add_formal_text(text)
+            if len(text) <= MAX_LENGTH:
+                self._add_formal_text(text)
         for _ in range(_MAX_ROUNDS):
             self._pull_cuts_back()
         self.limits = read_limits(graph, self.find_number, self.is_integral, self._joined_keys)

@@ -20,7 +20,7 @@ from sysmlc.logic.contract import (
     Variable,
 )
 from sysmlc.logic.domains import contains
-from sysmlc.logic.expressions.compared_texts import COMPARISON, parse_comparison
+from sysmlc.logic.expressions.compared_texts import COMPARISON, MAX_LENGTH, parse_comparison
 from sysmlc.logic.expressions.context import Context, context_of, find_literal
 from sysmlc.logic.expressions.elaboration import check_enumeration
 from sysmlc.logic.expressions.features import Feature
@@ -170,7 +170,8 @@ class Scope(Struct, frozen=True):
         variable is longer than the name. Raises FormulaError for a name with several meanings.
         """
         meanings: dict[str, Meaning] = {}
-        text = COMPARISON.sub(lambda match: self._replace_comparison(match, meanings), text)
+        if len(text) <= MAX_LENGTH:
+            text = COMPARISON.sub(lambda match: self._replace_comparison(match, meanings), text)
         return _NAME.sub(lambda match: self._replace_name(match, meanings), text), meanings
 
     def _replace_comparison(self, match: re.Match[str], meanings: dict[str, Meaning]) -> str:
